@@ -11,27 +11,27 @@
 #include "table/home.h"
 
 enum { NONE = UINT32_MAX };
-enum { LINKED_AT_ONCE = 64 }; // bodies: likewise
-// Work of a chunk. Some us: for less the gate would cost more than another worker gains. And if there are so many
-// chunks for each worker, of as many flights as are followed side by side.
+enum { LINKED_AT_ONCE = 64 }; // bodies in a task, for the same reason
+// Work of a chunk, some us: for less the gate costs more than another worker gains. If that leaves
+// CHUNKS_ABREAST chunks for each worker, a chunk has the work of as many flights as are followed side by side.
 enum { CHUNK_WORK_MIN = 48, CHUNK_WORK_ABREAST = 160, CHUNKS_ABREAST = 4 };
 
-// What islands are built with: the bodies that are involved, and a union-find forest of them, whose roots are the
-// lowest ids of their trees. Nothing is as long as there are objects, or pairs, and has to be cleared; but where much
-// of what there is moves, so that several workers find who is linked, each object is made a root before.
+// Data for building islands: the bodies involved, and a union-find forest of them, in which the root of a tree is its
+// lowest id. No array that is as long as there are objects, or pairs, is cleared each step. But where many objects
+// move, so that several workers find links, each object is made a root before.
 typedef struct builder {
 	ob_universe *u;
 	ob_step_data *data;
 	uint32_t ids;
-	uint32_t *body; // [bodies], ascending when all are found; while several look for them ob_object_involve alone
-			// counts them
+	uint32_t *body; // [bodies], ascending when all are found; while several workers look for them,
+			// ob_object_involve alone counts them
 	uint32_t bodies;
-	uint32_t *place; // [id], when islands are merged: where it is in body[], true where that says the same
-	uint32_t *parent; // [id], of bodies (table/forest.h)
+	uint32_t *place; // [id], when islands are merged: index in body[], valid where body[] has the id there
+	uint32_t *parent; // [id], for bodies (table/forest.h)
 	uint32_t *island_of; // [root]
 	bool merges; // islands that were solved apart are merged; else those of a new step are built
 	bool alone; // there is but this rank, so all bodies are its own
-	uint64_t step; // that they are for
+	uint64_t step; // step for which the islands are built
 } builder;
 
 static bool is_dynamic(const builder *p, uint32_t id)
@@ -39,19 +39,19 @@ static bool is_dynamic(const builder *p, uint32_t id)
 	return ob_schedule_is_dynamic(&p->data->schedule[id]);
 }
 
-// A body that this rank solves.
+// True for a body that this rank solves.
 static bool is_own(const builder *p, uint32_t id)
 {
 	return is_dynamic(p, id) && (p->alone || ob_worker_is_here(p->u, ob_home_of(p->u, id)));
 }
 
-// When islands are merged: it is in one of those that were solved. Until members are listed anew.
+// True, when islands are merged, if it is in an island that was solved; valid until members are listed anew.
 static bool was_solved(const builder *p, uint32_t id)
 {
 	return p->data->result_island[id] != NONE;
 }
 
-// In no island unless something wakes it. False for what has fallen asleep in this very step.
+// True if it is in no island unless it is woken. False for bodies that have fallen asleep in this step.
 static bool is_asleep(const builder *p, uint32_t id)
 {
 	return p->data->schedule[id].state >= OB_SCHEDULE_ASLEEP && !was_solved(p, id);
@@ -62,7 +62,7 @@ static bool is_in_range(const builder *p, const ob_pair_key *k)
 	return ob_object_in_range(p->data, k->a) && ob_object_in_range(p->data, k->b);
 }
 
-// ---- who is involved, when islands are merged
+// ---- bodies involved, when islands are merged
 
 static bool is_involved(const builder *p, uint32_t id)
 {
@@ -79,7 +79,7 @@ static void involve(builder *p, uint32_t id)
 	p->parent[id] = id;
 }
 
-// Both are involved, in one tree.
+// Involves both and joins their trees.
 static void join(builder *p, uint32_t i, uint32_t j)
 {
 	involve(p, i);
@@ -87,7 +87,7 @@ static void join(builder *p, uint32_t i, uint32_t j)
 	ob_forest_join(p->parent, i, j);
 }
 
-// The link makes both be solved in this step.
+// Involves both bodies of a link, so that they are solved in this step.
 static void involve_link(builder *p, const ob_pair_key *k)
 {
 	if (is_own(p, k->a) && is_own(p, k->b))
@@ -96,16 +96,16 @@ static void involve_link(builder *p, const ob_pair_key *k)
 		involve(p, is_own(p, k->a) ? k->a : k->b);
 }
 
-// Whether the pair links what it touches. Sleepers that something has woken within a step wake those that they touch;
-// what is expected then is of the coming step. What links it to another rank's body is that rank's, too
-// (rank_islands.h). Most pairs link nothing, so their objects are not looked at.
+// True if the pair links its bodies. Sleepers that are woken within a step wake the bodies that they touch; expected
+// contacts concern the coming step then. Links to another rank's body are known to that rank, too (rank_islands.h).
+// Most pairs link nothing, so their objects are tested last.
 static bool is_link(const builder *p, const ob_pair_key *k)
 {
 	return (p->merges ? k->active : k->active | k->expected) && is_in_range(p, k) && is_own(p, k->a) &&
 	       is_own(p, k->b) && (!p->merges || (is_asleep(p, k->a) && is_asleep(p, k->b)));
 }
 
-// An island is solved again as a whole.
+// Involves all bodies of the object's island, which is solved again as a whole.
 static void involve_island_of(builder *p, uint32_t id)
 {
 	const uint32_t island = p->data->result_island[id];
@@ -123,7 +123,7 @@ static void involve_island_of(builder *p, uint32_t id)
 		join(p, member[0], member[k]);
 }
 
-// Those that have met somebody in this step, with their islands. The solutions of all other islands stand.
+// Involves the islands of bodies with late contacts in this step. The solutions of all other islands stand.
 static void involve_late(builder *p)
 {
 	const ob_step_data *data = p->data;
@@ -140,7 +140,7 @@ static void involve_late(builder *p)
 	}
 }
 
-// The list grows while it is gone through: breadth first.
+// Involves linked bodies; the list grows while the loop runs: breadth first.
 static void involve_linked(builder *p)
 {
 	const ob_step_data *data = p->data;
@@ -157,10 +157,10 @@ static void involve_linked(builder *p)
 	}
 }
 
-// ---- who is involved in a new step
+// ---- bodies involved in a new step
 
-// true: it was in no island before. Where each object is a root several workers may, and another may have joined it to
-// a tree since; else it becomes one.
+// Involves a body. true: it was in no island before. If each object is a root, several workers may call it, and
+// another may have joined it to a tree since; else it becomes a root.
 static bool involve_new(const builder *p, uint32_t id)
 {
 	if (!ob_object_involve(p->u, id))
@@ -170,7 +170,7 @@ static bool involve_new(const builder *p, uint32_t id)
 	return true;
 }
 
-// A pair that touches, or is expected to, with something that moves makes both be solved.
+// Involves both bodies of a pair that touches, or is expected to, if one of them moves.
 static void involve_pair(const builder *p, const ob_pair_key *k)
 {
 	if (!(k->active | k->expected) || !is_in_range(p, k) ||
@@ -192,7 +192,7 @@ static void make_roots(const builder *p, uint32_t due)
 		p->parent[i] = i;
 }
 
-// Of pairs with an entry for now: they lie anywhere, and so do their bodies.
+// Prefetches pairs that are due now: they and their bodies lie anywhere.
 static void prefetch_due_pair(const ob_step_data *data, uint32_t i, uint32_t end)
 {
 	enum { PAIR_AHEAD = 16, BODIES_AHEAD = 8 };
@@ -205,13 +205,13 @@ static void prefetch_due_pair(const ob_step_data *data, uint32_t i, uint32_t end
 	__builtin_prefetch(&data->schedule[k->b]);
 }
 
-// Who must be solved, whatever comes near it, and those that a pair involves which has an entry for now.
+// Involves the bodies that are due in this step, and those of linked pairs that are due for a check.
 static void involve_due(const builder *p)
 {
 	const ob_step_data *data = p->data;
 	const ob_calendar solve = ob_calendar_of_objects(p->u), look = ob_calendar_of_pairs(p->u);
 	const uint32_t most = ob_pairs_end(data), pairs = ob_calendar_list(&look, p->step, data->check, most);
-	uint32_t *due = p->island_of; // not yet needed
+	uint32_t *due = p->island_of; // scratch until islands are listed
 	const uint32_t n = ob_calendar_list(&solve, p->step, due, p->ids);
 	make_roots(p, n);
 	for (uint32_t i = 0; i < n; i++)
@@ -223,8 +223,8 @@ static void involve_due(const builder *p)
 	data->count->due = data->count->involved;
 }
 
-// Joins the body to those that its links involve. What is new goes on a stack of the caller's, through place[]: its
-// links are followed by who has found it.
+// Joins the body to its linked bodies. Each body that is new goes on the caller's stack, through place[]: the task that
+// has found it follows its links.
 static void follow_links(const builder *p, uint32_t id, uint32_t *stack, uint64_t *visits)
 {
 	const ob_step_data *data = p->data;
@@ -243,7 +243,7 @@ static void follow_links(const builder *p, uint32_t id, uint32_t *stack, uint64_
 	}
 }
 
-// Finds the root of each body. Returns how many there are.
+// Finds the root of each body. Returns the number of roots.
 static uint32_t count_trees(const builder *p)
 {
 	uint32_t n = 0;
@@ -284,8 +284,8 @@ static void list_members(builder *p)
 
 // ---- islands that stand while others are merged
 
-// Leaves the first places to the others, and no gap behind those. Few have to go elsewhere, for which their members
-// would have to be looked up. Returns where they end.
+// Moves the standing islands behind the first `unsolved` places, without a gap. Few have to be moved, as the members of
+// each would have to be updated. Returns the end of the islands.
 static uint32_t move_standing(const builder *p, uint32_t unsolved)
 {
 	ob_step_data *data = p->data;
@@ -307,7 +307,7 @@ static uint32_t move_standing(const builder *p, uint32_t unsolved)
 	return end;
 }
 
-// Puts their members behind those of the others, and their pairs to the front. buffers: scratch, and
+// Moves the members of standing islands behind those of the others, and their pairs to the front. Scratch: place[] and
 // ob_step_data.check, which have been read.
 static void move_lists_of_standing(const builder *p, uint32_t first, uint32_t end)
 {
@@ -329,8 +329,8 @@ static void move_lists_of_standing(const builder *p, uint32_t first, uint32_t en
 
 // ---- pairs
 
-// The island that solves a pair: pairs of its members, and of a member and what does not move; NONE if they cannot
-// touch in this step. What a step has found out about a pair is void if its island is solved again.
+// Returns the island that solves a pair: pairs of its members, and of a member and a body that does not move; NONE if
+// they cannot touch in this step. Results of a check within the step are void if the island is solved again.
 static uint32_t island_of_pair(const builder *p, ob_pair_key *k)
 {
 	const uint32_t ia = p->data->result_island[k->a], ib = p->data->result_island[k->b], i = ia != NONE ? ia : ib;
@@ -345,7 +345,7 @@ static uint32_t island_of_pair(const builder *p, ob_pair_key *k)
 	return a->reach + b->reach >= k->limit - paths ? i : NONE;
 }
 
-// By their ids, ascending: a shell sort, for most islands have few pairs.
+// Sorts pairs by their bodies' ids, ascending: a shell sort, for most islands have few pairs.
 static void sort_pairs(const ob_step_data *data, uint32_t *pair, uint32_t n)
 {
 	static const uint32_t gaps[] = { 29524, 9841, 3280, 1093, 364, 121, 40, 13, 4, 1 };
@@ -362,8 +362,8 @@ static void sort_pairs(const ob_step_data *data, uint32_t *pair, uint32_t n)
 	}
 }
 
-// What its members have cost in the last step, and at least what islands of such a size do. Of several ranks its pairs
-// are listed when it is dealt.
+// Estimates an island's work: the cost of its members in the last step, and at least the usual one for its size. On
+// several ranks its pairs are listed after islands are dealt.
 static uint32_t estimated_work(const builder *p, const ob_island *is)
 {
 	uint32_t sum = 1 + is->members + 8 * is->pairs;
@@ -372,22 +372,22 @@ static uint32_t estimated_work(const builder *p, const ob_island *is)
 	return sum;
 }
 
-// The pairs of an island, as they are found.
+// Pairs of an island, as they are found.
 typedef struct listing {
-	uint32_t n, pair[256]; // how many there are; the first of them
-	ob_halo *halo; // of several ranks, else NULL
+	uint32_t n, pair[256]; // number of pairs; the first of them
+	ob_halo *halo; // of several ranks; else NULL
 	uint64_t visits;
 } listing;
 
-// A pair of two members is its a's, if that is to be solved; so each pair is listed, and written, by whoever lists one
-// island.
+// True if the pair is listed with the body on this side. A pair of two members is listed with a, if a is solved; so one
+// island's task alone lists and writes it.
 static bool is_listed_with(const builder *p, const ob_pair_key *k, uint32_t side)
 {
 	return is_in_range(p, k) && (!side || !ob_is_to_be_solved(p->data, k->a));
 }
 
-// in_island holds from here to the next islands. All of its pairs, in an island or not, are to be checked when that is
-// solved (late_contacts.h).
+// Lists the pairs of a body. in_island holds from here to the next islands. All pairs of the body, in an island or not,
+// are checked after the solve (late_contacts.h).
 static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listing *to)
 {
 	ob_step_data *data = p->data;
@@ -416,7 +416,7 @@ static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listin
 	ob_halo_note_border(to->halo, id, at_border);
 }
 
-// Of a large island, when it is known how many there are.
+// Lists the pairs of a large island again, when their number is known.
 static void list_all_again(const builder *p, const ob_island *is)
 {
 	const ob_step_data *data = p->data;
@@ -462,7 +462,7 @@ static void list_pairs(const builder *p, uint32_t first, uint32_t end)
 	ob_step_visited(p->u, found.visits);
 }
 
-// Of several ranks, in the order of member[].
+// Lists the pairs of dealt islands, on several ranks, in the order of member[].
 static void list_dealt_pairs(const builder *p, ob_halo *halo)
 {
 	ob_step_data *data = p->data;
@@ -477,8 +477,8 @@ static void list_dealt_pairs(const builder *p, ob_halo *halo)
 	data->count->visits += found.visits;
 }
 
-// Of the step before: pairs are in no island any more, and those that touch no more need no record. They lie anywhere,
-// and who has solved them has written them last.
+// Ends the islands of the step before: their pairs are in no island any more, and those that touch no longer lose their
+// record. Pairs lie anywhere, and the worker that solved them has written them last.
 static void end_islands(const builder *p)
 {
 	enum { AHEAD = 16 };
@@ -499,7 +499,7 @@ static void end_islands(const builder *p)
 	data->count->island_pairs = 0;
 }
 
-// island[i] becomes what island[from[i]] was. from is overwritten.
+// Sets island[i] to the former island[from[i]]. from is overwritten.
 static void permute_islands(ob_island *island, uint32_t *from, uint32_t n)
 {
 	for (uint32_t i = 0; i < n; i++) {
@@ -514,14 +514,14 @@ static void permute_islands(ob_island *island, uint32_t *from, uint32_t n)
 	}
 }
 
-// The largest first, stable, of those that are to be solved. A radix sort: islands come by the ten
-// thousand, and there are no more than two or three digits.
+// Sorts the islands to be solved by work, largest first, stable. A radix sort: there may be tens of thousands of
+// islands, and work has no more than two or three digits.
 static void sort_by_work(builder *p)
 {
 	enum { BITS = 8, DIGITS = 1 << BITS };
 	const ob_island *island = p->data->island;
 	uint32_t n = p->data->count->unsolved, *from = p->parent, *to = p->place,
-		 largest = 0; // whose contents are no longer needed
+		 largest = 0; // parent and place are scratch now
 	for (uint32_t i = 0; i < n; i++) {
 		from[i] = i;
 		largest = island[i].work > largest ? island[i].work : largest;
@@ -551,7 +551,8 @@ uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers)
 	return share > CHUNK_WORK_MIN ? share : CHUNK_WORK_MIN;
 }
 
-// Largest first, so that no worker starts on a large one when the others are done; small ones several at a time.
+// Makes chunks, largest first, so that no worker starts on a large island when the others are done; small islands share
+// one.
 static void make_chunks(builder *p, uint64_t total)
 {
 	ob_step_data *data = p->data;
@@ -568,20 +569,20 @@ static void make_chunks(builder *p, uint64_t total)
 	data->count->chunks = chunks;
 }
 
-// ---- of several ranks, or where simulators have been moved
+// ---- several ranks, or moved simulators
 
-// Who shares the islands, and what each has so far.
+// Simulators that share the islands, and their loads so far.
 typedef struct shares {
-	uint32_t first, count; // simulators, of this rank: no more than there are objects
+	uint32_t first, count; // simulators of this rank: no more than there are objects
 	uint32_t *load, *votes; // [count]
-	uint32_t *owner; // [island]: of these simulators
-	uint32_t most; // load
-	bool pins; // some object has one
-	int shift; // of work, for loads of 32 bits
+	uint32_t *owner; // [island]: index of a simulator
+	uint32_t most; // largest load
+	bool pins; // some object is pinned
+	int shift; // right shift of work, so that loads fit 32 bits
 	ob_regions *regions; // NULL: there is but one rank
 } shares;
 
-// Who is to solve the object: of several ranks, in whose region it is; else who was given it last.
+// Returns the simulator that is to solve the object: on several ranks that of its region; else the last that got it.
 static uint32_t home_of(const builder *p, const shares *s, uint32_t id)
 {
 	const uint32_t home = s->regions ? ob_regions_at(s->regions, id) : ob_home_of(p->u, id),
@@ -589,7 +590,7 @@ static uint32_t home_of(const builder *p, const shares *s, uint32_t id)
 	return place < s->count ? place : home % s->count;
 }
 
-// That of most members.
+// Returns the home of most members.
 static uint32_t preferred_owner(const builder *p, const shares *s, const ob_island *is)
 {
 	const ob_step_data *data = p->data;
@@ -607,7 +608,7 @@ static uint32_t preferred_owner(const builder *p, const shares *s, const ob_isla
 	return best;
 }
 
-// To which one of its members was moved, the first of several; UINT32_MAX: none was
+// Returns the simulator to which a member is pinned, the first of several; UINT32_MAX: none is.
 static uint32_t pin_of(const builder *p, const shares *s, const ob_island *is)
 {
 	const ob_step_data *data = p->data;
@@ -635,7 +636,7 @@ static void ask_for(builder *p, shares *s, uint32_t island)
 	s->load[s->owner[island]] += is->work >> s->shift;
 }
 
-// Who has too much to do gives what another does sooner.
+// Moves an island from an overloaded simulator to the one that finishes first.
 static void give_island(builder *p, shares *s, uint32_t island)
 {
 	const ob_step_data *data = p->data;
@@ -668,8 +669,8 @@ uint64_t ob_islands_share(uint64_t total, uint32_t count)
 	return share > WORTH_SHARING ? share : WORTH_SHARING;
 }
 
-// A chunk for each simulator, of the islands of its region, or that it has solved before. Where one would get a tenth
-// more than its share, others do, the largest first.
+// Makes a chunk for each simulator from the islands of its region, or those that it solved before. If a simulator would
+// get a tenth more than its share, others take islands, the largest first.
 static void make_shares(builder *p, uint64_t total, ob_regions *regions)
 {
 	ob_step_data *data = p->data;
@@ -687,7 +688,7 @@ static void make_shares(builder *p, uint64_t total, ob_regions *regions)
 		s.shift++;
 	memset(data->chunk, 0, (all + 1) * sizeof *data->chunk);
 	data->count->chunks = all;
-	if (!s.count) // a rank of more simulators than there can be objects
+	if (!s.count) // a rank with more simulators than there can be objects
 		return;
 	s.most = (uint32_t)(ob_islands_share(total, s.count) >> s.shift);
 	memset(s.load, 0, s.count * sizeof *s.load);
@@ -700,13 +701,13 @@ static void make_shares(builder *p, uint64_t total, ob_regions *regions)
 		data->chunk[first + s.owner[i] + 1]++;
 	for (uint32_t w = 0; w < all; w++)
 		data->chunk[w + 1] += data->chunk[w];
-	memcpy(s.load, data->chunk + first, s.count * sizeof *s.load); // where the next of each goes
+	memcpy(s.load, data->chunk + first, s.count * sizeof *s.load); // places of the next island of each
 	for (uint32_t i = 0; i < unsolved; i++)
 		p->parent[s.load[s.owner[i]]++] = i;
 	permute_islands(data->island, p->parent, unsolved);
 }
 
-// The order in which islands are solved, and who solves which.
+// Sets the order in which islands are solved, and the worker of each.
 static void deal_islands(builder *p, ob_regions *regions)
 {
 	ob_step_data *data = p->data;
@@ -725,7 +726,7 @@ static void deal_islands(builder *p, ob_regions *regions)
 			data->result_island[data->member[data->island[i].first_member + m]] = i;
 }
 
-// ---- in turn
+// ---- calls in their order
 
 static builder builder_of(ob_universe *u, bool merges)
 {
@@ -743,7 +744,7 @@ static builder builder_of(ob_universe *u, bool merges)
 			  .step = ob_step_count(u) };
 }
 
-// When it is known who is involved.
+// Makes the builder when all bodies are involved.
 static builder builder_of_all(ob_universe *u)
 {
 	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
@@ -793,7 +794,7 @@ void ob_islands_link(ob_universe *u, uint32_t task)
 void ob_islands_list_members(ob_universe *u)
 {
 	builder p = builder_of_all(u);
-	ob_sort_ids(p.body, p.bodies, p.ids, p.place); // whose contents are no longer needed
+	ob_sort_ids(p.body, p.bodies, p.ids, p.place); // place is scratch now
 	p.data->count->visits += p.bodies;
 	const uint32_t unsolved = count_trees(&p), end = p.merges ? move_standing(&p, unsolved) : unsolved;
 	if (p.merges)
@@ -804,7 +805,7 @@ void ob_islands_list_members(ob_universe *u)
 
 uint32_t ob_islands_list_tasks(const ob_universe *u)
 {
-	const bool alone = ob_universe_ranks(u) < 2; // else whose they are says who lists their pairs
+	const bool alone = ob_universe_ranks(u) < 2; // on several ranks the owner lists an island's pairs
 	return alone ? (ob_universe_step_data(u)->count->unsolved + OB_ISLANDS_AT_ONCE - 1) / OB_ISLANDS_AT_ONCE : 0;
 }
 
@@ -839,7 +840,7 @@ void ob_islands_merge(ob_universe *u)
 	count->involved = p.bodies;
 }
 
-// ---- of several ranks
+// ---- several ranks
 
 void ob_islands_involve(ob_universe *u, uint32_t id)
 {

@@ -16,29 +16,30 @@
 #include "sim/relative_speed.h"
 #include "sim/results.h"
 
-static const double contact_gap = 2e-4; // m: a forecast takes bodies so near for touching ..
-static const double contact_gap_share = .05; // .. and no nearer than this share of the thinner one's thickness
-static const double tunnel_share = .4; // of the thickness: bodies that move farther may have passed through each other
+static const double contact_gap = 2e-4; // m: a forecast takes bodies this near to be touching,
+static const double contact_gap_share = .05; // but no nearer than this share of the thinner one's thickness
+static const double tunnel_share = .4; // share of the thickness: bodies that move farther may have passed through each
+				       // other
 
-// What all pairs of a batch are checked with.
+// Common data for the checks of a batch of pairs.
 typedef struct pair_check {
 	ob_sim *s;
 	const ob_universe *u;
 	ob_step_data *data;
 	double h; // s, length of a step
-	uint64_t steps; // that are complete, or solved
-	bool solved; // one has been solved and is not committed
-	bool contained; // what changes is handed over
+	uint64_t steps; // number complete, or solved
+	bool solved; // a step has been solved and is not committed
+	bool contained; // changes are handed over
 } pair_check;
 
 typedef struct moving_pair {
 	ob_placed at[2];
-	double path, reach; // m, of both together
+	double path, reach; // m, sum over both
 	double thin; // m, thickness of the thinner one
 	double h; // s
 } moving_pair;
 
-// Shape, pose and velocity in the coming step, if nothing new touches the object.
+// Returns shape, pose and velocity in the coming step, if nothing new touches the object.
 static ob_placed shape_of(const pair_check *c, uint32_t id, const ob_motion *m, uint64_t steps)
 {
 	const ob_passport *p = ob_passport_of(c->u, id);
@@ -74,7 +75,7 @@ static moving_pair moving_pair_of(const pair_check *c, const ob_pair_key *k)
 	return p;
 }
 
-// Bound of the speed (m/s) at which any two points of them part or approach within h (s).
+// Bounds the speed (m/s) at which any two points of them part or approach within h (s).
 static double relative_speed(const ob_placed *a, const ob_placed *b, double h)
 {
 	return ob_relative_speed(a->shape, &a->r, b->shape, &b->r, ob_sub(a->v, b->v)) +
@@ -82,8 +83,8 @@ static double relative_speed(const ob_placed *a, const ob_placed *b, double h)
 	       ob_turning_speed(b->shape, b->size, b->inertia, ob_rotate_back(&b->r, b->w), h);
 }
 
-// First time at which the two touch within h (s) as they go on, or beyond the step one before which they do not; apart:
-// m, their distance now.
+// Returns the first time (s) at which the two touch within h (s) as they go on; if they do not, a time beyond the step.
+// apart: m, their present distance.
 static double time_of_contact(const pair_check *c, const moving_pair *p, double h, double *apart)
 {
 	const ob_placed *a = &p->at[0], *b = &p->at[1];
@@ -120,7 +121,7 @@ static bool touched_in_step(const pair_check *c, ob_pair_key *k, const moving_pa
 	return false;
 }
 
-// Whether their relative velocity is constant.
+// True if their relative velocity is constant.
 static bool fall_alike(const ob_motion *a, const ob_motion *b)
 {
 	return !((a->flags | b->flags) & OB_MOTION_SWINGS) && ob_equal(a->a, b->a);
@@ -128,12 +129,12 @@ static bool fall_alike(const ob_motion *a, const ob_motion *b)
 
 // Positions and velocities of the bounding spheres of two bodies, which need no attitudes.
 typedef struct bounding_spheres {
-	ob_vec3 apart, v; // m, m/s, of the first from the second
+	ob_vec3 apart, v; // m, m/s, of the first relative to the second
 	double gap; // m
 	bool straight; // their relative velocity is constant
 } bounding_spheres;
 
-// On the motions ma and mb, when so many steps are complete.
+// Returns the spheres on the motions ma and mb, when so many steps are complete.
 static bounding_spheres bounding_spheres_of(const pair_check *c, const ob_pair_key *k, const ob_motion *ma,
 					    const ob_motion *mb, uint64_t steps)
 {
@@ -146,7 +147,7 @@ static bounding_spheres bounding_spheres_of(const pair_check *c, const ob_pair_k
 	return out;
 }
 
-// For how long they stay apart at constant relative velocity (s). contact: m, so near they touch.
+// Returns the time for which they stay apart at constant relative velocity (s). contact: m, distance of a contact.
 static double time_apart(const bounding_spheres *s, double contact)
 {
 	double far = s->gap - contact, radii = ob_norm(s->apart) - far, closing = -ob_dot(s->apart, s->v);
@@ -156,7 +157,7 @@ static double time_apart(const bounding_spheres *s, double contact)
 	return closing > 0 && d > 0 ? square / (closing + sqrt(d)) : INFINITY;
 }
 
-// Steps until one of the two is due, both of which are in flight; 0: they are not.
+// Steps until one of the two is due, if both are in flight; 0: one is not.
 static double steps_in_flight(const pair_check *c, const ob_pair_key *k)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
@@ -166,8 +167,8 @@ static double steps_in_flight(const pair_check *c, const ob_pair_key *k)
 		       : 0;
 }
 
-// Sets until when two bodies in flight stay clear of each other: s, for which their flights keep apart. false: not
-// beyond the coming step.
+// Sets the step until which two bodies in flight stay clear of each other. apart: s, for which their flights do. false:
+// not beyond the coming step.
 static bool set_clear_until(const pair_check *c, ob_pair_key *k, double apart)
 {
 	const double steps = steps_in_flight(c, k);
@@ -184,7 +185,8 @@ static bool is_clear(const ob_step_data *data, const ob_pair_key *k, uint64_t st
 	       data->schedule[k->b].since <= k->clear_as_of;
 }
 
-// For two in flight, until one of them is due or for some steps: so a pair that passes closely is looked at once.
+// True if the two touch in the coming step. For two in flight it looks ahead until one is due, or for some steps: so a
+// pair that passes closely is tested once.
 static bool touches_next(const pair_check *c, ob_pair_key *k, const moving_pair *now)
 {
 	enum { MOST_STEPS = 8 };
@@ -200,13 +202,13 @@ static bool touches_next(const pair_check *c, ob_pair_key *k, const moving_pair 
 	return false;
 }
 
-// A body in flight meets no plane before it is due.
+// True for a body in flight and a plane: it hits none before it is due.
 static bool impact_is_computed(const ob_schedule *a, const ob_schedule *b, uint64_t steps)
 {
 	return (a->state == OB_SCHEDULE_PLANE && b->due > steps) || (b->state == OB_SCHEDULE_PLANE && a->due > steps);
 }
 
-// A body whose flight began before is on no plane until that flight ends.
+// True if the flight began before this step: the body touches no plane until it ends.
 static bool flies_above_plane(const pair_check *c, uint32_t id)
 {
 	const ob_motion *m = ob_result_of(c->u, id);
@@ -214,7 +216,7 @@ static bool flies_above_plane(const pair_check *c, uint32_t id)
 	return m->t0 < time && m->valid_until >= time;
 }
 
-// Path of both together in the step that was solved (m); 0 if none was.
+// Path of both together in the solved step (m); 0 if none was solved.
 static double path_in_step(const pair_check *c, const ob_pair_key *k, double paths, bool solved)
 {
 	const uint64_t step = ob_step_count(c->u);
@@ -223,8 +225,8 @@ static double path_in_step(const pair_check *c, const ob_pair_key *k, double pat
 		      : 0;
 }
 
-// Whether the spheres may have met in the step that was solved: their way must be as long as they were apart before it
-// and are now.
+// True if the spheres may have met in the solved step: their path is as long as their distances before and now
+// together.
 static bool may_have_met(const pair_check *c, const ob_pair_key *k, const bounding_spheres *now, double paths,
 			 bool solved)
 {
@@ -236,7 +238,7 @@ static bool may_have_met(const pair_check *c, const ob_pair_key *k, const boundi
 	return path >= now->gap + ob_max(0, before.gap);
 }
 
-// True if the bounding spheres are too far apart for a contact in the step that was solved, and in the coming one.
+// True if the bounding spheres are too far apart for a contact in the solved step, and in the coming one.
 static bool spheres_exclude_contact(const pair_check *c, ob_pair_key *k, double paths, double reach, bool solved)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
@@ -259,16 +261,16 @@ static bool was_solved(const pair_check *c, uint32_t id)
 	return c->data->schedule[id].since > ob_step_count(c->u);
 }
 
-// Of two that nobody has solved in the step the forecast has said that they would not touch, and where they fall alike
-// that is exact.
+// True for two bodies that were not solved in the step: the forecast said that they would not touch, and for equal
+// accelerations that is exact.
 static bool went_as_forecast(const pair_check *c, const ob_pair_key *k)
 {
 	return !was_solved(c, k->a) && !was_solved(c, k->b) &&
 	       fall_alike(ob_newest_motion(c->u, k->a), ob_newest_motion(c->u, k->b));
 }
 
-// Whether one who looks when nothing has been solved, as after a resume, would not come to look at the shapes: those
-// may have been looked at only because the spheres might have met. So a second look finds what the first has.
+// True if a check without a solved step, as after a resume, would not test the shapes. They may be tested now only
+// because the spheres might have met in the step. So a second check finds the same as the first.
 static bool is_excluded(const pair_check *c, ob_pair_key *k, const moving_pair *p)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
@@ -276,8 +278,8 @@ static bool is_excluded(const pair_check *c, ob_pair_key *k, const moving_pair *
 	return k->limit - p->path > reach || spheres_exclude_contact(c, k, p->path, reach, false);
 }
 
-// Sets late if the two touched in the step that was solved, and expected if they will in the coming one. left: m, what
-// is left of the known distance.
+// Sets late if the two touched in the solved step, and expected if they will in the coming one. left: m, remainder of
+// the known distance.
 static void check_shapes(const pair_check *c, ob_pair_key *k, double left, bool solved)
 {
 	moving_pair p = moving_pair_of(c, k);
@@ -290,19 +292,19 @@ static void check_shapes(const pair_check *c, ob_pair_key *k, double left, bool 
 		k->expected = touches_next(c, k, &p);
 }
 
-// Whether the schedule records alone tell that nothing can happen between the two in the coming step.
+// True if the schedule records alone exclude any contact of the two in the coming step.
 static bool is_idle(const ob_step_data *data, const ob_pair_key *k, uint64_t steps)
 {
 	const ob_schedule *a = &data->schedule[k->a], *b = &data->schedule[k->b];
 	return (!ob_schedule_moves(a) && !ob_schedule_moves(b)) || impact_is_computed(a, b, steps);
 }
 
-// What is known from the schedule records alone. false: they do not suffice.
+// Checks a pair by the schedule records alone. false: they do not suffice.
 static bool check_by_schedule(const pair_check *c, ob_pair_key *k)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
 	if (k->late |
-	    k->expected) // most pairs are left as they are: their memory stays with every worker that has read it
+	    k->expected) // most pairs need no change: their memory stays in the cache of every worker that has read it
 		k->late = k->expected = 0;
 	if (is_idle(c->data, k, c->steps) || k->active || is_clear(c->data, k, c->steps))
 		return true;
@@ -310,11 +312,11 @@ static bool check_by_schedule(const pair_check *c, ob_pair_key *k)
 	return k->limit - paths > (double)a->reach + (double)b->reach;
 }
 
-// The same from the motions of both. false: their shapes must be looked at; left: m, of the known distance.
+// Checks it by the motions of both. false: their shapes must be tested; left: m, remainder of the known distance.
 static bool check_by_motions(const pair_check *c, ob_pair_key *k, double *left, bool *solved)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
-	// Where they are clear they cannot have touched in it.
+	// A clear pair cannot have touched in it.
 	*solved = c->solved && (c->steps == 0 || !is_clear(c->data, k, c->steps - 1));
 	const double paths = ob_schedule_path(a, c->steps) + ob_schedule_path(b, c->steps),
 		     reach = (double)a->reach + (double)b->reach;
@@ -322,18 +324,18 @@ static bool check_by_motions(const pair_check *c, ob_pair_key *k, double *left, 
 	return spheres_exclude_contact(c, k, paths, reach, *solved);
 }
 
-// ---- which pairs, and when again
+// ---- pairs that are checked, and the next check
 
-// The first step that begins with so little left of the known distance that the two might use it up; the one before
-// where rounding might hide it.
+// First step that begins with so little left of the known distance that the two might use it up; the one before if
+// rounding might hide it.
 static double step_of_limit(const ob_pair_key *k, double paths, double reach, uint64_t steps)
 {
 	const double left = k->limit - paths, rounding = 1e-9 * left + 1e-14 * (fabs(k->limit) + paths);
 	return reach > 0 ? (double)steps + ob_max(1, ceil((left - rounding) / reach) - 1) : INFINITY;
 }
 
-// The step (from 0) for which a pair that has been checked must be checked again, if neither object publishes another
-// motion before. Until then its check would change nothing.
+// The step (from 0) at which a checked pair must be checked again, if neither object publishes another motion before.
+// Until then a check would change nothing.
 static double next_check(const ob_step_data *data, const ob_pair_key *k, uint64_t steps)
 {
 	const ob_schedule *a = &data->schedule[k->a], *b = &data->schedule[k->b];
@@ -346,7 +348,7 @@ static double next_check(const ob_step_data *data, const ob_pair_key *k, uint64_
 	return is_clear(data, k, steps) ? ob_max(k->clear_until, limit) : limit;
 }
 
-// A pair's record lies anywhere, and so do those of its two objects: they are asked for some checks before.
+// Prefetches a pair's record and those of its objects, which lie anywhere, some checks ahead.
 static void prefetch_check(const ob_universe *u, uint32_t i, uint32_t end)
 {
 	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
@@ -372,7 +374,7 @@ static void prefetch_listed(const ob_universe *u, uint32_t i, uint32_t end)
 	__builtin_prefetch(&data->home[a]);
 }
 
-// Pairs that this rank has entered when it had one of their objects, which lives elsewhere now.
+// Drops pairs that this rank entered when it had one of their objects, which lives elsewhere now.
 static void leave_to_others(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -386,8 +388,8 @@ static void leave_to_others(ob_universe *u)
 	data->count->checks = n;
 }
 
-// All lose their entries, for those that are checked get others: so nobody finds a block of the calendar urgent because
-// of what was, and what ranks tell each other meanwhile is for which step there are any besides (peers.h).
+// Removes all listed entries, as checked pairs get new ones. So no block of the calendar is urgent by an old entry, and
+// the ranks exchange the next step of the other pairs (peers.h).
 void ob_late_contacts_begin(ob_universe *u, bool solved)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -407,8 +409,8 @@ static bool is_due(const ob_step_data *data, uint32_t id, uint64_t step)
 	return ob_schedule_is_dynamic(&data->schedule[id]) && data->schedule[id].due <= step;
 }
 
-// The step for which a pair that has been checked has an entry in the calendar; UINT32_MAX: it needs none. One of what
-// is solved in the coming step does not: it is checked when that is done.
+// The step of a checked pair's entry in the calendar; UINT32_MAX: it needs none. A pair of an object due in the coming
+// step needs none: it is checked after the solve.
 static uint32_t entry_of(const ob_step_data *data, const ob_pair_key *k, uint64_t steps)
 {
 	if (is_due(data, k->a, steps) || is_due(data, k->b, steps))
@@ -424,7 +426,7 @@ static void enter_next_check(const ob_universe *u, uint32_t pair, uint64_t steps
 	ob_calendar_set(&look, pair, entry_of(data, &data->pair[pair], steps));
 }
 
-// Of contained simulators, which cannot do so themselves.
+// Enters the next checks for contained simulators, which cannot write the calendar.
 static void enter_next_checks(const ob_universe *u)
 {
 	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
@@ -458,7 +460,7 @@ void ob_late_contacts_take(ob_universe *u, uint32_t pair)
 		data->check[data->count->checks++] = pair;
 }
 
-// A pair, to be changed: a contained simulator changes a copy.
+// Returns the pair to be changed: for a contained simulator a copy.
 static ob_pair_key *begin_change(const pair_check *c, uint32_t i, ob_pair_key *copy)
 {
 	ob_pair_key *k = &c->data->pair[c->data->check[i]];
@@ -471,9 +473,9 @@ static ob_pair_key *begin_change(const pair_check *c, uint32_t i, ob_pair_key *c
 	return k;
 }
 
-// Of several ranks, for which step the pair has its entry; that much the others are told of all pairs together. Whether
-// they must know this pair, even if nothing has changed: it links objects in the coming step; or who has listed it has
-// voided its limit (island_builder.c), which no other rank has.
+// True if the other ranks need this pair, even if it did not change: it links objects in the coming step, or the worker
+// that listed it has voided its limit (island_builder.c), which no other rank has. The next entry is noted here, and
+// sent for all pairs together.
 static bool must_be_told(const pair_check *c, const ob_pair_key *k)
 {
 	ob_outbox_end *end = ob_outbox_end_of(c->u);
@@ -497,10 +499,10 @@ static bool moves(const pair_check *c, uint32_t id)
 	return ob_schedule_is_dynamic(&c->data->schedule[id]);
 }
 
-// Pairs whose shapes are to be looked at: how their bodies turn is found side by side.
+// Pairs whose shapes must be tested: their bodies' rotations are computed side by side.
 typedef struct shapes_ahead {
 	uint32_t n, check[OB_COURSES / 2];
-	ob_pair_key copy[OB_COURSES / 2]; // of contained simulators
+	ob_pair_key copy[OB_COURSES / 2]; // for contained simulators
 	double left[OB_COURSES / 2];
 	bool solved[OB_COURSES / 2];
 } shapes_ahead;
@@ -535,7 +537,7 @@ static void check_shapes_ahead(const pair_check *c, shapes_ahead *x, bool *late)
 	x->n = 0;
 }
 
-// The motions of a pair are prefetched while those before it are checked.
+// Checks pairs by their motions; prefetches those of the next ones.
 static void check_all_by_motions(const pair_check *c, const uint32_t *checks, uint32_t n, bool *late)
 {
 	enum { AHEAD = 4 };
@@ -553,7 +555,7 @@ static void check_all_by_motions(const pair_check *c, const uint32_t *checks, ui
 		if (ob_budget_spent(c->s))
 			return;
 		if (c->contained)
-			k->late = k->expected = 0; // as check_by_schedule has left it
+			k->late = k->expected = 0; // state after check_by_schedule
 		if (check_by_motions(c, k, &x.left[x.n], &x.solved[x.n]))
 			end_change(c, checks[i - AHEAD], k);
 		else

@@ -1,22 +1,23 @@
 // The phase of the step in which objects' scripts run, before anything moves.
 //
-// What they read is as the step before has left it. What they ask for takes place when all of them have run, in the
-// order of their cells (table/script_data.h), so it does not matter which worker ran which: forces, pushes and colours
-// of their own objects, then messages, which their addressees get before the next step, and creations and removals,
-// which the host carries out at once, at a pause.
+// Scripts read the state after the step before. Their requests are carried out when all of them have run, in the order
+// of their cells (table/script_data.h), so the assignment to workers does not matter: forces, pushes and colours of
+// their own objects, then messages, which are received before the next step, and creations and removals, which the host
+// carries out at once, at a pause.
 #ifndef OB_SIM_SCRIPTS_H
 #define OB_SIM_SCRIPTS_H
 
 #include "sim/state.h"
 
-// The scheduling worker's. Whether a script is due before the coming step; lists those that are, once for each step.
+// Lists the scripts due before the coming step, once for each step; the scheduling worker calls it. true: there are
+// some.
 bool ob_scripts_due(ob_universe *u);
-// After they have run: carries out what they have asked for. true: an object moves, or will, otherwise than was known.
+// Carries out the scripts' requests after they have run. true: the motion of an object changes, now or later.
 bool ob_scripts_carry_out(ob_sim *s);
-// Whether the host has creations and removals to carry out now.
+// True if the host has creations and removals to carry out now.
 bool ob_scripts_have_requests(const ob_universe *u);
 
-// A worker's: runs those of the list that it gets.
+// Runs this worker's share of the list.
 void ob_scripts_run(ob_sim *s);
 
 #endif

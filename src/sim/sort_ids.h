@@ -1,10 +1,10 @@
-// Sorting of ids, as the scheduling worker lists them: a radix sort of as many digits as the ids have.
+// Sorts ids, as the scheduling worker lists them: a radix sort with as many digits as the ids have.
 #ifndef OB_SIM_SORT_IDS_H
 #define OB_SIM_SORT_IDS_H
 
 #include <stdint.h>
 
-// Sorts n ids, all below "end", ascending. other: as much room again.
+// Sorts n ids, all below "end", ascending. other: scratch, n ids.
 void ob_sort_ids(uint32_t *id, uint32_t n, uint32_t end, uint32_t *other);
 
 #endif

@@ -1,14 +1,14 @@
-// The direct solve of a tree of bodies: which impulses at its joints bring the joints' velocities where they should be?
+// The direct solve of a tree of bodies: finds the impulses that bring the joints' velocities to their targets.
 //
-// A joint is up to seven rows between a child and its parent: J_c v_c + J_p v_p is how fast they open or slide.
-// Wanted is a change of these velocities by y, by impulses x that act on both bodies alike, each row softened by a tiny
-// compliance e, which makes the answer unique where rows say the same twice:
+// A joint is up to seven rows between a child and its parent: J_c v_c + J_p v_p is the speed at which they open or
+// slide. These velocities are to change by y. The impulses x act on both bodies alike, each row softened by a tiny
+// compliance e, which makes the answer unique where rows are redundant:
 //
 //                                                            J_c dv_c + J_p dv_p + e x = y      for each joint
 //        root      M dv = p + sum of J^T x                                                      for each body
 //       /    \   .
-//      o      o    Leaf by leaf a body's unknowns are eliminated. What a leaf and its joint resist is then
-//     / \      \   a part of the parent's inertia and push, and the parent is a leaf itself:
+//      o      o    Leaf by leaf a body's unknowns are eliminated. The resistance of a leaf and its joint is added to
+//     / \      \   the parent's inertia and push, and the parent becomes a leaf itself:
 //    o   o      o
 //   leaves              M_p += Z^T Z,  p_p += Z^T z   with  S = J_c M_c^-1 J_c^T + e = L L^T,
 //                                                           Z = L^-1 J_p,  z = L^-1 (y - J_c M_c^-1 p_c)
@@ -23,14 +23,14 @@
 
 enum { OB_JOINT_ROWS = 7 };
 
-// A body. Columns 0..5 of m: its inertia and what it carries; column 6: the push on it.
+// A body. Columns 0..5 of m: its inertia with that of eliminated children; column 6: the push on it.
 typedef struct ob_link {
 	double m[6][8];
 	double root[6][6], inverse[6]; // Cholesky factor, inverse of its diagonal
 	double change[6]; // dv
 } ob_link;
 
-// The child's matrix has a column to spare: its eighth holds the child's push while sums over columns are made.
+// A joint. The child's matrix has a spare column: its eighth holds the child's push while sums over columns are made.
 typedef struct ob_joint {
 	uint32_t rows;
 	double child[6][8]; // J_c^T, then its image under the inverse root of the child's inertia
@@ -40,13 +40,13 @@ typedef struct ob_joint {
 	double x[OB_JOINT_ROWS]; // impulses
 } ob_joint;
 
-// A joint to something that does not move: becomes a part of the body.
+// Adds a joint to something that does not move to the body.
 void ob_link_anchor(ob_link *child, const ob_joint *j);
 // Eliminates a body that has no children left. No joint and no parent at the root.
 void ob_link_eliminate(ob_link *child, ob_joint *j, ob_link *parent);
-// The way back: the parent's change is known.
+// Substitutes back, once the parent's change is known.
 void ob_link_substitute(ob_link *child, ob_joint *j, const ob_link *parent);
-// The impulses of an anchor, once its body's change is known.
+// Sets the impulses of an anchor, once its body's change is known.
 void ob_link_anchor_impulses(const ob_link *child, ob_joint *j);
 
 #endif
