@@ -16,21 +16,10 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "base/sanitizer.h"
 #include "table/outbox.h"
 
 enum { NOBODY = 65534, FILES = STDERR_FILENO + 1 };
-
-// Sanitizers need memory and system calls of their own.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(undefined_behavior_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-#ifndef SANITIZED
-#define SANITIZED 0
-#endif
 
 #if defined(__x86_64__)
 #define MACHINE AUDIT_ARCH_X86_64
@@ -78,7 +67,8 @@ static bool limit_resources(void)
 {
 	const rlim_t memory = (rlim_t)sysconf(_SC_PHYS_PAGES) / 2 * (rlim_t)sysconf(_SC_PAGESIZE);
 	return limit(RLIMIT_CORE, 0) && limit(RLIMIT_NPROC, 0) && limit(RLIMIT_NOFILE, FILES) &&
-	       limit(RLIMIT_MEMLOCK, 0) && limit(RLIMIT_MSGQUEUE, 0) && (SANITIZED || limit(RLIMIT_DATA, memory));
+	       limit(RLIMIT_MEMLOCK, 0) && limit(RLIMIT_MSGQUEUE, 0) &&
+	       (OB_SANITIZED || limit(RLIMIT_DATA, memory)); // a sanitizer needs memory of its own
 }
 
 // ---- system calls
@@ -138,7 +128,8 @@ static bool filter_system_calls(void)
 		RETURN(SECCOMP_RET_KILL_PROCESS),
 	};
 	const struct sock_fprog program = { .len = sizeof code / sizeof *code, .filter = code };
-	return SANITIZED || (gain_no_more() && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0);
+	// a sanitizer needs system calls of its own
+	return OB_SANITIZED || (gain_no_more() && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program, 0, 0) == 0);
 }
 #else
 static bool filter_system_calls(void)

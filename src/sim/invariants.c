@@ -3,21 +3,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/sanitizer.h"
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
 #include "sim/pairs.h"
 #include "table/home.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED 1
-#endif
-#endif
-#ifndef SANITIZED
-#define SANITIZED 0
-#endif
 
 // Places in which a pair was found.
 enum { LISTED_BY_A = 1, LISTED_BY_B = 2, IDLE = 4 };
@@ -429,7 +419,7 @@ static bool is_checked(const ob_universe *u)
 {
 	enum { EACH_STEP = 1024 }; // objects and pairs
 	const uint64_t size = ob_universe_ids(u) + (uint64_t)ob_pairs_end(ob_universe_step_data(u));
-	return ob_universe_checked(u) || (SANITIZED && ob_step_count(u) % (1 + size / EACH_STEP) == 0);
+	return ob_universe_checked(u) || (OB_SANITIZED && ob_step_count(u) % (1 + size / EACH_STEP) == 0);
 }
 
 bool ob_invariants_check(ob_universe *u, ob_invariant_moment when)
