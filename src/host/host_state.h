@@ -35,6 +35,8 @@ typedef struct ob_restart_state {
 	double taken_at, cost; // s, wall: when the checkpoint was taken, and how long that took
 	double progress_at; // s, wall: when a checkpoint was last farther than the one before
 	unsigned attempts, deaths; // restarts since then; deaths since the start
+	unsigned faults, limited; // attempts that no SIGKILL caused; deaths that count for the limit
+	double fault_at; // s, wall: first of these faults
 	uint64_t half_way; // steps: half the progress before the last death
 	ob_death last[OB_DEATHS_KEPT]; // the latest is last[(deaths - 1) % OB_DEATHS_KEPT]; under failure_lock
 	double *when; // [limit.deaths]: s, wall, of the last deaths, in turn; NULL = no limit
@@ -76,6 +78,7 @@ struct ob_host {
 	uint64_t target; // the caller's
 	bool started; // the gate was opened once
 	double patience; // s
+	bool saved; // see ob_host_config
 	ob_on_death on_death;
 	ob_restart_limit limit;
 

@@ -1,5 +1,7 @@
 #include "host/restart.h"
 
+#include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +14,7 @@
 #include "sim/sim.h"
 
 enum { QUICK_ATTEMPTS = 3 }; // without progress are made at once
-static const double attempts_timeout = 10; // s, for further attempts
+static const double faults_timeout = 10; // s, for further attempts after the first fault
 static const double checkpoint_interval = .25; // s, between checkpoints
 static const double checkpoint_share = .05; // share of the time that checkpoints may take
 static const double kill_timeout = 10; // s to wait until killed processes are gone
@@ -69,7 +71,7 @@ void ob_restart_checkpoint(ob_host *h, bool frozen)
 	r->taken_at = ob_clock_wall();
 	r->cost = r->taken_at - began;
 	if (progress) {
-		r->attempts = 0;
+		r->attempts = r->faults = 0;
 		r->progress_at = r->taken_at;
 	}
 }
@@ -90,15 +92,15 @@ static const char *describe(ob_host *h, ob_error *text)
 	return text->text;
 }
 
-// True if the newest death exceeds the limit.
+// True if the newest death exceeds the limit. An object that is frozen because it cannot be solved has killed nothing.
 static bool is_over_limit(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
-	if (!r->when)
+	if (!r->when || latest(r)->cause == OB_DEATH_FAILURE)
 		return false;
-	double *oldest = &r->when[(r->deaths - 1) % h->limit.deaths], now = ob_clock_wall(), before = *oldest;
+	double *oldest = &r->when[r->limited++ % h->limit.deaths], now = ob_clock_wall(), before = *oldest;
 	*oldest = now;
-	return r->deaths > h->limit.deaths && now - before <= h->limit.seconds;
+	return r->limited > h->limit.deaths && now - before <= h->limit.seconds;
 }
 
 void ob_restart_request(ob_host *h, const ob_death *d)
@@ -258,10 +260,11 @@ static bool end_all_workers(ob_host *h)
 	return h->running_workers == 0 && !h->failed;
 }
 
-// Slows restarts of simulators that die at once to about one a second.
+// Slows restarts of simulators that die at once: to about one a second, or ten if only others kill them.
 static void back_off(const ob_host *h)
 {
-	for (int i = 0; i < 10 && h->restart.attempts > QUICK_ATTEMPTS && !h->interrupted; i++)
+	const int tenths = h->restart.faults > QUICK_ATTEMPTS ? 10 : h->restart.attempts > QUICK_ATTEMPTS ? 1 : 0;
+	for (int i = 0; i < tenths && !h->interrupted; i++)
 		nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
 }
 
@@ -284,6 +287,22 @@ static uint32_t count_alike(const ob_restart_state *r)
 	return n;
 }
 
+// Counts the latest death as an attempt without progress. Returns true if there were too many. A simulator that fails
+// by itself does so again soon. Only others send SIGKILL: an operator, or the kernel for want of memory. Then a loaded
+// machine may get no step done between two of them, and has the patience that a step has.
+static bool gets_nowhere(ob_host *h)
+{
+	ob_restart_state *r = &h->restart;
+	const double now = ob_clock_wall();
+	const bool killed = latest(r)->cause == OB_DEATH_SIGNAL && latest(r)->signal == SIGKILL;
+	r->attempts++;
+	if (!killed && r->faults++ == 0)
+		r->fault_at = now;
+	if (killed)
+		return r->attempts > QUICK_ATTEMPTS && now - r->progress_at > fmax(faults_timeout, h->patience);
+	return r->faults > QUICK_ATTEMPTS && now - r->fault_at > faults_timeout;
+}
+
 static bool give_up(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
@@ -294,7 +313,7 @@ static bool give_up(ob_host *h)
 				    "%s; giving up: simulators died more than %u times within %g s (--restarts), "
 				    "%u of the last %u times this one",
 				    describe(h, &text), h->limit.deaths, h->limit.seconds, count_alike(r), kept);
-	else if (++r->attempts > QUICK_ATTEMPTS && ob_clock_wall() - r->progress_at > attempts_timeout)
+	else if (gets_nowhere(h))
 		ob_host_set_failure(
 			h,
 			"%s; giving up: simulators failed %u times since the checkpoint of step %llu, %u of the "

@@ -28,8 +28,8 @@
 //   - by policy, or if simulators have died more often than the limit allows;
 //   - with threads, which die with the host, unless failing objects are frozen;
 //   - with a monolith, whose world lies in its worker's own memory;
-//   - when workers die again and again for ten seconds and the run does not get past its checkpoint: then the simulator
-//     itself is likely to be the cause;
+//   - when workers fail again and again for ten seconds and the run does not get past its checkpoint: then the simulator
+//     itself is likely to be the cause. Deaths by SIGKILL, which others send, end it only after the run's patience;
 //   - when there is no memory for a checkpoint, or for the requests since.
 //
 // Thread-safety: ob_restart_request may be called by any thread, the rest by the thread that goes and waits.

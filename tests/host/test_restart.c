@@ -277,6 +277,7 @@ static void test_frozen_newcomer(ob_isolation isolation)
 	ob_error e = { "" };
 	ob_host_times times;
 	c.on_death = OB_ON_DEATH_KEEP;
+	c.limit = (ob_restart_limit){ 1, 1e6 }; // a frozen object is no death of a simulator
 	c.spare = 8;
 	ob_host *h = ob_host_start(&s, &c, &e);
 	ob_object_def guest = ball("guest", 5, 5, 9), wild = ball("wild", 7, 7, 1);
@@ -392,6 +393,53 @@ static void test_again_and_again(void)
 	free(s.object);
 }
 
+// Kills one simulator after the other, each before the first step after its start, on a machine on which each restart
+// takes "seconds". Returns the number of restarts, 16 at most.
+static unsigned kill_before_first_step(ob_host *h, int signal, double seconds)
+{
+	unsigned n = 0;
+	for (; n < 16; n++) {
+		kill(pid_of_worker(ob_host_universe(h), n % 2), signal);
+		while (!h->restart.requested && !h->failed)
+			pause_ms(1);
+		h->restart.progress_at -= seconds;
+		h->restart.fault_at -= seconds;
+		if (!ob_restart(h))
+			break;
+	}
+	h->started = steps_of(h) > 0;
+	return n;
+}
+
+// Kills that come faster than steps end no run before its patience does. A simulator that leaves by itself soon does.
+static void test_killed_before_first_step(void)
+{
+	ob_scene s = busy_heap(BALLS);
+	ob_host_config c = little_config(&s, OB_ISOLATION_PROCESS, 2);
+	ob_error e = { "" };
+	uint32_t deaths;
+	const uint64_t expected = end_of(&s, &c, &(killer){ .seed = 1 }, 0, &deaths);
+	const struct {
+		int signal;
+		double seconds; // of a restart
+		unsigned least, most; // restarts
+	} of[] = { { SIGKILL, 3, 16, 16 }, { SIGKILL, 30, 3, 4 }, { SIGUSR1, 3, 3, 4 } };
+	for (int i = 0; i < 3; i++) {
+		ob_host *h = ob_host_start(&s, &c, &e);
+		ob_host_go(h, 20);
+		CHECK(ob_host_wait(h, &e));
+		const unsigned n = kill_before_first_step(h, of[i].signal, of[i].seconds);
+		CHECK(n >= of[i].least && n <= of[i].most);
+		ob_host_go(h, STEPS);
+		const bool went = ob_host_wait(h, &e);
+		CHECK(went == (n == 16));
+		CHECK(went ? hash_of(h) == expected : strstr(e.text, "giving up: simulators failed ") != NULL);
+		ob_host_stop(h);
+	}
+	CHECK(waitpid(-1, NULL, WNOHANG) < 0);
+	free(s.object);
+}
+
 int main(void)
 {
 	ob_scene s = busy_heap(BALLS);
@@ -414,5 +462,6 @@ int main(void)
 	test_stopped_before_it_is_ready();
 	test_interrupted();
 	test_again_and_again();
+	test_killed_before_first_step();
 	return check_end();
 }
