@@ -528,6 +528,7 @@ static void prepare(run *r, ob_host_config *config)
 	r->kept = UINT64_MAX;
 	*config = ob_request_host(q);
 	config->ranks = r->ranks;
+	config->saved = q->checkpoint && r->ranks.ranks <= 1; // another rank may never end the step
 	config->shares_contacts = q->frames.contacts;
 	config->from = q->resume ? &r->saved.host : NULL;
 }

@@ -290,6 +290,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	}
 	h->wake_fd = h->interrupt_fd = h->asked.events = h->asked.socket = -1;
 	h->patience = config->patience > 0 ? config->patience : default_patience;
+	h->saved = config->saved;
 	h->on_death = config->on_death;
 	h->limit = config->limit;
 	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;

@@ -48,6 +48,7 @@ typedef struct ob_host_config {
 	bool shares_contacts; // with several ranks: each has the state of all contacts after each step
 	uint32_t spare; // slots for objects added on request; a pool has 64 at least
 	double patience; // s without a completed step after which the run counts as stalled (stall.h); 0 = 60
+	bool saved; // after Ctrl-C the step is ended in any case, as the run is to be saved (ob_host_save)
 	uint32_t harden; // measures that confine processes (confine.h): bits, 1 << ob_harden_measure; 0 = none
 	ob_on_death on_death; // policy for deaths of simulators; a monolith's end ends the run in any case
 	ob_restart_limit limit;

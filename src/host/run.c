@@ -14,7 +14,7 @@
 
 static const double poll_interval = .05; // s, between checks of a run that does not pause
 enum { LOOKS_PER_POLL = 5 }; // checks for Ctrl-C in each of these intervals
-static const double interrupt_grace = .03; // s that a step may still take after Ctrl-C
+static const double interrupt_grace = .03; // s that a step may still take after Ctrl-C, unless the run is to be saved
 
 void ob_host_set_failure(ob_host *h, const char *format, ...)
 {
@@ -139,7 +139,7 @@ static bool check_progress(ob_host *h, ob_stall_watch *stall, double *interrupte
 		*interrupted_at = now;
 	if (h->interrupted || ob_requests_waiting(h->requests) || ob_restart_checkpoint_due(h))
 		ob_host_pause_early(h);
-	return !(h->interrupted && now - *interrupted_at > interrupt_grace);
+	return h->saved || !(h->interrupted && now - *interrupted_at > interrupt_grace);
 }
 
 void ob_host_go(ob_host *h, uint64_t step)

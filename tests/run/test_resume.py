@@ -200,6 +200,16 @@ class Resume(program.Case):
 			whole = program.report(program.scene("falling_boxes"), "-D", "n=40", "--sleeping", "off", "--duration", end, "--measure", "end")
 			self.assertEqual(self.finish("--duration", end)["state_hash"], whole["state_hash"])
 
+	def test_interrupted_in_a_long_step(self):
+		"""A step that takes far longer than others ends, too, and its checkpoint is kept."""
+		run = self.start_stepping(program.scene("gas"), "--duration", program.FOR_EVER, "--checkpoint", self.file, "--every", "1e6",
+			"--json", self.path("r.json"), "--narrow", "aabb", "--load", "1000000")
+		run.send_signal(signal.SIGTERM)
+		self.assertEqual(run.wait(program.PATIENCE), 1)
+		self.assertNotIn("no checkpoint", run.stderr.read())
+		with open(self.path("r.json")) as f:
+			self.assertEqual(self.inspect()["steps"], json.load(f)["steps"])
+
 	def test_killed_while_it_writes(self):
 		"""At any instant the file is a whole checkpoint, and the run goes on from it to the same end."""
 		words = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--measure", "end"]
