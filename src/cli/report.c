@@ -68,6 +68,8 @@ static const struct field {
 	FIELD(COUNT, switches),
 	FIELD(COUNT, deaths),
 	FIELD(COUNT, frozen),
+	FIELD(COUNT, scripts_stopped),
+	FIELD(COUNT, scripts_warned),
 	FIELD(COUNT, faults),
 	FIELD(TEXT, fault_kinds),
 	FIELD(COUNT, faults_overwritten),
@@ -326,6 +328,9 @@ void ob_report_print(const ob_report *r, FILE *f)
 		fprintf(f, "  faults       %s%" PRIu64 " injected%s%s%s\n", r->faults_overwritten ? "at least " : "", r->faults,
 			*r->fault_kinds ? ": " : "", r->fault_kinds,
 			r->faults_overwritten ? "; simulators have written over other counters of them" : "");
+	if (r->scripts_stopped + r->scripts_warned > 0)
+		fprintf(f, "  scripts      %" PRIu64 " stopped by an error, %" PRIu64 " with something in vain\n",
+			r->scripts_stopped, r->scripts_warned);
 	print_quality(r, f);
 	if (r->frame_rate > 0) {
 		fprintf(f, "  frames       %" PRIu64, r->frames);

@@ -40,6 +40,7 @@ typedef struct ob_report {
 	char fault_kinds[160]; // "kill 3, exit 1": injected faults by kind; "" = none
 	uint64_t faults; // of all kinds
 	uint64_t faults_overwritten; // counters of faults that simulators have overwritten: there were more
+	uint64_t scripts_stopped, scripts_warned; // objects at the end: failed; something in vain
 	uint64_t switches, deaths, frozen, worker_memory_bytes; // frozen: objects, because of deaths
 	ob_death death[OB_DEATHS_KEPT]; // the last of them, oldest first
 	uint32_t deaths_told; // number of entries in death

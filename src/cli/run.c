@@ -364,6 +364,7 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->switches = times.switches;
 	p->deaths = times.deaths;
 	p->frozen = times.frozen;
+	ob_script_count(ob_host_universe(r->host), &p->scripts_stopped, &p->scripts_warned);
 	p->deaths_told = ob_host_get_deaths(r->host, p->death);
 	const double steps = body_steps(r, first_time(r));
 	p->body_step_cpu_us = steps > 0 ? 1e6 * times.cpu_s / steps : NAN;

@@ -89,6 +89,7 @@ int ob_scene_call_random(lua_State *L)
 
 int ob_scene_call_random_rotation(lua_State *L)
 {
+	ob_sandbox_spend(L, 24);
 	ob_quat q = ob_random_rotation(scene_random(L));
 	double x[4] = { q.w, q.x, q.y, q.z };
 	lua_createtable(L, 4, 0);

@@ -179,7 +179,7 @@ static bool state_of(lua_State *L, const char *call, ob_state *out)
 	const ob_script_runner *r = runner_of(L);
 	const ob_flat_object *o = object_at(L, 1, call);
 	const ob_passport *p = passport_of(r, o);
-	ob_sandbox_spend(L, 8);
+	ob_sandbox_spend(L, 16);
 	if (p)
 		*out = ob_published_at(ob_newest_motion(r->u, o->id), p, now_of(r));
 	return p;
@@ -516,8 +516,10 @@ static int call_ray(lua_State *L)
 	ob_ray_hit hit;
 	if (!(n > 0))
 		ob_sandbox_fail(L, "ray: expected a direction that is not 0");
-	ob_sandbox_spend(L, ob_universe_ids(r->u) / 8);
-	if (!ob_ray_cast(r->u, from, ob_scale(direction, 1 / n), length, r->turn->object, &hit))
+	ob_sandbox_spend(L, ob_universe_ids(r->u) / 2);
+	const bool found = ob_ray_cast(r->u, from, ob_scale(direction, 1 / n), length, r->turn->object, &hit);
+	ob_sandbox_spend(L, 8 * hit.tried);
+	if (!found)
 		return 0;
 	push_object(L, r, hit.id);
 	lua_pushnumber(L, hit.distance);
@@ -530,7 +532,7 @@ static int call_ray(lua_State *L)
 static const ob_flat *searched_state(lua_State *L)
 {
 	const ob_flat *s = &runner_of(L)->state;
-	ob_sandbox_spend(L, 1 + s->size / 32);
+	ob_sandbox_spend(L, 4 + s->size / 32);
 	return s;
 }
 

@@ -54,6 +54,19 @@ const ob_script_turn *ob_script_turn_of(const ob_universe *u, uint32_t id)
 	return cell && cell <= data->script_cells ? &data->script_turn[cell - 1] : NULL;
 }
 
+void ob_script_count(const ob_universe *u, uint64_t *stopped, uint64_t *warned)
+{
+	const ob_step_data *data = &u->step_data;
+	*stopped = *warned = 0;
+	for (uint32_t i = 0; i < data->script_cells; i++) {
+		const ob_script_turn *t = &data->script_turn[i];
+		if (t->script && t->flags & OB_SCRIPT_STOPPED)
+			++*stopped;
+		else if (t->script && t->flags & OB_SCRIPT_WARNED)
+			++*warned;
+	}
+}
+
 bool ob_script_deliver(ob_universe *u, uint32_t id, const void *values, uint32_t bytes)
 {
 	ob_step_data *data = &u->step_data;

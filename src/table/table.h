@@ -86,6 +86,8 @@ void ob_script_free_cell(ob_universe *u, uint32_t id);
 bool ob_script_deliver(ob_universe *u, uint32_t id, const void *values, uint32_t bytes);
 // Cell of an object; NULL: it has no script.
 const ob_script_turn *ob_script_turn_of(const ob_universe *u, uint32_t id);
+// Counts objects whose script an error has stopped; and those whose script goes on, but is warned of. Paused.
+void ob_script_count(const ob_universe *u, uint64_t *stopped, uint64_t *warned);
 // Reason for which pages of the universe may be missing; NULL: none.
 const char *ob_universe_lost(const ob_universe *u);
 // For a program with mapped universes: an access to a missing page ends it with one line on standard error, after a

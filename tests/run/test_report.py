@@ -14,7 +14,8 @@ step substeps solver integrator seed startup_s step_p50_s step_p99_s memory_byte
 frame_rate worst_penetration_time_s lag tolerance error_reached substeps_min substeps_median substeps_max islands_redone
 islands_over energy_recovered narrow load box_tests step_p90_s step_max_s critical_s critical_16_s work_s held_s gate_s gate_cpu_s idle_s
 elapsed_s host_cpu_s renderer_cpu_s switches deaths worker_memory_bytes separation_max_m separation_mean_m trace_events
-trace_lost resumed_s checkpoints checkpoint_bytes checkpoint_s faults fault_kinds faults_overwritten frozen""".split()
+trace_lost resumed_s checkpoints checkpoint_bytes checkpoint_s faults fault_kinds faults_overwritten frozen
+scripts_stopped scripts_warned""".split()
 
 
 class Report(program.Case):
