@@ -25,6 +25,7 @@ static ob_flat_object *object_at(lua_State *L, int index, const char *call)
 	ob_flat_object *o = luaL_testudata(L, index, OB_FLAT_OBJECT);
 	if (!o)
 		ob_sandbox_fail(L, "%s: expected an object before the colon, as in self:%s(...)", call, call);
+	ob_sandbox_spend(L, 8); // a call of a method: its lookup, and what it reads
 	return o;
 }
 
@@ -179,7 +180,7 @@ static bool state_of(lua_State *L, const char *call, ob_state *out)
 	const ob_script_runner *r = runner_of(L);
 	const ob_flat_object *o = object_at(L, 1, call);
 	const ob_passport *p = passport_of(r, o);
-	ob_sandbox_spend(L, 16);
+	ob_sandbox_spend(L, 8);
 	if (p)
 		*out = ob_published_at(ob_newest_motion(r->u, o->id), p, now_of(r));
 	return p;
@@ -446,7 +447,7 @@ typedef struct near_object {
 	uint32_t id;
 } near_object;
 
-enum { NEAR_MAX = 256 };
+enum { NEAR_MAX = 256, NEAR_AT_ONCE = 64 }; // listed; looked at between two charges
 
 // Inserts into a list of the nearest, in the order of distance and id. work: grows by the number of moved entries.
 static uint32_t insert(near_object *list, uint32_t n, near_object o, uint32_t *work)
@@ -481,8 +482,9 @@ static int call_near(lua_State *L)
 	const ob_vec3 here = ob_published_at(m, ob_passport_of(r->u, own_id), t).pose.p;
 	near_object list[NEAR_MAX];
 	uint32_t n = 0, work = 0;
-	ob_sandbox_spend(L, ids / 8);
 	for (uint32_t id = 0; id < ids; id++) {
+		if (id % NEAR_AT_ONCE == 0)
+			ob_sandbox_spend(L, NEAR_AT_ONCE / 8 + work / 8), work = 0;
 		if (!ob_schedule_is_dynamic(&r->data->schedule[id]) || id == own_id ||
 		    is_far(r->data->bounds[id], here, radius))
 			continue;
@@ -516,10 +518,7 @@ static int call_ray(lua_State *L)
 	ob_ray_hit hit;
 	if (!(n > 0))
 		ob_sandbox_fail(L, "ray: expected a direction that is not 0");
-	ob_sandbox_spend(L, ob_universe_ids(r->u) / 2);
-	const bool found = ob_ray_cast(r->u, from, ob_scale(direction, 1 / n), length, r->turn->object, &hit);
-	ob_sandbox_spend(L, 8 * hit.tried);
-	if (!found)
+	if (!ob_ray_cast(L, r->u, from, ob_scale(direction, 1 / n), length, r->turn->object, &hit))
 		return 0;
 	push_object(L, r, hit.id);
 	lua_pushnumber(L, hit.distance);

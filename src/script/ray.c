@@ -123,16 +123,21 @@ static bool may_meet(const float *b, ob_vec3 p, ob_vec3 d, double length)
 	return first <= last;
 }
 
-bool ob_ray_cast(const ob_universe *u, ob_vec3 from, ob_vec3 direction, double length, uint32_t but, ob_ray_hit *hit)
+bool ob_ray_cast(lua_State *L, const ob_universe *u, ob_vec3 from, ob_vec3 direction, double length, uint32_t but,
+		 ob_ray_hit *hit)
 {
+	enum { LOOKED_AT = 64, SHAPE = 8 }; // objects whose bounds are charged at once; instructions of a shape
 	const ob_step_data *data = ob_universe_step_data(u);
 	const double time = (double)ob_step_count(u) * ob_universe_settings(u)->step_length;
 	*hit = (ob_ray_hit){ .distance = length };
 	bool found = false;
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		if (id % LOOKED_AT == 0)
+			ob_sandbox_spend(L, LOOKED_AT / 2);
 		if (id == but || data->schedule[id].state == OB_SCHEDULE_ABSENT ||
 		    !may_meet(data->bounds[id], from, direction, hit->distance))
 			continue;
+		ob_sandbox_spend(L, SHAPE);
 		const ob_passport *o = ob_passport_of(u, id);
 		const ob_state s = ob_published_at(ob_newest_motion(u, id), o, time);
 		const ob_mat3 r = ob_quat_matrix(s.pose.q);

@@ -73,6 +73,8 @@ typedef struct ob_ray_hit {
 	double distance; // m
 	ob_vec3 normal; // unit, out of the object
 } ob_ray_hit;
-bool ob_ray_cast(const ob_universe *u, ob_vec3 from, ob_vec3 direction, double length, uint32_t but, ob_ray_hit *hit);
+// Spends instructions for the objects that it looks at, as it goes.
+bool ob_ray_cast(lua_State *L, const ob_universe *u, ob_vec3 from, ob_vec3 direction, double length, uint32_t but,
+		 ob_ray_hit *hit);
 
 #endif

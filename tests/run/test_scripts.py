@@ -309,6 +309,28 @@ for i = 1, 3 do sphere {{ name = "ball " .. i, radius = .5, at = {{ 2 * i, 0, 10
 		for script in "function on_start() print('at', self:position()) end", "function once() end function on_start() once() end":
 			self.assertNotIn("warning", self.one(script))
 
+	def test_report_counts(self):
+		"""The report has the number of objects whose scripts were stopped, and were warned of, more than are logged."""
+		text = """
+scene { duration = .2, room = 1 }
+ground {}
+script("fails", "function on_step() local t t.x = 1 end")
+script("crowds", "function on_start() self:id(3) for i = 1, 2 do sphere { radius = .1, at = { i, 0, 9 } } end end")
+script("idles", "function on_step() self:velocity(1, 2, 3) end function on_stp() end")
+script("works", "function on_step() self:push(0, 0, 1) end")
+for i = 1, 70 do sphere { radius = .1, at = { i, 4, 99 }, script = i <= 40 and "fails" or i <= 60 and "idles" or "works" } end
+sphere { radius = .1, at = { 0, 9, 9 }, script = "crowds" }
+"""
+		for words in [], ["--isolation", "process"], HARDENED, MONOLITH:
+			with self.subTest(words=words):
+				found = self.report_of(text, *words)
+				self.assertEqual((found["scripts_stopped"], found["scripts_warned"]), (41, 20))
+		done = program.call("run", self.path("scene.lua"))
+		self.assertIn("  scripts      41 stopped by an error, 20 with something in vain\n", done.stdout)
+		self.assertIn("more scripts were stopped: the report has their number", done.stderr)
+		self.write("scene.lua", "sphere { radius = 1 }")
+		self.assertNotIn("  scripts ", program.call("run", self.path("scene.lua")).stdout)
+
 	def test_work_counts(self):
 		"""What is done in one instruction counts for its length: all of these are stopped by their count, none by a clock."""
 		for work in ("local t = {} for i = 1, 9999 do t[i] = i end while true do table.insert(t, 1, 0) table.remove(t, 1) end",
@@ -324,6 +346,20 @@ for i = 1, 3 do sphere {{ name = "ball " .. i, radius = .5, at = {{ 2 * i, 0, 10
 			with self.subTest(work=work):
 				said = self.one("function on_start()\n" + work + " end", scene="duration = .1")
 				self.assertRegex(said, r"it:2: stopped after a million instructions")
+
+	def test_calls_count(self):
+		"""A call counts for its work, so these are more than a million instructions."""
+		for calls, call in ((1000, "ray(0, 0, 5, 1, 0, 0)"), (40000, "random_rotation()"), (90000, "self:position()"),
+				(90000, "self:velocity()"), (90000, "self:mass()"), (90000, "self:name()"), (90000, "self:exists()"),
+				(90000, "self:force(1, 2, 3)"), (60000, "self:spin()"), (70000, "self.state.x")):
+			with self.subTest(call=call):
+				said = self.run_scene(f"""
+scene {{ duration = .1 }}
+script("it", "function on_start() for i = 1, {calls} do local x = {call} end end")
+for i = 1, 300 do sphere {{ radius = .4, at = {{ 400 - i, 0, 5 }} }} end
+sphere {{ radius = .4, at = {{ 0, 0, 5 }}, script = "it" }}
+""")
+				self.assertRegex(said, r"it:1: stopped after a million instructions")
 
 	def test_one_stops_others_go_on(self):
 		said = self.run_scene("""
