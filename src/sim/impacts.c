@@ -16,34 +16,38 @@
 #include "sim/surfaces.h"
 #include "sim/touches.h"
 
-static const double max_smooth_acceleration = 3; // of the largest external one: more is the echo of an impact
+static const double max_smooth_acceleration = 3; // times the largest external one: more is the echo of an impact
 static const double least_approach = 1e-6; // m/s
 static const double aftershock_threshold = 1e-10; // m/s: slower approaches of bodies that were just hit are rounding
-static const uint32_t max_aftershocks = 4; // of a contact in a partial substep
-static const double reach = 1e-3; // m: points that are so near at the instant are part of the contact's geometry
+						  // errors
+static const uint32_t max_aftershocks = 4; // maximum for a contact in a partial substep
+static const double reach = 1e-3; // m: points this near at the instant are part of the contact's geometry
 static const double min_curvature = 1e-8; // m
 static const uint32_t max_rounds = 1000; // pairs that still approach then are left to the contact solver
-static const uint32_t max_rebounds = 100; // of a contact in a partial substep: more are plastic
+static const uint32_t max_rebounds = 100; // maximum for a contact in a partial substep: later ones are plastic
 
-// Of plastic hits
-static const double touching = 1e-5; // m: points that are so near may be hit with what hits beside them
-static const double settling = 4; // substeps: an approach that builds up in so many is that of a contact that lasts ..
-static const double slow_share = .1; // .. and so is one slower than this share of what gravity brings in a substep ..
-static const double unnoticed = .2; // .. and in a coarse run one whose geometry is off by less, of the tolerance
+// Thresholds of plastic hits
+static const double touching = 1e-5; // m: points this near may be hit together with a hit beside them
+static const double settling = 4; // substeps: an approach that the drift builds up within these many belongs to
+				  // a lasting contact.
+static const double slow_share = .1; // So does one slower than this share of gravity's change of velocity in a substep.
+static const double unnoticed = .2; // share of the tolerance: in a coarse run so does one with a smaller error of
+				    // geometry
 
 enum {
 	MAX_NEWTON_STEPS = 20,
-	MAX_TOUCHING = 128, // points that hang together with a plastic hit, where nothing external acts ..
-	MAX_TOUCHING_LOADED = 4, // .. and where something does: larger heaps are left to the contact solver
+	MAX_TOUCHING = 128, // points connected with a plastic hit, if nothing external acts
+	MAX_TOUCHING_LOADED = 4, // the same under external forces: larger heaps are left to the contact solver
 	NONE = UINT32_MAX,
 };
 
-// Bits of seen[] while a round is chosen.
+// Flag bits of seen[] while a round is chosen.
 static const uint32_t in_group = UINT32_C(1) << 31, is_chosen = UINT32_C(1) << 30;
 
 // ---- motion within the partial substep
 
-// The warm start of contacts that were just hit repeats their impact: another must not take that for an approach.
+// Sets the drift: dv without an impact's echo. The warm start of contacts that were just hit repeats their impact, and
+// must not count as an approach.
 static void set_drift(ob_island_work *w)
 {
 	for (uint32_t i = 1; i <= w->bodies; i++) {
@@ -60,8 +64,8 @@ static void set_drift(ob_island_work *w)
 	ob_surfaces_set_drift(w);
 }
 
-// Free flight over t (s), forth or back: a parabola; the attitude exactly but for what its contacts turn, which is
-// added to the second order.
+// Advances a body in free flight by t (s), forwards or backwards: a parabola, with the exact attitude but for the
+// rotation by its contacts, which is added to second order.
 static void fly(const ob_island_work *w, uint32_t row, double t, ob_body_at *x)
 {
 	const ob_body *body = &w->body[row];
@@ -83,7 +87,7 @@ static void fly(const ob_island_work *w, uint32_t row, double t, ob_body_at *x)
 	x->r = ob_quat_matrix(x->q);
 }
 
-// Its pose in w must be up to date.
+// Returns the body at time t (s). Its pose in w must be up to date.
 static ob_body_at body_at(const ob_island_work *w, uint32_t row, double t)
 {
 	const ob_body *body = &w->body[row];
@@ -107,8 +111,8 @@ static double slow_of(const ob_island_work *w)
 	return slow_share * w->max_acceleration * w->substep + least_approach * w->unit.speed;
 }
 
-// m: by how much the rows of a contact may be off within the partial substep, as its bodies turn; where hits alone
-// carry a contact, as they pass each other while they turn, too
+// Returns the error, m, of a contact's rows within the partial substep, as its bodies turn. If hits alone carry a
+// contact, it includes their passing each other while they turn.
 static double curvature(const ob_island_work *w, const ob_contact *contact)
 {
 	double speed = ob_norm(ob_contact_velocity(w, w->v, contact)), turn = 0, sum = 0;
@@ -125,15 +129,15 @@ static double curvature(const ob_island_work *w, const ob_contact *contact)
 	return .5 * w->h * w->h * (w->max_acceleration > 0 ? sum : sum + 2 * turn * speed);
 }
 
-// True of a plastic hit that a coarse run leaves to the contact solver: its geometry at its instant is that of the
-// partial substep's start, as far as the tolerance asks. Where nothing presses bodies together hits do all there is.
+// True for a plastic hit that a coarse run leaves to the contact solver: within the tolerance, its geometry at its
+// instant is that of the partial substep's start. Hits are needed in any case where nothing presses bodies together.
 static bool is_unnoticed(const ob_island_work *w, const ob_contact *contact)
 {
 	return w->coarseness > 1 && w->max_acceleration > 0 && curvature(w, contact) <= unnoticed * w->tolerance;
 }
 
-// Bits of the contact's points that may hit. What carries a load where something presses bodies together is held, and
-// no hit, unless one of its bodies has just been hit.
+// Returns a bit for each of the contact's points that may hit. A point that carries a load where something presses
+// bodies together is held, and no hit, unless one of its bodies has just been hit.
 static unsigned may_hit(const ob_island_work *w, const ob_contact *contact)
 {
 	enum { ALL = (1 << OB_POINTS) - 1 };
@@ -154,8 +158,8 @@ static unsigned may_hit(const ob_island_work *w, const ob_contact *contact)
 	return mask;
 }
 
-// m/s: slower approaches are left to the contact solver, but not where both bodies have just been hit: what one impact
-// sets in motion comes to its end whatever the order of its parts.
+// Returns the speed, m/s, below which approaches are left to the contact solver. Lower where both bodies have just been
+// hit: so an impact's motion ends the same for any order of its parts.
 static double threshold_of(const ob_island_work *w, const ob_contact *contact)
 {
 	const double a = w->body[contact->a].hit, b = w->body[contact->b].hit;
@@ -167,7 +171,7 @@ static double threshold_of(const ob_island_work *w, const ob_contact *contact)
 	return 4 * w->max_acceleration * w->substep + least_approach * w->unit.speed;
 }
 
-// m/s, at which a point opens at an instant
+// Returns the rate, m/s, at which a point opens at an instant.
 static double rate_of(const ob_body_at *a, const ob_body_at *b, const ob_manifold *m, int j)
 {
 	ob_vec3 va = ob_add(a->v, ob_cross(a->w, ob_sub(m->at[j], a->p)));
@@ -199,7 +203,7 @@ static void find_at(ob_sim *s, const ob_contact *contact, double t, ob_body_at *
 	find_between(s, contact, a, b, m);
 }
 
-// m/s, by which the drift of the two changes the rate of a point within the partial substep
+// Returns the change, m/s, of a point's rate by the drift of the two bodies within the partial substep.
 static double gain_of(const ob_island_work *w, const ob_contact *contact, const ob_body_at *a, const ob_body_at *b,
 		      const ob_manifold *m, int j)
 {
@@ -209,7 +213,7 @@ static double gain_of(const ob_island_work *w, const ob_contact *contact, const 
 	return ob_dot(m->normal, ob_sub(va, vb));
 }
 
-// Is the point at an instant one that may hit? It is the nearest of those of the partial substep's start.
+// True if the point at an instant may hit: its nearest point at the partial substep's start decides.
 static bool point_may_hit(const ob_contact *contact, unsigned mask, const ob_body_at *a, const ob_manifold *m, int j)
 {
 	uint32_t nearest = 0;
@@ -222,7 +226,7 @@ static bool point_may_hit(const ob_contact *contact, unsigned mask, const ob_bod
 	return mask >> nearest & 1;
 }
 
-// s, from an instant on until the first point that approaches closes; infinity: none does
+// Returns the time, s, from an instant on until the first approaching point closes; infinity: none does.
 static double until_closing(const ob_island_work *w, const ob_impact_instant *i, const ob_body_at *a,
 			    const ob_body_at *b, double *approach)
 {
@@ -243,10 +247,9 @@ static double until_closing(const ob_island_work *w, const ob_impact_instant *i,
 	return first;
 }
 
-// From an instant that the rows have given to the one at which the shapes meet, by Newton's method on their gap. false:
-// they do not meet in the partial substep; then the contact's geometry is that of the instant up to which it was
-// followed. A rim that is all but level is known to 1e-11 m only, so where a step is no shorter than the one before,
-// that is the end.
+// Refines an instant that the rows have given, by Newton's method on the gap of the shapes. false: they do not meet in
+// the partial substep; then the contact's geometry is that of the last instant to which it was followed. The gap of an
+// almost level rim is exact to 1e-11 m only: the iteration ends when a step is no shorter than the one before.
 static bool refine_instant(ob_sim *s, ob_impact_instant *i, double earliest, ob_body_at *a, ob_body_at *b)
 {
 	const ob_island_work *w = &s->island;
@@ -272,8 +275,8 @@ static bool refine_instant(ob_sim *s, ob_impact_instant *i, double earliest, ob_
 	return false;
 }
 
-// Where nothing external acts, hits do all that there is to do: what the contact solver would find at the partial
-// substep's start, where bodies were set back to, is the turn of the geometry alone.
+// Keeps rows open where nothing external acts and hits do all the work. Bodies were set back to the partial substep's
+// start; an approach that the contact solver would find there is the turn of the geometry alone.
 static void keep_open(const ob_island_work *w, const ob_contact *contact)
 {
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
@@ -283,7 +286,7 @@ static void keep_open(const ob_island_work *w, const ob_contact *contact)
 							    row_velocity(b, l, j, w->d[ia], w->d[ib]));
 }
 
-// What the contact's geometry at an instant was at the partial substep's start, if its bodies keep to their flights.
+// Extrapolates the contact's geometry at an instant back to the partial substep's start, along its bodies' flights.
 static void take_geometry(ob_sim *s, ob_impact_instant *i, const ob_body_at *a, const ob_body_at *b)
 {
 	ob_island_work *w = &s->island;
@@ -303,7 +306,7 @@ static double later(double a, double b)
 	return a > b ? a : b;
 }
 
-// The contact's next impact, if there is one: its instant and geometry then.
+// Finds the contact's next impact, if there is one, and its instant and geometry then.
 static void look_ahead(ob_sim *s, uint32_t contact)
 {
 	ob_island_work *w = &s->island;
@@ -367,7 +370,7 @@ static bool is_plastic(const ob_contact *contact)
 	return contact->e == 0;
 }
 
-// s: of the first pending hit with restitution, or without
+// Returns the instant, s, of the first pending hit with restitution, or without.
 static double first_pending(const ob_island_work *w, bool plastic)
 {
 	double first = INFINITY;
@@ -382,8 +385,8 @@ static bool at_once_with(const ob_island_work *w, const ob_impact_instant *i, do
 	return (i->time - time) * i->approach <= OB_IMPACT_SIMULTANEOUS * w->unit.length;
 }
 
-// Those pending impacts that come before any other of their bodies, to the front; returns how many. All that hit at the
-// same time and share bodies get the same root. A plastic hit may spread to bodies that have hits of their own: it
+// Moves those pending impacts to the front that come before any other of their bodies; returns their number. Hits at
+// the same time that share bodies get the same root. A plastic hit may spread to bodies that have hits of their own: it
 // waits until it is the first of all.
 static uint32_t select_earliest(ob_island_work *w)
 {
@@ -419,9 +422,9 @@ static uint32_t select_earliest(ob_island_work *w)
 	return selected;
 }
 
-// ---- plastic sets: what touches the bodies that are hit, and is plastic itself, is hit with them
+// ---- plastic sets: plastic contacts that touch the hit bodies are hit with them
 
-// How many points of a contact are, by its rows, as good as closed at an instant.
+// Returns the number of a contact's points that, by its rows, are almost closed at an instant.
 static uint32_t touching_points(const ob_island_work *w, const ob_contact *contact, double t)
 {
 	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
@@ -440,7 +443,7 @@ typedef struct touching_group {
 	uint32_t contacts, points, contact[MAX_TOUCHING + 1];
 } touching_group;
 
-// All plastic contacts that hang together with one through bodies that move. false: too many points.
+// Finds all plastic contacts connected with one through moving bodies. false: too many points.
 static bool find_group(ob_island_work *w, uint32_t first, double t, touching_group *g)
 {
 	ob_impacts *x = &w->impacts;
@@ -472,7 +475,7 @@ static bool find_group(ob_island_work *w, uint32_t first, double t, touching_gro
 	return g->points <= most;
 }
 
-// Into the first "selected" pending impacts, unless it is there already. Returns how many there are then.
+// Adds a contact to the first "selected" pending impacts, unless it is there already. Returns their new number.
 static uint32_t select_touching(ob_sim *s, uint32_t contact, double t, uint32_t selected)
 {
 	ob_island_work *w = &s->island;
@@ -498,7 +501,7 @@ static uint32_t select_touching(ob_sim *s, uint32_t contact, double t, uint32_t 
 	return selected + 1;
 }
 
-// Takes a pending impact out of the first "selected".
+// Removes a pending impact from the first "selected"; the contact solver takes its contact.
 static uint32_t leave_to_solver(ob_island_work *w, uint32_t k, uint32_t selected)
 {
 	ob_impacts *x = &w->impacts;
@@ -509,7 +512,7 @@ static uint32_t leave_to_solver(ob_island_work *w, uint32_t k, uint32_t selected
 	return selected;
 }
 
-// To the first "selected" pending impacts what touches their bodies. Returns how many there are then.
+// Adds the contacts that touch their bodies to the first "selected" pending impacts. Returns their new number.
 static uint32_t join_touching(ob_sim *s, uint32_t selected)
 {
 	ob_island_work *w = &s->island;
@@ -551,9 +554,9 @@ static uint32_t body_of_set(ob_sim *s, ob_impacts *x, uint32_t row, double t)
 	return i;
 }
 
-// m: of the plane in which convex bodies touch, along its normal from "centre". Points that are in each other, one
-// deeper than another, are no such plane, and could not all leave as restitution asks: a body that tilts moves them
-// towards each other. Where all are to stop, they can.
+// Returns the level, m, of the plane in which convex bodies touch, along its normal from "centre". Points that
+// penetrate, to different depths, define no such plane, and could not all leave as restitution demands: a body that
+// tilts moves them towards each other. With plastic hits all can stop.
 static double level_of(const ob_manifold *m, double near, ob_vec3 centre)
 {
 	double sum = 0;
@@ -597,7 +600,7 @@ static bool in_set(const ob_impacts *x, uint32_t row)
 	return x->slot[row] < x->bodies && x->row[x->slot[row]] == row;
 }
 
-// At the instant t, as the impact leaves it.
+// Returns the body at the instant t, as the impact leaves it.
 static ob_body_at body_after(const ob_island_work *w, uint32_t row, double t)
 {
 	const ob_impacts *x = &w->impacts;
@@ -609,10 +612,10 @@ static ob_body_at body_after(const ob_island_work *w, uint32_t row, double t)
 	return at;
 }
 
-// Where nothing presses bodies together, they go on from one hit to the next even while they touch: turning closes what
-// a plastic hit has brought to rest. So a point leaves as fast as it must to come back in a partial substep's time, and
-// no faster than it has come: then the hit does no work, and nothing is left to be pushed out of the positions. Returns
-// whether any does. before: velocities
+// Sets the speeds at which points leave. Without a force that presses bodies together, they hit again and again while
+// they touch, as turning closes a contact that a plastic hit has stopped. So a point leaves fast enough to come back
+// after a partial substep, and no faster than it has come: then the hit does no work, and no penetration is left to be
+// pushed apart. Returns true if any point does. before: velocities
 static bool set_hops(ob_sim *s, uint32_t chain, double t, const ob_impact_body *before)
 {
 	ob_island_work *w = &s->island;
@@ -650,7 +653,7 @@ static ob_vec3 turn_between(ob_quat a, ob_quat b)
 	return ob_scale(ob_v3(turn.x, turn.y, turn.z), turn.w < 0 ? -scale : scale);
 }
 
-// From where an impact has left a body, x, back to the partial substep's start.
+// Sets a body back from its state x after an impact to the partial substep's start.
 static void set_back(ob_sim *s, uint32_t row, ob_body_at x, double t)
 {
 	ob_island_work *w = &s->island;
@@ -659,7 +662,7 @@ static void set_back(ob_sim *s, uint32_t row, ob_body_at x, double t)
 	fly(w, row, -t, &x);
 	const double change =
 		ob_norm(ob_sub(x.v, ob_row_linear(v))) + body->radius * ob_norm(ob_sub(x.w, ob_row_angular(v)));
-	for (uint32_t k = 0; k < body->adjacent; k++) // so far, it went at another speed
+	for (uint32_t k = 0; k < body->adjacent; k++) // until t it went at another speed
 		w->contact[w->adjacency[body->first_adjacent + k]].path += t * change;
 	ob_vec3 shift = ob_sub(x.p, body->p), turn = turn_between(body->q, x.q);
 	memcpy(d, (double[8]){ shift.x, shift.y, shift.z, turn.x, turn.y, turn.z }, sizeof *w->d);
@@ -674,8 +677,8 @@ static void velocity_after(const ob_island_work *w, uint32_t row, double t, doub
 	memcpy(out, (double[6]){ x.v.x, x.v.y, x.v.z, x.w.x, x.w.y, x.w.z }, 6 * sizeof *out);
 }
 
-// What bodies of the set moved with until the instant t ends with it where the impact opens a contact that carried a
-// load: their drift is without it from now on. A body on the other side, which is not set back, has got its share.
+// Ends the load of a contact that the impact opens: from the instant t on the drift of the set's bodies excludes it. A
+// body on the other side, which is not set back, has had its share.
 static void end_load(ob_island_work *w, const ob_contact *c, double t)
 {
 	const ob_impacts *x = &w->impacts;
@@ -723,7 +726,7 @@ static void end_loads(ob_island_work *w, uint32_t row, double t)
 	}
 }
 
-// A set that has grown too large is left to the contact solver. false: it has restitution.
+// Leaves a set that has grown too large to the contact solver. false: it has restitution.
 static bool leave_plastic(ob_sim *s, uint32_t chain)
 {
 	ob_island_work *w = &s->island;
@@ -749,7 +752,7 @@ static void solve_points(ob_sim *s)
 	ob_impact_solve(x->body, x->bodies, x->point, x->points, &payer);
 }
 
-// The impact of those contacts from "chain" on that have joined it. false: it is left to the contact solver.
+// Solves the impact of those contacts from "chain" on that have joined it. false: it is left to the contact solver.
 static bool solve_joined(ob_sim *s, uint32_t chain, double t)
 {
 	ob_island_work *w = &s->island;
@@ -769,7 +772,7 @@ static bool solve_joined(ob_sim *s, uint32_t chain, double t)
 	return true;
 }
 
-// Contacts that touch what is hit, and are closed by it, join. true: there were some.
+// Joins contacts that touch hit bodies and are closed by the hit. true: there were some.
 static bool join_violated(ob_sim *s, uint32_t chain, double t)
 {
 	const ob_island_work *w = &s->island;
@@ -789,7 +792,7 @@ static bool join_violated(ob_sim *s, uint32_t chain, double t)
 	return any;
 }
 
-// One impact of all contacts from "chain" on, which hit at the same instant.
+// Solves one impact of all contacts from "chain" on, which hit at the same instant.
 static void solve_set(ob_sim *s, uint32_t chain)
 {
 	ob_island_work *w = &s->island;
@@ -881,7 +884,7 @@ static void reserve(ob_island_work *w)
 	}
 }
 
-// After a round: contacts of bodies that were hit are looked at again.
+// Looks for new impacts of bodies that were hit, after a round.
 static void look_again(ob_sim *s, uint32_t round, uint32_t selected)
 {
 	ob_island_work *w = &s->island;
@@ -905,7 +908,7 @@ static void look_again(ob_sim *s, uint32_t round, uint32_t selected)
 	x->changes = 0;
 }
 
-// Or at those of bodies that were hit: the others are as they were.
+// Looks for impacts of all contacts, or of those of hit bodies alone: the others have not changed.
 static void look_at_all(ob_sim *s, bool others)
 {
 	ob_island_work *w = &s->island;

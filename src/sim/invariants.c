@@ -9,7 +9,7 @@
 #include "sim/pairs.h"
 #include "table/home.h"
 
-// Places in which a pair was found.
+// Marks of the places in which a pair was found.
 enum { LISTED_BY_A = 1, LISTED_BY_B = 2, IDLE = 4 };
 
 typedef struct check {
@@ -18,8 +18,8 @@ typedef struct check {
 	ob_invariant_moment when;
 	uint32_t ids, pairs;
 	unsigned char *found; // [pairs]: LISTED_BY_A ..
-	uint32_t *met; // [ids]: 1 + the object whose pair with this one was seen last
-	uint32_t *near; // [ids]: neighbours of one
+	uint32_t *met; // [ids]: 1 + the object whose pair with this one was found last
+	uint32_t *near; // [ids]: neighbours of one object
 	ob_error *e;
 } check;
 
@@ -86,7 +86,7 @@ static bool check_objects(const check *c)
 		awake += state == OB_SCHEDULE_AWAKE || state == OB_SCHEDULE_EQUILIBRIUM;
 		kinematic += state == OB_SCHEDULE_KINEMATIC;
 	}
-	// Ranks learn with the next message that bodies of others have woken.
+	// Ranks receive with the next message that other ranks' bodies have woken.
 	if (c->when == OB_INVARIANTS_AFTER_STEP && ob_universe_ranks(c->u) < 2 &&
 	    (awake != c->data->count->awake || kinematic != c->data->count->kinematic))
 		return ob_fail(c->e, "%u objects are awake and %u kinematic: %u and %u are counted", awake, kinematic,
@@ -174,7 +174,7 @@ static bool check_index(const check *c)
 
 // ---- pairs
 
-// Each pair in the object's list is its own, in use, linked back, and there once.
+// Checks each pair in the object's list: it is the object's, in use, linked back, and there once.
 static bool check_list(const check *c, uint32_t id)
 {
 	const ob_step_data *data = c->data;
@@ -200,7 +200,7 @@ static bool check_list(const check *c, uint32_t id)
 	return true;
 }
 
-// Objects whose fat AABBs overlap the object's have a pair with it, which check_list has just met.
+// Checks that each object with an overlapping fat AABB has a pair with this one, which check_list has just found.
 static bool check_neighbours(const check *c, uint32_t id)
 {
 	uint64_t tests = 0;
@@ -339,7 +339,7 @@ static bool check_islands(const check *c)
 
 // ---- calendars
 
-// Levels above say at least as much as those below.
+// Checks that the steps of upper levels are no later than those of the levels below.
 static bool check_levels(const check *c, const ob_calendar *of, const char *list)
 {
 	for (uint32_t i = 0; i < of->end; i++)
@@ -392,7 +392,7 @@ static bool check_scripts(const check *c)
 
 static bool check_all(const check *c)
 {
-	const bool ode = ob_universe_settings(c->u)->monolith; // whose world finds pairs and contacts by itself
+	const bool ode = ob_universe_settings(c->u)->monolith; // its world finds pairs and contacts by itself
 	return check_objects(c) && check_scripts(c) &&
 	       (ode || (check_requery_list(c) && check_index(c) && check_pairs(c) && check_contacts(c) &&
 			check_islands(c) && check_calendars(c)));
@@ -414,10 +414,11 @@ bool ob_invariants_hold(const ob_universe *u, ob_invariant_moment when, ob_error
 	return fine;
 }
 
-// A sanitizer's build checks large universes not at each step, so that its tests end.
+// True if the universe is checked now. With a sanitizer, large universes are not checked at each step, so that tests
+// end.
 static bool is_checked(const ob_universe *u)
 {
-	enum { EACH_STEP = 1024 }; // objects and pairs
+	enum { EACH_STEP = 1024 }; // objects and pairs that are checked per step, on average
 	const uint64_t size = ob_universe_ids(u) + (uint64_t)ob_pairs_end(ob_universe_step_data(u));
 	return ob_universe_checked(u) || (OB_SANITIZED && ob_step_count(u) % (1 + size / EACH_STEP) == 0);
 }

@@ -25,9 +25,10 @@
 #include "sim/surfaces.h"
 #include "sim/touches.h"
 
-enum { MAX_IMPACT_ROUNDS = 4 }; // in a partial substep; a body that rattles faster is left to the contact solver
+enum { MAX_IMPACT_ROUNDS = 4 }; // maximum in a partial substep; a body that rattles faster is left to the contact
+				// solver
 
-// Contacts as they are now, and what the velocities will be if they go on as before.
+// Updates contacts to the present poses, and predicts the velocities that follow from the last impulses.
 static void update_contacts(ob_sim *s)
 {
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
@@ -36,7 +37,7 @@ static void update_contacts(ob_sim *s)
 	ob_bodies_warm_start(s);
 }
 
-// The same for what was hit. true: its contacts may have changed.
+// The same for bodies that were hit. true: their contacts may have changed.
 static bool update_hit_contacts(ob_sim *s)
 {
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
@@ -46,7 +47,7 @@ static bool update_hit_contacts(ob_sim *s)
 	return changed;
 }
 
-// Contacts hit at their instants; what flies off may hit something that was out of reach before.
+// Solves impacts at their instants, in rounds: a body that leaves may hit another that was out of reach before.
 static void resolve_impacts(ob_sim *s)
 {
 	ob_profile_enter(s, OB_PROFILE_IMPACTS);
@@ -59,8 +60,8 @@ static void resolve_impacts(ob_sim *s)
 	}
 }
 
-// Velocities at the partial substep's end, u, such that no contact is violated; made shorter where something was hit so
-// that it moves too fast now for its length.
+// Solves for the velocities at the partial substep's end, u, such that no contact is violated. Shortens the partial
+// substep where a body that was hit is now too fast for its length.
 static void solve_velocities(ob_sim *s)
 {
 	do {
@@ -72,10 +73,10 @@ static void solve_velocities(ob_sim *s)
 	} while (ob_adaptive_shorten(s));
 }
 
-// The table of contents of an island's step: a substep, or a part of one, in the order in which things happen.
+// Solves a substep, or a part of one: the table of contents of an island's step, in the order in which things happen.
 static void solve_partial_substep(ob_sim *s, double left, bool first_of_step)
 {
-	enum { WORK_OF_BODY = 24, WORK_OF_CONTACT = 8 }; // beside its tests and solves
+	enum { WORK_OF_BODY = 24, WORK_OF_CONTACT = 8 }; // in addition to its tests and solves
 	ob_budget_note(s, WORK_OF_BODY * s->island.rows + WORK_OF_CONTACT * s->island.contacts);
 	ob_profile_enter(s, OB_PROFILE_NARROWPHASE);
 	ob_ghosts_follow(s);
@@ -99,7 +100,7 @@ static void solve_partial_substep(ob_sim *s, double left, bool first_of_step)
 	ob_push_apart(s);
 }
 
-// The whole step on a private copy, from what is published. true: the solution's error is tolerable.
+// Solves the whole step on a private copy of the published state. true: the solution's error is tolerable.
 static bool solve_step(ob_sim *s, const ob_island *is)
 {
 	ob_island_work *w = &s->island;
@@ -123,7 +124,7 @@ static bool solve_step(ob_sim *s, const ob_island *is)
 	return ob_error_control_accept(s) || ob_budget_spent(s);
 }
 
-// One substep, where that is enough: false if the island is not in equilibrium.
+// Solves one substep, where that suffices. false: the island is not in equilibrium.
 static bool solve_equilibrium(ob_sim *s, const ob_island *is)
 {
 	const uint32_t substeps = s->island.substeps;
@@ -136,16 +137,16 @@ static bool solve_equilibrium(ob_sim *s, const ob_island *is)
 	return false;
 }
 
-// ---- what it costs
+// ---- cost
 
-// In solves of a pair; a collision test costs as much as a few.
+// Returns the cost in solves of a pair; a collision test costs as much as a few.
 static uint64_t cost_so_far(const ob_sim *s)
 {
 	enum { OF_A_TEST = 4 };
 	return s->counters.pair_solves + OF_A_TEST * s->counters.narrowphase_tests;
 }
 
-// For the scheduler, so that what costs much is begun first.
+// Notes each member's share of the cost, by which the scheduler begins expensive islands first.
 static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 {
 	const uint64_t share = cost / s->data->island[island].members;
@@ -154,9 +155,9 @@ static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 
 // ---- ballistic advance
 
-// True for a body near planes only, or two near each other and planes, with no resting contact, that have no late
-// contact in this step: a ballistic advance may do. What bounces so low that the contact solver has had it goes on as a
-// flight; what has become slow is left to come to rest.
+// True for a body near planes only, or two near each other and planes, with no resting contact, and no late contact in
+// this step: a ballistic advance may suffice. A body that the contact solver has had as it bounced low goes on in
+// flight; one that has become slow is left to come to rest.
 static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 {
 	const ob_step_data *data = s->data;
@@ -178,7 +179,7 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 	return true;
 }
 
-// Its contacts end, and the next solver tests their geometry anew.
+// Ends the island's contacts; the next solver tests their geometry anew.
 static void end_contacts(ob_sim *s, const ob_island *is)
 {
 	for (uint32_t i = 0; i < is->pairs; i++) {
@@ -226,12 +227,12 @@ void ob_islands_fly(ob_sim *s, uint32_t first, uint32_t n, bool *flown)
 
 // ---- the step
 
-// The island's state of rest, as a flag of its bodies' motions; 0: it moves.
+// Returns the island's state of rest, as a flag of its bodies' motions; 0: it moves.
 static uint32_t rest_flag(ob_sim *s)
 {
 	const double rest_time = ob_bodies_update_rest(s);
 	if (s->island.torques || ob_norm2(s->island.frame) > 0 ||
-	    ob_surfaces_carry_any(&s->island)) // equilibrium and sleep know of forces alone
+	    ob_surfaces_carry_any(&s->island)) // equilibrium and sleep test forces alone
 		return 0;
 	if (ob_equilibrium_reached(&s->island))
 		return s->settings->sleeping ? OB_MOTION_ASLEEP : OB_MOTION_EQUILIBRIUM;

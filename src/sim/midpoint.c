@@ -11,27 +11,28 @@
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
 
-static const double least_turning = 1e-6; // m/s^2: less than turning brings to any row is not noticed ..
-static const double least_face_turning = 5e-5; // .. where three points are held, which leaves nothing to tilt
-static const double longest_way = .2; // of the smaller thickness: in a partial substep of bodies that are halved
-static const double loose_gap = 1e-5; // m: a point that is farther off is not held at the surface
+static const double least_turning = 1e-6; // m/s^2: less change of a row by turning is ignored;
+static const double least_face_turning = 5e-5; // the same with three held points, which leave no freedom to tilt
+static const double longest_way = .2; // share of the smaller thickness: path in a partial substep of bodies that are
+				      // halved
+static const double loose_gap = 1e-5; // m: a point farther off is not held at the surface
 
-// m/s, in the partial substep
+// Returns the least change of velocity, m/s, in the partial substep that is noticed.
 static double least_change(const ob_island_work *w, uint32_t held)
 {
 	const double least = held > 2 ? least_face_turning : least_turning;
 	return least * w->unit.speed / w->unit.time * w->h;
 }
 
-// ---- which contacts
+// ---- contacts that take part
 
 static bool is_round(ob_shape s)
 {
 	return s != OB_SHAPE_BOX && s != OB_SHAPE_PLANE && s != OB_SHAPE_HULL;
 }
 
-// Bound of what turning brings to a row in half the partial substep (m/s). The rows of a sphere turn with its centre,
-// those of a plane stay.
+// Bounds the change of a row by turning in half the partial substep (m/s). The rows of a sphere turn with its centre,
+// those of a plane are constant.
 static double change_bound(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
@@ -57,7 +58,7 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	if ((a->surface && ob_norm2(ob_row_angular(w->v[contact->a])) > 0) ||
 	    (b->surface && ob_norm2(ob_row_angular(w->v[contact->b])) > 0))
-		return false; // of the first order, but for what is carried
+		return false; // first order, except for carried bodies
 	if (contact->lane == OB_NO_LANE)
 		return false;
 	const double change = change_bound(w, contact);
@@ -105,7 +106,7 @@ static ob_vec3 normal_of(const ob_batch *b, uint32_t l)
 	return ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
 }
 
-// True where a point that carries no load will hit within the partial substep, faster than by what gravity adds in it.
+// True if a point without load will hit within the partial substep, faster than by gravity's change of velocity in it.
 static bool is_hit(const ob_sim *s, const ob_contact *contact)
 {
 	const ob_island_work *w = &s->island;
@@ -147,7 +148,7 @@ static void halve(ob_sim *s, uint32_t row)
 	memcpy(body->first_half, (double[8]){ way.x, way.y, way.z, turn.x, turn.y, turn.z }, sizeof body->first_half);
 }
 
-// Geometry as it was found last, before it is found again.
+// The previous geometry, kept while the new one is found.
 typedef struct old_geometry {
 	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS], normal;
 	double since;
@@ -168,15 +169,15 @@ static ob_vec3 start_rate(const ob_island_work *w, uint32_t row)
 	return w->body[row].halved ? w->body[row].start_w : ob_row_angular(w->v[row]);
 }
 
-// What turning adds to a row: its velocity now less that at the start. Where the impulse would do work on what turning
-// has left at the start, that is reversed, too.
+// Returns the part of a row's velocity due to turning: its velocity now less that at the start. A residual of turning
+// at the start on which the impulse would do work is reversed, too.
 static double turned(double now, double start, double impulse)
 {
 	return start * impulse < 0 || fabs(start) > fabs(now - start) ? now - start : now;
 }
 
-// Sets what turning adds to each row. A point that opens at the midpoint may come back as fast, so no push on it does
-// work. At the start, the geometry lay between the one before and this one; a point that is new moved with its bodies.
+// Sets the velocity by turning of each row. A point that opens at the midpoint may come back as fast, so no push on it
+// does work. At the start, the geometry was the mean of the one before and this one; a new point moved with its bodies.
 static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geometry *old)
 {
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
@@ -221,7 +222,7 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 		b->turning |= 1u << l;
 }
 
-// The contact as it is at the midpoint; its gaps as they would be at the start, seen from there.
+// Finds the contact at the midpoint, with the gaps at the start as extrapolated from there.
 static void find_at_midpoint(ob_sim *s, ob_contact *contact)
 {
 	ob_island_work *w = &s->island;
@@ -254,7 +255,7 @@ static bool concerns_turning(const ob_island_work *w, const ob_contact *contact)
 	return (a->inv_mass > 0 && a->turns) || (b->inv_mass > 0 && b->turns);
 }
 
-// True where contacts turn and nothing hits their bodies.
+// True if contacts turn and nothing hits their bodies.
 static bool all_go_on(const ob_sim *s)
 {
 	const ob_island_work *w = &s->island;
@@ -267,7 +268,7 @@ static bool all_go_on(const ob_sim *s)
 	return any;
 }
 
-// All contacts are found at the start.
+// Goes back: finds all contacts at the start.
 static void leave_midpoint(ob_sim *s)
 {
 	ob_island_work *w = &s->island;

@@ -5,12 +5,12 @@
 #include "sim/contact_solver.h"
 
 static const double swept_travel =
-	.4; // of the smaller thickness: faster pairs are followed through the partial substep
-static const double swept_gap = 1e-3; // m: so near counts as touching
+	.4; // share of the smaller thickness: faster pairs are followed through the partial substep
+static const double swept_gap = 1e-3; // m: a smaller gap counts as touching
 
-// ---- shapes as their axis-aligned boxes
+// ---- axis-aligned boxes of shapes
 
-// Half the width of the shape along the world's axis i.
+// Returns half the width of the shape along the world's axis i (m).
 static double half_width(const ob_placed *x, int i)
 {
 	const double *m = x->r.m[i];
@@ -28,7 +28,7 @@ static double half_width(const ob_placed *x, int i)
 	}
 }
 
-// A hull's box is not about its centre.
+// Finds centre and half widths of the box; a hull's box is not about the hull's centre.
 static void find_extent(const ob_placed *x, ob_vec3 *middle, ob_vec3 *half)
 {
 	ob_vec3 low = { INFINITY, INFINITY, INFINITY }, high = { -INFINITY, -INFINITY, -INFINITY };
@@ -82,8 +82,8 @@ static bool is_round(const ob_placed *x)
 	return x->shape == OB_SHAPE_CYLINDER || x->shape == OB_SHAPE_CAPSULE;
 }
 
-// Of a test; and of what it takes to find the points of two that touch, where a cylinder's rim is compared with all
-// that the other one has.
+// Returns the work of a test, with that of finding the points of a touching pair: a cylinder's rim is compared with all
+// features of the other shape.
 static uint64_t work_of_test(const ob_placed *a, const ob_placed *b)
 {
 	enum { LEAST = 8 };
@@ -98,7 +98,7 @@ static uint64_t work_of_points(const ob_placed *a, const ob_placed *b)
 	return is_round(a) && is_round(b) ? OF_TWO_ROUND : OF_A_CORNER * (corners_of(a) + corners_of(b));
 }
 
-// Once the budget is spent nothing touches any more, so that whoever looks at many pairs soon comes to an end.
+// Runs a collision test. Once the budget is spent nothing touches any more, so that loops over many pairs end soon.
 static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	ob_sim *s = with;
@@ -155,7 +155,7 @@ void ob_narrowphase_place(const ob_sim *s, uint32_t row, ob_vec3 p, const ob_mat
 	out->hull = body->hull;
 }
 
-// As the body is now.
+// Fills in the body in its present state.
 static void place(const ob_sim *s, uint32_t row, ob_placed *out)
 {
 	const ob_body *body = &s->island.body[row];
@@ -174,7 +174,7 @@ double ob_narrowphase_distance(ob_sim *s, uint32_t a, uint32_t b, double margin)
 	return m.separation;
 }
 
-// Bound of the speed at which any two points of the pair may approach (m/s), with external acceleration.
+// Bounds the speed at which any two points of the pair may approach (m/s), with external acceleration.
 static double closing_speed(const ob_sim *s, const ob_contact *contact)
 {
 	const ob_island_work *w = &s->island;
@@ -184,8 +184,8 @@ static double closing_speed(const ob_sim *s, const ob_contact *contact)
 	return speed + w->max_acceleration * w->h;
 }
 
-// Points as of the time of impact t, with gaps extrapolated back to now: those that close at that instant close then.
-// Nothing touches before t, so a point that opens then does not penetrate now.
+// Extrapolates the gaps of points found at the time of impact t back to now: points that close at t have a gap that
+// closes then. Nothing touches before t, so a point that opens at t does not penetrate now.
 static void extrapolate_gaps_back(const ob_placed *a, const ob_placed *b, double t, ob_manifold *m)
 {
 	ob_vec3 rel = ob_sub(a->v, b->v);
@@ -201,7 +201,7 @@ static double smaller_thickness(const ob_island_work *w, const ob_contact *conta
 	return ob_min(w->body[contact->a].thickness, w->body[contact->b].thickness);
 }
 
-// The time of impact (s), and the points up to "reach" (m) then.
+// Returns the time of impact (s), and the points up to "reach" (m) at that time.
 static double time_of_impact(ob_sim *s, const ob_contact *contact, double horizon, double reach, ob_manifold *m)
 {
 	const ob_island_work *w = &s->island;

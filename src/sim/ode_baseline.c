@@ -13,7 +13,7 @@
 #include "sim/touches.h"
 #include "table/trace.h"
 
-struct held_object { // whether the world holds an object for a slot, and which
+struct held_object { // the object that the world holds for a slot, if any
 	bool there;
 	uint32_t generation;
 };
@@ -35,7 +35,7 @@ struct ob_ode_baseline {
 	ob_contact_point *point;
 	double *depth;
 	size_t points_max;
-	struct touching_list pressed, presses; // where there are scripts: before the step, and in it
+	struct touching_list pressed, presses; // with scripts: pairs that press before the step, and in it
 	uint32_t awake, pairs;
 	bool traced;
 };
@@ -83,7 +83,7 @@ void ob_ode_baseline_destroy(ob_ode_baseline *m)
 	ob_ode_thread_finish();
 }
 
-// Whoever has its id next has touched nobody.
+// Forgets the object's touches: the next object with its id has touched nothing.
 static void forget_touches(ob_ode_baseline *m, uint32_t id)
 {
 	struct touching_list *l = &m->pressed;
@@ -94,7 +94,7 @@ static void forget_touches(ob_ode_baseline *m, uint32_t id)
 	l->count = kept;
 }
 
-// The passports are the host's, which changes them between steps.
+// Takes in and drops objects as the passports say, which the host changes between steps.
 static void follow_passports(ob_ode_baseline *m)
 {
 	uint32_t ids = ob_universe_ids(m->u);
@@ -118,7 +118,7 @@ static void follow_passports(ob_ode_baseline *m)
 	}
 }
 
-// Towards the outside, so that the narrower numbers still hold the object.
+// Rounds outwards, so that the narrower numbers still hold the object.
 static void round_outwards(const double from[6], double by, float to[6])
 {
 	for (int i = 0; i < 3; i++) {
@@ -162,7 +162,7 @@ static bool moves(const ob_ode_baseline *m, uint32_t id)
 	return m->held[id].there && !(ob_passport_of(m->u, id)->flags & OB_OBJECT_PRESCRIBED);
 }
 
-// All states or none.
+// Publishes all states, or none.
 static void publish_all(ob_ode_baseline *m)
 {
 	uint32_t ids = ob_universe_ids(m->u);
@@ -178,7 +178,7 @@ static void publish_all(ob_ode_baseline *m)
 	}
 	for (uint32_t id = 0; id < ids && ob_step_failed(m->u, NULL) == OB_STEP_OK; id++) {
 		if (!moves(m, id))
-			continue; // what never moves keeps its first motion
+			continue; // static objects keep their first motion
 		ob_ode_world_get(m->world, id, &s, &asleep, &touching);
 		m->awake += !asleep;
 		publish_object(m, id, &s, asleep, touching);
@@ -199,7 +199,7 @@ static bool read_contacts(ob_ode_baseline *m, size_t *points)
 	return ob_ode_world_contacts(m->world, m->point, m->depth, m->points_max) == *points;
 }
 
-// The points of one pair as a record of the step that is now complete. A record holds the first 4 of them.
+// Writes the points of one pair as a record of the complete step. A record holds the first 4 of them.
 static void write_pair(ob_ode_baseline *m, uint32_t index, size_t from, size_t to)
 {
 	ob_step_data *data = ob_universe_step_data(m->u);
@@ -217,7 +217,7 @@ static void write_pair(ob_ode_baseline *m, uint32_t index, size_t from, size_t t
 	data->pair[index] = (ob_pair_key){ .a = c->a, .b = c->b, .record = index, .active = 1 };
 }
 
-// For overlays only: pairs beyond the room of the step data are left out. ODE's world lists points by pair.
+// Publishes pairs for overlays only; pairs beyond the step data's size are left out. ODE's world lists points by pair.
 static void publish_pairs(ob_ode_baseline *m)
 {
 	ob_step_data *data = ob_universe_step_data(m->u);
@@ -237,7 +237,7 @@ static void publish_pairs(ob_ode_baseline *m)
 	data->count->records_used = data->count->pairs;
 }
 
-// ---- what scripts are told of
+// ---- touches for scripts
 
 static int by_pair(const void *x, const void *y)
 {
@@ -261,7 +261,7 @@ static void add_touching(struct touching_list *l, uint32_t a, uint32_t b)
 	l->pair[l->count++] = (struct touching){ a, b };
 }
 
-// After each substep: pairs that press, and did not before the step, begin to touch.
+// Notes touches, after each substep: pairs that press now and did not before the step.
 static void note_touches(ob_ode_baseline *m)
 {
 	size_t points, to;
@@ -295,7 +295,7 @@ static bool is_awake(const ob_ode_baseline *m, uint32_t id)
 	return !asleep;
 }
 
-// ODE does not collide what sleeps, which touches as it did.
+// Ends the step's touches. Keeps those of sleeping objects, which ODE does not collide.
 static void end_touches(ob_ode_baseline *m)
 {
 	struct touching_list *l = &m->presses;
@@ -317,7 +317,7 @@ static void end_touches(ob_ode_baseline *m)
 	l->count = 0;
 }
 
-// Kinematic objects, to where they are at an instant (s).
+// Moves kinematic objects to their poses at an instant (s).
 static void drive(ob_ode_baseline *m, double time)
 {
 	const uint32_t ids = ob_universe_step_data(m->u)->count->kinematic ? ob_universe_ids(m->u) : 0;
@@ -332,7 +332,7 @@ static void drive(ob_ode_baseline *m, double time)
 
 void ob_ode_baseline_kick(ob_ode_baseline *m, uint32_t id, ob_vec3 impulse, ob_vec3 twist)
 {
-	follow_passports(m); // it may be new
+	follow_passports(m); // the object may be new
 	ob_ode_world_kick(m->world, id, impulse, twist);
 }
 

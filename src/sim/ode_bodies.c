@@ -2,10 +2,10 @@
 
 #include <stdlib.h>
 
-enum { SLOTS_MIN = 256 }; // for the members of an island, whoever leads it: .35 MB
+enum { SLOTS_MIN = 256 }; // for the members of an island, however large a universe is: .35 MB
 
 typedef struct ob_ode_slot {
-	ob_ode_body *body; // NULL: none yet
+	ob_ode_body *body; // NULL: not made yet
 	uint32_t id, generation;
 } ob_ode_slot;
 

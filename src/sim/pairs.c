@@ -15,7 +15,7 @@
 
 // ---- lists
 
-// Where a link to this place stands: in the place before it, or at the start of the list.
+// Writes a link where it belongs: into the place before it, or at the start of the list.
 static void put_link(ob_step_data *data, uint32_t id, uint32_t before, uint32_t link)
 {
 	ob_pair_place at;
@@ -74,7 +74,7 @@ static void drop_pair(ob_universe *u, uint32_t pair)
 	put_aside(data, pair);
 }
 
-// The pair is to be checked in this step. Of several ranks one enters it, and all know that.
+// Enters the pair for a check in this step. On several ranks one rank enters it, and all know that.
 static void enter_check(ob_universe *u, uint32_t pair, uint64_t step)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -85,7 +85,7 @@ static void enter_check(ob_universe *u, uint32_t pair, uint64_t step)
 	ob_calendar_set(&look, pair, ob_pair_is_checked_here(u, k) ? step : UINT32_MAX);
 }
 
-// One that is not in use. false: there is none, and the step has failed.
+// Takes a pair that is not in use. false: there is none, and the step has failed.
 static bool take_pair(ob_universe *u, uint32_t *pair)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -150,7 +150,7 @@ void ob_pair_release_record(ob_universe *u, ob_pair_key *k)
 	k->record = OB_NO_RECORD;
 }
 
-// Called by the host, too, and for what is static: so all pairs are looked at.
+// Drops all pairs of an object. The host calls it, too, and for static objects: so it searches all pairs.
 void ob_pairs_drop(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -164,7 +164,7 @@ void ob_pairs_drop(ob_universe *u, uint32_t id)
 	}
 }
 
-// ---- new ones
+// ---- new pairs
 
 static double plane_distance(const ob_universe *u, uint32_t plane, ob_vec3 at, double sphere)
 {
@@ -173,12 +173,12 @@ static double plane_distance(const ob_universe *u, uint32_t plane, ob_vec3 at, d
 	return ob_dot(ob_column(&r, 2), ob_sub(at, m->p)) - sphere;
 }
 
-// Lower bound of the distance between two objects (m): of their boxes and bounding spheres, or of a sphere and a plane.
+// Lower bound of the distance between two objects (m): from their boxes and bounding spheres, or a sphere and a plane.
 static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
 {
 	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
 	const ob_motion *ma = ob_result_of(u, a), *mb = ob_result_of(u, b);
-	bool aabbs = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // which reach beyond the bounding sphere
+	bool aabbs = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // boxes reach beyond the bounding sphere
 	double ra = ob_shape_radius(pa->shape, pa->size), rb = ob_shape_radius(pb->shape, pb->size);
 	ob_vec3 centre_a = ob_centre_now(u, a, ma, steps), centre_b = ob_centre_now(u, b, mb, steps);
 	if (pa->shape == OB_SHAPE_PLANE)
@@ -186,7 +186,7 @@ static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64
 	if (pb->shape == OB_SHAPE_PLANE)
 		return plane_distance(u, b, centre_a, (aabbs ? sqrt(3) : 1) * ra);
 	double spheres = ob_norm(ob_sub(centre_a, centre_b)) - ra - rb;
-	if (spheres > ob_max(ra, rb) && !aabbs) // the boxes would not add much, and cost more
+	if (spheres > ob_max(ra, rb) && !aabbs) // boxes would not add much, and cost more
 		return spheres;
 	double box_a[6], box_b[6], distance = 0;
 	ob_tight_aabb(u, pa, ob_state_now(u, a, ma, steps).pose, box_a);
@@ -196,7 +196,7 @@ static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64
 	return aabbs ? distance : ob_max(distance, spheres);
 }
 
-// Path of both together in the step that was solved, if one was (m).
+// Path of both together in the solved step, if there is one (m).
 static double path_in_step(const ob_universe *u, uint32_t a, uint32_t b, double paths, uint64_t steps)
 {
 	const uint64_t step = ob_step_count(u);
@@ -211,7 +211,7 @@ double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t 
 	const uint32_t a = k->a, b = k->b;
 	double distance = pair_distance(u, a, b, steps);
 	double paths = ob_schedule_path(&data->schedule[a], steps) + ob_schedule_path(&data->schedule[b], steps);
-	// Nearer than they have moved in the step that was solved: they may have touched in it.
+	// They may have touched in the solved step if they moved farther in it than their distance.
 	return distance > path_in_step(u, a, b, paths, steps) ? paths + distance : -1;
 }
 
@@ -224,7 +224,7 @@ static void add_pair(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps
 		return;
 	data->pair[pair] = (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = NAN };
 	link_pair(u, pair);
-	enter_check(u, pair, steps); // at once
+	enter_check(u, pair, steps); // check at once
 	if (data->count->checks < data->pairs_max)
 		data->check[data->count->checks++] = pair;
 }
@@ -240,20 +240,20 @@ void ob_pairs_measure(ob_universe *u, uint64_t steps)
 	}
 }
 
-// ---- what queries find
+// ---- queries
 
 static bool is_immobile(const ob_step_data *data, uint32_t id)
 {
 	return !ob_schedule_is_dynamic(&data->schedule[id]);
 }
 
-// Of two objects that were both queried, and have found each other, the lower one decides.
+// True if this object decides about the pair. If both were queried and found each other, the lower id does.
 static bool decides(const ob_universe *u, uint32_t id, uint32_t other)
 {
 	return id < other || !ob_requery_lists(u, other);
 }
 
-// Where id[] has it, which ascends; n: nowhere.
+// Returns the index of "wanted" in id[], which ascends; n: it is not there.
 static uint32_t place_of(const uint32_t *id, uint32_t n, uint32_t wanted)
 {
 	uint32_t first = 0, end = n;
@@ -267,7 +267,7 @@ static uint32_t place_of(const uint32_t *id, uint32_t n, uint32_t wanted)
 	return first < n && id[first] == wanted ? first : n;
 }
 
-// Changes of an object's pairs: so many, of which as many are listed as there is room for.
+// Changes of an object's pairs: n of them, of which the first max are listed.
 typedef struct changes {
 	uint32_t n, max, *list;
 } changes;
@@ -279,8 +279,8 @@ static void add_change(changes *c, uint32_t change)
 	c->n++;
 }
 
-// Pairs that the query has not found again end, and new ones begin. found: n neighbours, ascending; had: [n] scratch.
-// What is static keeps no list of its pairs, and its query is made when it has come: then it has none.
+// Ends pairs that the query has not found again, and begins new ones. found: n neighbours, ascending; had: [n] scratch.
+// Static objects keep no list of their pairs, and are queried when they are created: then they have none.
 static void compare_pairs(const ob_universe *u, uint32_t id, const uint32_t *found, uint32_t n, uint32_t *had,
 			  changes *to)
 {
@@ -327,7 +327,7 @@ void ob_pairs_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
 		free(found);
 }
 
-// ---- what queries have found
+// ---- results of queries
 
 static void change_pairs(ob_universe *u, uint32_t id, uint64_t steps)
 {
@@ -357,8 +357,7 @@ static void prefetch_changes(const ob_step_data *data, const uint32_t *queried, 
 		__builtin_prefetch(&data->neighbour_id[data->neighbours[queried[i + CHANGES_AHEAD]].offset]);
 }
 
-// In the order of ids, whatever the order in which workers have put them on the list and queries have found them: so
-// pairs lie in the same places in every run.
+// Merges in the order of ids, not in that of the list or of the workers: so pairs have the same indices in every run.
 void ob_pairs_merge(ob_universe *u, uint64_t steps)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -380,10 +379,9 @@ void ob_pairs_merge(ob_universe *u, uint64_t steps)
 	ob_neighbours_reset(u);
 }
 
-// ---- what touched
+// ---- state of contacts
 
-// A first solution has overwritten what the pair's key says, so where islands are solved again the record alone is
-// asked.
+// A first solution has overwritten the pair's key. So where islands are solved again, the record alone decides.
 const ob_pair_state *ob_pair_state_before(const ob_universe *u, const ob_pair_key *k)
 {
 	const ob_step_data *data = ob_universe_step_data(u);

@@ -1,4 +1,4 @@
-// Objects come and go, by the host, while the universe stands still.
+// Objects are created, changed and removed by the host, while the universe is paused.
 #include <string.h>
 
 #include "contact/batch.h"
@@ -12,14 +12,14 @@
 #include "table/home.h"
 #include "table/trace.h"
 
-// The object's schedule record has changed.
+// Enters a changed schedule record in the calendar, and schedules checks of the object's pairs.
 static void note_change(ob_universe *u, uint32_t id)
 {
 	ob_calendar_enter_due(u, id);
 	ob_pairs_look(u, id);
 }
 
-// No flight has an impact computed on a plane that is new: all are solved in the next step.
+// Ends all flights, as they have no impact computed on a new plane: all are solved in the next step.
 static void end_flights(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -70,7 +70,7 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 
 // ---- kinematic objects
 
-// m/s, of any point of the object, from now until the motion ends
+// Bounds the speed, m/s, of any point of the object, from now until the motion ends.
 static double prescribed_speed(const ob_passport *p, const ob_motion *m, double now)
 {
 	double speed = ob_norm(ob_velocity_at(m, now));
@@ -81,7 +81,7 @@ static double prescribed_speed(const ob_passport *p, const ob_motion *m, double 
 	return speed + (p->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(m->w) * ob_shape_radius(p->shape, p->size));
 }
 
-// Its fat AABB holds it for so long (s) from now on; infinity: for good.
+// Makes the fat AABB hold the object for so long (s) from now on; infinity: for good.
 static void hold_for(ob_universe *u, uint32_t id, const ob_motion *m, double now, double s)
 {
 	const ob_passport *p = ob_passport_of(u, id);
@@ -97,7 +97,8 @@ static void hold_for(ob_universe *u, uint32_t id, const ob_motion *m, double now
 	ob_fat_aabb_set(u, id, box, ob_fat_aabb_margin(ob_universe_settings(u), (ob_shape)p->shape, p->size));
 }
 
-// Steps after which the fat AABB of what goes on at this speed (m/s) is made anew: it covers some radii.
+// Returns the number of steps after which the fat AABB of an object at this speed (m/s) is made anew: it covers some
+// radii.
 static uint64_t steps_held(const ob_universe *u, const ob_passport *p, double speed)
 {
 	enum { LEAST = 4, MOST = 512 };
@@ -169,7 +170,7 @@ uint64_t ob_sim_prescribe(ob_universe *u, uint32_t id, const ob_path *path, uint
 	return speed > 0 ? step + held - (step - m.step) % held : UINT64_MAX;
 }
 
-// Objects whose query is pending are put in before it is made.
+// Rebuilds the index and lists. Objects with a pending query are put into the index when that is made.
 void ob_sim_restore(ob_universe *u)
 {
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
@@ -209,7 +210,7 @@ bool ob_sim_freeze(ob_universe *u, uint32_t id)
 	ob_sim_remove(u, id);
 	p.flags |= OB_OBJECT_STATIC | OB_OBJECT_FROZEN;
 	p.mass = 0;
-	p.surface_velocity = ob_v3(0, 0, 0); // it lies where the force did
+	p.surface_velocity = ob_v3(0, 0, 0); // it shares the force's memory
 	p.inertia = ob_v3(0, 0, 0);
 	ob_write_passport(u, id, &p);
 	ob_sim_place(u, id, &now);
@@ -248,7 +249,7 @@ void ob_sim_push(ob_universe *u, uint32_t id, ob_vec3 force, bool changes)
 	if (schedule->state == OB_SCHEDULE_ASLEEP || schedule->state == OB_SCHEDULE_EQUILIBRIUM)
 		wake_object(u, id);
 	if (schedule->state == OB_SCHEDULE_AWAKE) {
-		schedule->due = (uint32_t)ob_step_count(u); // a flight that was computed ahead ends
+		schedule->due = (uint32_t)ob_step_count(u); // ends a flight that was computed ahead
 		note_change(u, id);
 	}
 }

@@ -76,7 +76,7 @@ void ob_prefetch_island(ob_sim *s, uint32_t i)
 	const ob_island *is = &data->island[i];
 	for (uint32_t k = 0; k < is->members && k < PREFETCHED_MAX; k++)
 		prefetch_object(s, data->member[is->first_member + k]);
-	// The version that was written in the last step, if the pair was solved then.
+	// Prefetches the version written in the last step, if the pair was solved then.
 	const uint64_t step = ob_step_count(s->u);
 	for (uint32_t k = 0; k < is->pairs && k < PREFETCHED_MAX; k++) {
 		const ob_pair_key *key = &data->pair[data->island_pair[is->first_pair + k]];

@@ -38,8 +38,8 @@ void ob_profile_begin(ob_sim *s, ob_profile_section section)
 	s->counters.gate_cpu_ns += (uint64_t)(1e9 * (s->times.cpu - s->times.cpu_end));
 }
 
-// Of the CPU time since the clock was read, its reading included, each of the tasks has its share. So one in which the
-// worker lost its core for a while counts for no more than they all took.
+// Divides the CPU time since the clock was read, its reading included, among the tasks. So a task in which the worker
+// lost its core for a while counts for no more than all of them took.
 static void share_out(ob_sim *s, double cpu)
 {
 	const double took = 1e9 * (cpu - s->tasks.cpu), share = s->tasks.sum ? took / (double)s->tasks.sum : 0;
@@ -53,8 +53,8 @@ static void share_out(ob_sim *s, double cpu)
 	s->tasks.sum = 0;
 }
 
-// A worker that loses its core does so where it calls the system, as here: that is the time of no section, nor of a
-// task.
+// Reads the CPU clock. A worker loses its core mostly in a system call, such as this one. Such time belongs to
+// no section, nor to a task.
 static double ask_cpu_clock(ob_sim *s)
 {
 	count_section(s);
@@ -67,7 +67,7 @@ static double ask_cpu_clock(ob_sim *s)
 
 void ob_profile_task(ob_sim *s, uint32_t task)
 {
-	enum { LONG_NS = 100000 }; // beside which reading the clock costs little
+	enum { LONG_NS = 100000 }; // reading the clock costs little in comparison
 	const uint64_t now = ob_clock_ns(), ns = now - s->tasks.since;
 	s->tasks.since = now;
 	s->tasks.task[s->tasks.n] = task;

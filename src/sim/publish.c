@@ -6,7 +6,7 @@
 static bool is_sane(ob_vec3 v)
 {
 	const double most = 1e15;
-	return fabs(v.x) < most && fabs(v.y) < most && fabs(v.z) < most; // false of what is no number
+	return fabs(v.x) < most && fabs(v.y) < most && fabs(v.z) < most; // false for NaN
 }
 
 bool ob_state_is_sane(const ob_state *s)
@@ -29,7 +29,7 @@ static void trace_state_change(ob_sim *s, uint32_t id, const ob_motion *next)
 		ob_trace_moves(s->u, s->worker, id, ob_newest_motion(s->u, id)->flags, next->flags);
 }
 
-// Islands come in the order of their work, so their members lie anywhere. halo: of several ranks, else NULL
+// Prefetches an island's members, which lie anywhere, as islands are sorted by work. halo: NULL on a single rank.
 static void prefetch_members(const ob_universe *u, const ob_halo *halo, uint32_t island)
 {
 	enum { MOST = 8 };
@@ -55,7 +55,7 @@ static void publish(ob_sim *s, ob_halo *halo, uint32_t id)
 		ob_halo_note_published(halo, s->u, id);
 }
 
-// Bodies that other ranks have solved, as far as this one has heard.
+// Publishes bodies that other ranks have solved, as far as this rank has received them.
 static void publish_heard(ob_sim *s, ob_halo *halo)
 {
 	uint32_t id;
@@ -77,7 +77,7 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 		for (uint32_t k = 0; k < is->members; k++) {
 			const uint32_t id = data->member[is->first_member + k];
 			data->result_island[id] = UINT32_MAX;
-			if (!halo) { // else who commits a result counts who wakes
+			if (!halo) { // else bodies that wake are counted where a result is committed
 				woken += data->schedule[id].state != OB_SCHEDULE_ASLEEP;
 				woken -= !(ob_newest_motion(s->u, id)->flags & OB_MOTION_ASLEEP);
 			}

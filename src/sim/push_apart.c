@@ -5,15 +5,15 @@
 #include "sim/bodies.h"
 #include "sim/contact_solver.h"
 
-static const double pushed_share = .3; // of the penetration, per partial substep
-static const double most_share = 1.1; // of what two move against each other, where a push has to give energy back
+static const double pushed_share = .3; // share of the penetration, per partial substep
+static const double most_share = 1.1; // largest factor on relative velocities, where a push has to give energy back
 
 static bool is_jacobi(const ob_sim *s)
 {
 	return s->settings->solver == OB_SOLVER_JACOBI;
 }
 
-// ---- a pair that nothing holds
+// ---- a free pair
 
 typedef struct body_in_pair {
 	double mass;
@@ -21,10 +21,10 @@ typedef struct body_in_pair {
 	ob_mat3 r;
 } body_in_pair;
 
-// About the centre of mass
+// Motion of the pair about its centre of mass.
 typedef struct pair_motion {
 	ob_vec3 centre, v, angular; // m, m/s, N m s
-	double inertia[6]; // kg m^2, as if the two were one: xx xy xz yy yz zz
+	double inertia[6]; // kg m^2, as of one rigid body: xx xy xz yy yz zz
 	double energy; // J
 } pair_motion;
 
@@ -35,7 +35,7 @@ static body_in_pair body_of(const ob_island_work *w, uint32_t row)
 			       body->r };
 }
 
-// Where the row's displacement brings it: its rate turns with it.
+// Returns the body moved by the row's displacement: its rate turns with it.
 static body_in_pair displaced(const ob_island_work *w, uint32_t row)
 {
 	body_in_pair x = body_of(w, row);
@@ -46,7 +46,7 @@ static body_in_pair displaced(const ob_island_work *w, uint32_t row)
 	return x;
 }
 
-// of the inertia about the axes, and of a point mass
+// Adds a body's inertia about the axes, and that of its mass at the arm.
 static void add_inertia(double *sum, const body_in_pair *x, ob_vec3 arm)
 {
 	const double k[3] = { x->inertia.x, x->inertia.y, x->inertia.z }, a[3] = { arm.x, arm.y, arm.z };
@@ -75,7 +75,7 @@ static pair_motion motion_of(const body_in_pair *x)
 	return m;
 }
 
-// rad/s, at which the two would turn as one with this angular momentum
+// Returns the rate, rad/s, at which the two would turn as one rigid body with this angular momentum.
 static ob_vec3 turn_of(const pair_motion *m, ob_vec3 angular)
 {
 	const double *s = m->inertia;
@@ -87,8 +87,8 @@ static ob_vec3 turn_of(const pair_motion *m, ob_vec3 angular)
 	return ob_scale(sum, 1 / (s[0] * a + s[1] * b + s[2] * c));
 }
 
-// Velocities for the new poses such that angular momentum is as before, and energy, too, as far as their motion against
-// each other can give or take it. false: there are none.
+// Sets velocities for the new poses that keep angular momentum, and energy as far as the relative motion can give or
+// take it. false: there are none.
 static bool keep_motion(const pair_motion *before, body_in_pair *x)
 {
 	const pair_motion moved = motion_of(x);
@@ -98,7 +98,7 @@ static bool keep_motion(const pair_motion *before, body_in_pair *x)
 		x[i].w = ob_add(x[i].w, given_back);
 	}
 	const double now = motion_of(x).energy;
-	const ob_vec3 as_one = turn_of(&moved, before->angular); // has the least energy of all that keep it
+	const ob_vec3 as_one = turn_of(&moved, before->angular); // least energy at this angular momentum
 	const double least = .5 * ob_dot(as_one, before->angular);
 	if (now <= before->energy && !(now > least))
 		return true;
@@ -113,7 +113,7 @@ static bool keep_motion(const pair_motion *before, body_in_pair *x)
 	return true;
 }
 
-// Takes the displacements of two bodies whose poses were up to date.
+// Applies the displacements of two bodies whose poses were up to date.
 static void move_pair(ob_island_work *w, uint32_t a, uint32_t b)
 {
 	const bool free = w->body[a].inv_mass > 0 && w->body[b].inv_mass > 0;
@@ -143,7 +143,7 @@ static bool is_deep(const ob_island_work *w, const ob_batch *b, double left)
 	return deep;
 }
 
-// One colour after the other, also where the solver is Jacobi's.
+// Pushes colour by colour, also where the solver is Jacobi's.
 static void push_free(ob_sim *s, double left)
 {
 	ob_island_work *w = &s->island;
@@ -165,9 +165,9 @@ static void push_free(ob_sim *s, double left)
 	}
 }
 
-// ---- where something presses bodies together
+// ---- bodies under external forces
 
-// J: potential energy that the displacements of all bodies add against their external accelerations
+// Returns the potential energy (J) that all bodies' displacements add against their external accelerations.
 static double potential_energy(const ob_island_work *w)
 {
 	double sum = 0;
@@ -178,8 +178,8 @@ static double potential_energy(const ob_island_work *w)
 	return sum;
 }
 
-// A body that is pushed turns, too, and with it its axis-aligned box grows or shrinks: the narrow phase must test it
-// again.
+// Adds the pushes to the contacts' paths. A pushed body turns, too, and its axis-aligned box grows or shrinks: the
+// narrow phase must test it again.
 static void add_push_to_paths(ob_island_work *w)
 {
 	for (uint32_t i = 1; i <= w->bodies; i++) {

@@ -13,20 +13,20 @@ enum { NONE = UINT32_MAX };
 
 // An island of this rank's bodies, as far as they are linked here.
 typedef struct island {
-	uint32_t root; // the body that it is named by
-	uint32_t to; // the simulator where it is to be solved
-	uint32_t votes; // how many more of its bodies are in that one's region than in others
-	uint32_t pinned; // the lowest of its bodies that were moved to a simulator; NONE: none was
+	uint32_t root; // the body that names it
+	uint32_t to; // simulator that is to solve it
+	uint32_t votes; // majority of its bodies in that one's region
+	uint32_t pinned; // lowest of its bodies that are pinned to a simulator; NONE: none is
 	uint64_t work;
-	bool meets; // another rank's
+	bool meets; // linked to another rank's
 	bool leaves;
 } island;
 
-// What a rank has to say, before so many loads and ends.
+// Head of a rank's message, before its loads and ends.
 typedef struct summary {
 	uint64_t islands, loads, ends;
-	uint64_t moves; // 1 = something goes to another rank, whatever the others say
-	uint64_t least; // work of the smallest island that may go to another; UINT64_MAX: none may
+	uint64_t moves; // 1 = something goes to another rank in any case
+	uint64_t least; // work of the smallest island that may go to another rank; UINT64_MAX: none may
 	ob_regions_work work;
 } summary;
 
@@ -35,7 +35,7 @@ typedef struct load {
 	uint64_t rank, work;
 } load;
 
-// Of a body at a pair of two ranks': its island.
+// Island of a body at a pair of two ranks' bodies.
 typedef struct end {
 	uint32_t root, to, pinned, reserved; // as island
 	uint64_t work;
@@ -45,30 +45,30 @@ typedef struct end {
 typedef struct homes_parcel {
 	ob_parcel head;
 	uint32_t simulator, count;
-	uint64_t solved; // 1 = they are an island, or of one, which is to be solved
+	uint64_t solved; // 1 = they are an island, or part of one, that is to be solved
 	struct {
 		uint32_t id, effort;
 	} body[];
 } homes_parcel;
 
 typedef struct leaving {
-	uint32_t id, island; // an index
+	uint32_t id, island; // index of the island
 } leaving;
 
 struct ob_rank_islands {
 	uint32_t rank, ranks;
 	uint32_t islands;
 	island *island; // [object]
-	uint32_t *island_of; // [object], of a root
+	uint32_t *island_of; // [object], valid for roots
 	uint8_t *leaves; // [object]: 1 = it is the root of an island that leaves
-	uint32_t *parent; // [object]: of roots at borders (table/forest.h)
-	uint32_t *best; // [object]: of such, the end of its islands that has most
-	uint32_t *order; // [object]: islands that may go elsewhere
+	uint32_t *parent; // [object]: for roots at borders (table/forest.h)
+	uint32_t *best; // [object]: for these, the end with most work among its islands
+	uint32_t *order; // [object]: islands that may go to another rank
 	leaving *leaving; // [object]
-	uint32_t *moved; // [object]: bodies that have another home now
+	uint32_t *moved; // [object]: bodies that have a new home
 	uint32_t moved_count;
 	uint64_t *load; // [ranks]
-	ob_mail out, ends; // ends: those of all pairs, in their order, a's and b's
+	ob_mail out, ends; // ends: those of all pairs, in the order of pairs, a's and b's
 	ob_mail *dealt; // [ranks]
 };
 
@@ -128,10 +128,10 @@ static uint32_t rank_of(const ob_universe *u, uint32_t simulator)
 	return ob_universe_rank_of(u, simulator);
 }
 
-// ---- what this rank has
+// ---- this rank's islands
 
-// In whose region most of its bodies are, by their votes (Boyer and Moore, MJRTY: a fast majority vote algorithm,
-// 1981).
+// Votes for the simulator in whose region most of the island's bodies are (Boyer and Moore, MJRTY: a fast majority vote
+// algorithm, 1981).
 static void add_body(island *is, const ob_universe *u, const ob_regions *regions, uint32_t id)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -205,7 +205,7 @@ static bool add_loads(ob_rank_islands *s, const ob_universe *u, uint64_t *loads)
 	return fits;
 }
 
-// What may go to another rank for no other reason than that this one has too much.
+// True if the island may go to another rank for balance alone.
 static bool may_spill(const ob_rank_islands *s, const ob_universe *u, const island *is)
 {
 	return !is->meets && is->pinned == NONE && rank_of(u, is->to) == s->rank;
@@ -231,16 +231,16 @@ static bool write_summary(ob_rank_islands *s, ob_universe *u, const ob_regions *
 	return fits;
 }
 
-// ---- what all have
+// ---- totals of all ranks
 
-// What all ranks have said, together.
+// Sums over the messages of all ranks.
 typedef struct totals {
 	bool islands, moves;
-	uint64_t most; // work: a rank's share
+	uint64_t most; // work: share of a rank
 	ob_regions_work work;
 } totals;
 
-// The summary of a rank, if what follows it is as long as it says.
+// Reads the summary of a rank, if the message has the length that it states.
 static bool read_summary(const char *all, const size_t *at, uint32_t rank, summary *out)
 {
 	const size_t begin = at[rank] + sizeof(ob_peers_head), room = at[rank + 1] - begin;
@@ -273,7 +273,7 @@ static bool is_sound_end(const ob_universe *u, const end *e)
 	return e->root < ob_universe_ids(u) && e->to < ob_universe_simulators(u);
 }
 
-// The next end that the rank has told.
+// Reads the next end of a rank's message.
 static bool take_end(ob_rank_islands *s, const ob_universe *u, const char **next, uint64_t *left, uint32_t rank)
 {
 	end e;
@@ -285,7 +285,7 @@ static bool take_end(ob_rank_islands *s, const ob_universe *u, const char **next
 	return is_sound_end(u, &e) && ob_mail_append(&s->ends, &e, sizeof e);
 }
 
-// false: some rank has told others than those of its bodies; or no memory.
+// Reads the ends of all ranks. false: a rank has sent others than those of its bodies; or no memory.
 static bool read_ends(ob_rank_islands *s, const ob_universe *u, const char *all, const size_t *at, const uint32_t *pair,
 		      uint32_t pairs)
 {
@@ -317,7 +317,7 @@ static end end_at(const ob_rank_islands *s, uint32_t i)
 	return e;
 }
 
-// Who was moved is where it was moved to, the lowest of several; else who has more work.
+// True if end a decides over b: a pinned one, the lowest body of several; else the one with more work.
 static bool is_better(const end *a, const end *b)
 {
 	if (a->pinned != b->pinned)
@@ -325,7 +325,7 @@ static bool is_better(const end *a, const end *b)
 	return a->work != b->work ? a->work > b->work : a->root < b->root;
 }
 
-// Joins the islands that meet. Returns whether any are of two ranks, as all are but those that others link, too.
+// Joins the islands that are linked. Returns true if there are any links.
 static bool join_islands(ob_rank_islands *s, uint32_t pairs)
 {
 	for (uint32_t i = 0; i < 2 * pairs; i++) {
@@ -359,7 +359,7 @@ static uint32_t least_loaded(const ob_rank_islands *s)
 	return best;
 }
 
-// false: what some rank has said makes no sense, or no memory; then the step has failed.
+// Adds up all ranks' messages. false: one is malformed, or no memory; then the step has failed.
 static bool add_up(ob_rank_islands *s, ob_universe *u, const ob_peers *p, const char *all, const size_t *at,
 		   const uint32_t *pair, uint32_t pairs, totals *t)
 {
@@ -393,9 +393,9 @@ static bool add_up(ob_rank_islands *s, ob_universe *u, const ob_peers *p, const 
 	return true;
 }
 
-// ---- who has too much
+// ---- balance
 
-// Of this thread, by qsort.
+// Islands that qsort compares in this thread.
 static _Thread_local const island *islands_compared;
 
 static int by_work(const void *a, const void *b)
@@ -406,7 +406,7 @@ static int by_work(const void *a, const void *b)
 	return x->root < y->root ? -1 : x->root > y->root;
 }
 
-// Of what others can take this rank gives as much of as of what is too much is its own.
+// Splits the spare capacity of other ranks among overloaded ranks in proportion to their excess.
 static void leave_room_to_others(ob_rank_islands *s, uint64_t most)
 {
 	uint64_t over = 0;
@@ -418,7 +418,7 @@ static void leave_room_to_others(ob_rank_islands *s, uint64_t most)
 			s->load[r] = most - (uint64_t)((double)(most - s->load[r]) * share);
 }
 
-// The largest first.
+// Gives islands to less loaded ranks, the largest first.
 static void spill(ob_rank_islands *s, const ob_universe *u, ob_regions *regions, uint64_t most)
 {
 	const uint32_t each = ob_universe_simulators(u) / s->ranks;
@@ -443,7 +443,7 @@ static void spill(ob_rank_islands *s, const ob_universe *u, ob_regions *regions,
 	}
 }
 
-// ---- what moves
+// ---- sent bodies
 
 static int by_island(const void *a, const void *b)
 {
@@ -453,7 +453,7 @@ static int by_island(const void *a, const void *b)
 	return x->id < y->id ? -1 : x->id > y->id;
 }
 
-// Bodies of islands that another rank solves, island by island; returns how many.
+// Lists bodies of islands that another rank solves, island by island; returns their number.
 static uint32_t list_leaving(ob_rank_islands *s, ob_universe *u)
 {
 	const uint32_t *body, *root, bodies = ob_islands_bodies(u, &body, &root);
@@ -472,7 +472,7 @@ static uint32_t list_leaving(ob_rank_islands *s, ob_universe *u)
 	return n;
 }
 
-// All hear of it.
+// Packs new homes of bodies, for all ranks.
 static bool put_homes(ob_rank_islands *s, const ob_universe *u, const leaving *body, uint32_t n, uint32_t simulator,
 		      bool solved)
 {
@@ -506,7 +506,7 @@ static bool give_bodies(ob_rank_islands *s, ob_universe *u, const ob_rank_parts 
 	return fits;
 }
 
-// What leaves, to each rank; their homes come first.
+// Packs the bodies that leave, for each rank; their homes come first.
 static bool pack(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts, const uint32_t *flier, uint32_t fliers)
 {
 	const uint32_t n = list_leaving(s, u);
@@ -530,7 +530,7 @@ static bool pack(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts,
 	return fits && give_bodies(s, u, parts);
 }
 
-// ---- what comes
+// ---- received bodies
 
 static bool take_homes(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts, const char *parcel, size_t bytes,
 		       uint32_t from)
@@ -581,7 +581,7 @@ static bool take_parcels(ob_rank_islands *s, ob_universe *u, const ob_rank_parts
 	return sound;
 }
 
-// Bodies that have another home are due there, and whoever checks their pairs now does so at once.
+// Makes moved bodies due at their new home, and schedules the pairs that are now checked here at once.
 static void note_moved(const ob_rank_islands *s, ob_universe *u)
 {
 	for (uint32_t i = 0; i < s->moved_count; i++) {

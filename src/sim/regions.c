@@ -9,39 +9,39 @@
 #include "table/forest.h"
 #include "table/home.h"
 
-// Work (island_builder.h), of each body, for which a cut may be made anew: some hundred times what it takes each rank.
+// Work (island_builder.h), per body, that justifies a new cut: some hundred times its cost on each rank.
 enum { WORTH_A_CUT = 256 };
-static const double longer = 1.25; // a cut turns where bodies lie so much farther apart along another axis
-static const double beyond = .25; // of its fat AABB, by which a body must be beyond a cut
+static const double longer = 1.25; // a cut changes its axis if bodies extend this much farther along another one
+static const double beyond = .25; // share of its fat AABB by which a body must be beyond a cut
 
 // Bodies that touch.
 typedef struct group {
 	double at[3]; // m
 	double weight;
-	uint32_t root; // the lowest of their numbers
+	uint32_t root; // lowest of their ids
 } group;
 
-// What separates the simulators before one from those from it on. Each is a node of the tree of cuts.
+// Separates the simulators before one from those from it on; a node of the tree of cuts.
 typedef struct cut {
 	uint32_t axis;
 	double at; // m
 } cut;
 
 struct ob_regions {
-	uint32_t simulators, each; // of all ranks, of each
-	uint32_t used; // of those that have a region: no more than there are objects
+	uint32_t simulators, each; // number on all ranks, on each
+	uint32_t used; // number that have a region: no more than there are objects
 	bool is_cut;
-	uint32_t *home; // [object]: 1 + the simulator whose region it is in; 0 = it is no body
-	uint64_t *spent; // [object]: work of lately
+	uint32_t *home; // [object]: 1 + the simulator whose region it is in; 0 = not a body
+	uint64_t *spent; // [object]: recent work
 	cut *cut; // [simulator], from 1 on
-	double *room; // [simulator]: its share of all work, less that of bodies that were moved to it
+	double *room; // [simulator]: its share of all work, less that of bodies pinned to it
 	ob_regions_work work;
 	ob_mail out;
-	uint32_t *mover; // bodies whose region is another since they were asked for
+	uint32_t *mover; // bodies whose region has changed since they were last listed
 	uint32_t movers;
-	uint8_t *moves; // [object]: 1 = it is one of them
-	uint32_t *parent; // [object], of groups (table/forest.h)
-	uint32_t *place; // [object]: of a root's group
+	uint8_t *moves; // [object]: 1 = it is in mover
+	uint32_t *parent; // [object]: groups (table/forest.h)
+	uint32_t *place; // [object]: index of a root's group
 	group *group;
 };
 
@@ -91,7 +91,7 @@ static bool is_dynamic(const ob_step_data *data, uint32_t id)
 	return data->schedule[id].state >= OB_SCHEDULE_AWAKE;
 }
 
-// Where simulators first .. first + count - 1 are halved: between ranks, if they are several ranks'.
+// Returns the simulator where first .. first + count - 1 are halved: a rank's first, if they are several ranks'.
 static uint32_t middle_of(const ob_regions *r, uint32_t first, uint32_t count)
 {
 	return first + (count > r->each ? count / r->each / 2 * r->each : count / 2);
@@ -113,7 +113,7 @@ static void find_groups(ob_regions *r, const ob_universe *u)
 	}
 }
 
-// To which one of the body's group was moved, the first; UINT32_MAX: none was.
+// Returns the simulator to which the body's group is pinned, the first of several; UINT32_MAX: none is.
 static uint32_t pin_of(const ob_regions *r, const ob_step_data *data, uint32_t id)
 {
 	const uint32_t pin = data->pin[id] - 1;
@@ -127,8 +127,8 @@ static void add_body(group *g, const float *box, double weight)
 	g->weight += weight;
 }
 
-// Lists the groups, and what of all work is left for each simulator; returns how many there are. Those of which a body
-// was moved are listed no more: they are where it is.
+// Lists the groups, and the work left for each simulator; returns the number of groups. Groups with a pinned body are
+// not listed: they are at its simulator.
 static uint32_t list_groups(ob_regions *r, const ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -182,7 +182,7 @@ static const group *median_of(const group *a, const group *b, const group *c, ui
 	return is_before(b, c, axis) ? b : is_before(a, c, axis) ? c : a;
 }
 
-// Those before the pivot come first; returns how many they are, and how much they weigh.
+// Moves the groups before the pivot to the front; returns their number, and their weight.
 static uint32_t part(group *g, uint32_t n, uint32_t axis, double *weight)
 {
 	const group pivot = *median_of(&g[0], &g[n / 2], &g[n - 1], axis);
@@ -199,8 +199,8 @@ static uint32_t part(group *g, uint32_t n, uint32_t axis, double *weight)
 	return before;
 }
 
-// Puts those first that weigh about so much, in their order along the axis; returns how many they are. A selection, as
-// by Hoare, Algorithm 65: Find, 1961.
+// Moves the first groups along the axis, of about this weight, to the front; returns their number. A selection, as by
+// Hoare, Algorithm 65: Find, 1961.
 static uint32_t halve(group *g, uint32_t n, uint32_t axis, double weight)
 {
 	uint32_t first = 0, end = n;
@@ -227,7 +227,7 @@ static uint32_t halve(group *g, uint32_t n, uint32_t axis, double weight)
 	return first < end && weight > g[first].weight / 2 ? first + 1 : first;
 }
 
-// Along which bodies lie farthest apart, on the average: one that has gone far turns no cut.
+// Returns the axis with the largest mean extent of bodies: a single distant body changes no cut.
 static uint32_t longest_axis(const group *g, uint32_t n, uint32_t before)
 {
 	double weight = 0, middle[3] = { 0 }, distance[3] = { 0 };
@@ -247,7 +247,7 @@ static uint32_t longest_axis(const group *g, uint32_t n, uint32_t before)
 	return axis;
 }
 
-// Where the first m end and the others begin.
+// Returns the position between the first m groups and the others.
 static double middle_between(const group *g, uint32_t n, uint32_t m, uint32_t axis)
 {
 	double low = -INFINITY, high = INFINITY;
@@ -290,9 +290,9 @@ static void cut_anew(ob_regions *r, const ob_universe *u)
 	r->is_cut = true;
 }
 
-// ---- who lives where
+// ---- homes of bodies
 
-// In whose region the box is; home: 1 + in whose it was; 0: in none.
+// Returns the simulator whose region has the box; home: 1 + the former one; 0: none.
 static uint32_t find_home(const ob_regions *r, const float *box, uint32_t home)
 {
 	uint32_t first = 0, count = r->simulators;
@@ -334,7 +334,7 @@ bool ob_regions_settle(ob_regions *r, ob_universe *u)
 			r->home[id] = 1 + find_home(r, data->bounds[id], 0);
 		ob_home_set(u, id, r->home[id] - 1);
 		ob_calendar_enter_due(u, id);
-		ob_pairs_look(u, id); // who checks them has changed
+		ob_pairs_look(u, id); // another rank may check them now
 	}
 	return first;
 }
@@ -364,7 +364,7 @@ static bool touches(const ob_step_data *data, uint32_t id)
 	return false;
 }
 
-// Who touches something has something kept of it (holdings.h), and goes when its island is solved.
+// Bodies that touch have contents (holdings.h), and move when their island is solved.
 const uint32_t *ob_regions_find_fliers(ob_regions *r, const ob_universe *u, uint32_t *count)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -398,12 +398,12 @@ ob_regions_work ob_regions_work_of(const ob_regions *r)
 	return r->work;
 }
 
-// What a body has cost.
+// Cost of a body.
 typedef struct cost {
 	uint64_t id, spent;
 } cost;
 
-// Each rank tells what its bodies have cost. false: the step has failed.
+// Exchanges the costs of all ranks' bodies. false: the step has failed.
 static bool share_costs(ob_regions *r, ob_universe *u, ob_peers *p)
 {
 	const uint32_t ids = ob_universe_ids(u);

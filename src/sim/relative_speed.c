@@ -14,7 +14,7 @@ ob_vec3 ob_contact_velocity(const ob_island_work *w, const ob_body_row *rows, co
 	const ob_vec3 rel = ob_v3(va[0] - vb[0], va[1] - vb[1], va[2] - vb[2]);
 	if (!(a->surface | b->surface))
 		return rel;
-	const double *turn = a->surface ? va : vb; // the other's arm from it has the sign that its velocity has
+	const double *turn = a->surface ? va : vb; // the sign of the other body's arm from it is that of its velocity
 	return ob_sub(rel, ob_cross(ob_v3(turn[3], turn[4], turn[5]), ob_sub(a->p, b->p)));
 }
 
@@ -29,7 +29,7 @@ double ob_spin_lever(const ob_body *body, ob_vec3 n, const ob_vec3 *arm, uint32_
 	return most;
 }
 
-// rad/s, about a round body's axis
+// Returns the rate, rad/s, about a round body's axis.
 static double spin_of(const ob_body *body, const double *v)
 {
 	return fabs(ob_dot(ob_column(&body->r, 2), ob_v3(v[3], v[4], v[5])));

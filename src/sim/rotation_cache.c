@@ -5,7 +5,7 @@
 
 enum { SLOTS_MAX = 256 }; // .2 MB
 
-// What a rotation follows from.
+// Input from which a rotation follows.
 typedef struct rotation_key {
 	ob_quat q;
 	ob_vec3 w, inertia;
@@ -35,7 +35,7 @@ static ob_cached_rotation *slot_of(ob_rotation_cache *p, uint32_t id)
 	return &p->slot[id & (p->slots - 1)];
 }
 
-// An empty one holds no unit quaternion.
+// True if the entry is this rotation. An empty one holds no unit quaternion.
 static bool holds(const ob_cached_rotation *cached, const rotation_key *from)
 {
 	return memcmp(from, &cached->from, sizeof *from) == 0;

@@ -12,7 +12,7 @@
 #include "sim/publish.h"
 #include "sim/results.h"
 
-// ---- who runs
+// ---- scripts that run
 
 bool ob_scripts_due(ob_universe *u)
 {
@@ -72,14 +72,14 @@ bool ob_scripts_have_requests(const ob_universe *u)
 	return count && count->requests > 0;
 }
 
-// ---- what they have asked for
+// ---- requests
 
 static bool moves(const ob_step_data *data, uint32_t id)
 {
 	return ob_schedule_is_dynamic(&data->schedule[id]);
 }
 
-// The object goes on from here with other velocities, or under another force: what was computed ahead of it is void.
+// Changes the object's velocities or force: the motion that was computed ahead becomes void.
 static void set_going(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -114,7 +114,7 @@ static void set_going(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist)
 	ob_publish_motion(u, id, &m);
 }
 
-// true: it moves otherwise from now on
+// Carries out a script's changes of its object. true: its motion changes.
 static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
 {
 	ob_universe *u = s->u;
@@ -138,7 +138,7 @@ static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
 	}
 	const ob_vec3 none = { 0 };
 	const bool pushed = body && c->asks & OB_SCRIPT_ASKS_PUSH;
-	if (s->baseline && pushed) // which follows forces and torques by itself
+	if (s->baseline && pushed) // it follows forces and torques by itself
 		ob_ode_baseline_kick(s->baseline, id, c->push, c->twist);
 	else if (!s->baseline && (other || pushed))
 		set_going(u, id, pushed ? c->push : none, pushed ? c->twist : none);
@@ -167,20 +167,20 @@ static void deliver(ob_step_data *data, const ob_script_turn *from, const ob_scr
 	to->flags |= OB_SCRIPT_MAIL;
 }
 
-// One that has a script of its own is told first, and goes a step later.
+// Removes an object. One that has a script of its own receives a message first, and is removed a step later.
 static void remove_object(ob_step_data *data, const ob_script_turn *from, ob_script_post *post)
 {
 	const uint32_t cell = post->object < data->objects_max ? data->script_of[post->object] : 0;
 	ob_script_turn *to = cell ? &data->script_turn[cell - 1] : NULL;
 	if (to && to != from && to->generation == post->generation && !(to->flags & OB_SCRIPT_STOPPED)) {
 		to->flags |= OB_SCRIPT_LEAVING;
-		post->kind = OB_SCRIPT_MESSAGE, post->bytes = 0, post->generation = 0; // nobody's
+		post->kind = OB_SCRIPT_MESSAGE, post->bytes = 0, post->generation = 0; // it has no receiver
 		return;
 	}
 	data->script_counts->requests++;
 }
 
-// Posts lie on borders of 8 bytes.
+// Carries out the posts in a cell's outbox, which are aligned to 8 bytes.
 static void post_all(ob_step_data *data, const ob_script_turn *from, ob_script_cell *c)
 {
 	for (uint32_t at = 0; at + sizeof(ob_script_post) <= c->outbox_bytes;) {

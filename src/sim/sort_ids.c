@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-enum { FEW = 32 }; // of fewer, insertion is faster
+enum { FEW = 32 }; // below this number insertion is faster
 
 static void insert_all(uint32_t *id, uint32_t n)
 {

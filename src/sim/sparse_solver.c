@@ -49,7 +49,7 @@ static uint32_t degree(const ob_sparse_solver *t, uint32_t body)
 	return n;
 }
 
-// Its neighbours become each other's, and lose it.
+// Links the body's neighbours with each other, and removes it.
 static void remove_from_graph(ob_sparse_solver *t, uint32_t body, const uint32_t *neighbour, uint32_t n)
 {
 	const uint64_t *gone = adjacent_to(t, body);
@@ -80,7 +80,7 @@ static uint32_t *list_neighbours(ob_sparse_solver *t, uint32_t body, uint32_t fr
 bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most)
 {
 	uint64_t cost = 0;
-	uint32_t blocks = 0, *left = t->order; // those that are left stand behind those that are gone
+	uint32_t blocks = 0, *left = t->order; // remaining bodies, behind the eliminated ones
 	for (uint32_t i = 0; i < t->bodies; i++)
 		left[i] = i;
 	for (uint32_t k = 0; k < t->bodies; k++) {
@@ -112,7 +112,7 @@ bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most)
 	return true;
 }
 
-// ---- assembling
+// ---- assembly
 
 void ob_sparse_add_inertia(ob_sparse_solver *t, uint32_t body, double m[6][8])
 {
@@ -146,9 +146,9 @@ void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child,
 	}
 }
 
-// ---- solving
+// ---- solve
 
-// Lower triangle into its Cholesky factor. A direction of which rounding left nothing does not move.
+// Replaces the lower triangle by its Cholesky factor. A direction with nothing left but rounding does not move.
 static void cholesky(double (*m)[6], double *inverse)
 {
 	for (int i = 0; i < 6; i++)

@@ -1,4 +1,4 @@
-// The step: its phases, in order, and who does each.
+// The step: its phases, in order, and the workers that take part in each.
 //
 //   host: objects placed or removed
 //     │
@@ -10,29 +10,29 @@
 //     ^                                                                                      v
 //     └──────(begin)─────────── COMPLETE <──────────────────────────────────────────────── COPY
 //                               │      ^
-//                      host <── PAUSE  └── nobody is due, and no pair comes near: the step is complete as it begins
+//                       host <── PAUSE  └── no object is due, and no pair comes near: the step is complete as it begins
 //
-// Phases are done in parallel between two openings of the gate (table/gate.h). The last worker to arrive, the
-// scheduling worker, alone does what stands in brackets and says which phase comes next. Several simulators' share of a
-// phase is claimed by whichever worker is free; with a worker per object each does its own.
+// Phases run in parallel between two openings of the gate (table/gate.h). The last worker to arrive, the scheduling
+// worker, alone does the parts in brackets and chooses the next phase. Tasks of a phase are claimed by any free worker;
+// with a worker per object each does its own.
 //
-// Contained simulators (table/outbox.h) write nothing in place: the arranger, always the last to arrive, writes what
-// they hand over (commit.h), and needs no COPY. There the host resumes the run by RESUME, which the arranger alone
-// takes part in.
+// Contained simulators (table/outbox.h) write nothing in place: the arranger, always the last to arrive, writes the
+// results that they hand over (commit.h), and needs no COPY. There the host resumes the run by RESUME, in which the
+// arranger alone takes part.
 //
 //   phase             task of a worker          reads                             writes
-//   BROADPHASE_START  objects whose fat AABB    index, fat AABBs, pairs           which of their pairs end, and which
+//   BROADPHASE_START  objects whose fat AABB    index, fat AABBs, pairs           pairs of theirs that end, and that
 //   BROADPHASE          has changed                                                 begin
-//   SCRIPTS           an object's script    motions, passports                its cell
+//   SCRIPTS           an object's script        motions, passports                its cell
 //   FORECAST          256 pairs                 schedule records, motions         expected, limit of those pairs, and
 //                                                                                   their entries in the calendar
-//   LINKS             64 bodies that are due,   pairs, schedule records           who is involved; the forest of them
-//                       and whom they lead to                                         (table/forest.h)
-//   LISTS             32 islands                pairs, schedule records,          their lists of pairs; of these,
+//   LINKS             64 due bodies, and        pairs, schedule records           bodies involved; the forest of them
+//                       bodies linked to them                                       (table/forest.h)
+//   LISTS             32 islands                pairs, schedule records,          their lists of pairs; for these,
 //                                                 members of all islands            in_island, limit, calendar entries
-//   ISLANDS           a chunk of islands        motions and contacts as of        staged motions, fat AABBs, schedule
+//   ISLANDS           a chunk of islands        motions and contacts              staged motions, fat AABBs, schedule
 //                                                 before the step                   records, their entries in the
-//                                                                                   calendar, contacts of after the step
+//                                                                                   calendar, contacts after the step
 //   LATE_CONTACTS     256 pairs                 schedule records, motions         likewise, and late
 //                                                 before the step and staged
 //   COPY              32 islands                staged motions                    slots; no object is in an island
@@ -40,9 +40,8 @@
 //                       worker's own object
 //   BASELINE          (ODE's world) all objects all of it                         all of it
 //
-// A phase is skipped where nobody has anything to do. The scheduling worker checks few pairs by itself, and finds the
-// islands of few bodies, of contained simulators, and where each object has a worker; there it publishes, too: see the
-// open_ functions.
+// A phase without work is skipped. The scheduling worker itself checks few pairs, and finds the islands of few bodies,
+// of contained simulators, and where each object has a worker; there it publishes, too: see the open_ functions.
 #include <stdio.h>
 
 #include "sim/broadphase.h"
@@ -69,33 +68,33 @@
 #include "table/home.h"
 
 enum {
-	QUERIES_PER_WORKER = 16, // for fewer the gate would cost more than another worker gains
+	QUERIES_PER_WORKER = 16, // for fewer the gate costs more than another worker gains
 	SCRIPTS_PER_WORKER = 16, // likewise
 	PARALLEL_PAIRS = 4 * OB_LATE_CONTACTS_BATCH, // checked by all workers from here on, for the same reason
 };
 
-// What the serial parts work on.
+// Data of the serial parts.
 typedef struct scheduler {
 	ob_universe *u;
-	ob_sim *sim; // of the scheduling worker; NULL: the host resumes the run
+	ob_sim *sim; // the scheduling worker's; NULL: the host resumes the run
 	ob_step_data *data;
 	const ob_run_settings *settings;
 } scheduler;
 
 typedef struct step_phase {
-	// Opens the gate to those who take part. false: the phase is over already, for nobody had anything to do, or
-	// the scheduling worker has done it. NULL: a serial part alone.
+	// Opens the gate to the participants. false: the phase is over already, as there was no work, or the scheduling
+	// worker has done it. NULL: a serial part alone.
 	bool (*open)(const scheduler *c, ob_phase phase);
 	void (*work)(ob_sim *s); // a participant's share
-	ob_phase (*next)(const scheduler *c); // the serial part after it; which phase comes next
-	ob_profile_section section; // that a participant's time counts for, unless it says otherwise
+	ob_phase (*next)(const scheduler *c); // the serial part after it; returns the next phase
+	ob_profile_section section; // section for a participant's time, unless it names another
 	ob_trace_kind span;
-	uint32_t per_worker; // for so many tasks one worker more takes part; 0: all that there are do
+	uint32_t per_worker; // tasks for each worker that takes part; 0: all workers do
 } step_phase;
 
-// ---- who takes part
+// ---- participants
 
-// Tasks 0 .. tasks-1 are claimed by so many workers, the scheduling worker first: it need not be woken.
+// Opens tasks 0 .. tasks-1 to so many workers, the scheduling worker first: it need not be woken.
 static void open_tasks(const scheduler *c, ob_phase phase, uint32_t tasks, uint32_t workers)
 {
 	const uint32_t all = ob_universe_simulators(c->u),
@@ -145,16 +144,16 @@ static bool open_scripts(const scheduler *c, ob_phase phase)
 	return true;
 }
 
-// To so many simulators that are here, of several ranks: if to none, others must be waited for all the same.
+// Opens the gate to n simulators on this rank. With none, the gate still has to wait for other ranks.
 static void open_gate_here(const scheduler *c, ob_phase phase, uint32_t *who, uint32_t n)
 {
 	const uint32_t all = ob_universe_simulators(c->u), each = all / ob_universe_ranks(c->u);
 	if (!n)
-		who[0] = (ob_universe_rank(c->u) + 1) * each % all; // who is elsewhere
+		who[0] = (ob_universe_rank(c->u) + 1) * each % all; // a simulator elsewhere
 	ob_gate_open(c->u, phase, who, n ? n : 1);
 }
 
-// Each simulator has a chunk, which may be empty (island_builder.h).
+// Opens one chunk to each simulator; it may be empty (island_builder.h).
 static bool open_shares(const scheduler *c, ob_phase phase)
 {
 	const ob_step_data *data = c->data;
@@ -172,14 +171,14 @@ static bool open_shares(const scheduler *c, ob_phase phase)
 	return true;
 }
 
-// So much is solved in this step that all workers arrange it, and others can write what they find.
+// True if so much is solved in this step that all workers arrange it, and they can write each other's data.
 static bool is_arranged_together(const scheduler *c)
 {
 	const bool alone = ob_universe_simulators(c->u) == 1 && !c->settings->timed;
 	return c->data->count->rooted && !alone && !c->settings->one_per_object && !ob_universe_contains(c->u);
 }
 
-// Else the scheduling worker does it at once.
+// Opens the phase to all workers, or has the scheduling worker do it at once.
 static bool open_arranging(const scheduler *c, ob_phase phase)
 {
 	const bool links = phase == OB_PHASE_LINKS;
@@ -212,8 +211,7 @@ static bool open_islands(const scheduler *c, ob_phase phase)
 	return true;
 }
 
-// Of several ranks each checks what it has listed, and all hear of what it has found: so a phase of theirs none leaves
-// out.
+// Opens the check of a rank's own pairs. Every rank runs this phase, even without pairs: it exchanges results.
 static bool open_own_pairs(const scheduler *c, ob_phase phase, uint32_t pairs)
 {
 	const uint32_t all = ob_universe_simulators(c->u), each = all / ob_universe_ranks(c->u),
@@ -228,7 +226,7 @@ static bool open_own_pairs(const scheduler *c, ob_phase phase, uint32_t pairs)
 	return true;
 }
 
-// Few pairs are checked by the scheduling worker at once.
+// Opens the check of pairs; few of them the scheduling worker checks at once.
 static bool open_pairs(const scheduler *c, ob_phase phase)
 {
 	const bool solved = phase == OB_PHASE_LATE_CONTACTS;
@@ -237,7 +235,7 @@ static bool open_pairs(const scheduler *c, ob_phase phase)
 	const uint32_t pairs = ob_checks_count(c->data);
 	if (ob_universe_ranks(c->u) > 1)
 		return open_own_pairs(c, phase, pairs);
-	const bool alone = all == 1 && !c->settings->timed; // where time is taken, what could be shared is told apart
+	const bool alone = all == 1 && !c->settings->timed; // in timed runs the parallel part is measured apart
 	const bool serial = pairs < PARALLEL_PAIRS || alone || c->settings->one_per_object;
 	if (!pairs)
 		return false;
@@ -254,13 +252,15 @@ static bool open_pairs(const scheduler *c, ob_phase phase)
 	uint32_t first = 0;
 	const uint32_t last = all - 1;
 	while (first < last &&
-	       !ob_schedule_is_dynamic(&c->data->schedule[first])) // pairs are checked where somebody is awake
+	       !ob_schedule_is_dynamic(&c->data->schedule[first])) // pairs are checked by a worker with a dynamic
+								   // object
 		first++;
 	ob_gate_open(c->u, phase, &first, 1);
 	return true;
 }
 
-// With a worker per object: the objects that another one's worker has solved. Else few islands are published at once.
+// Opens the copy of results. With a worker per object: to objects solved by another one's worker. Else few islands are
+// published at once.
 static bool open_copy(const scheduler *c, ob_phase phase)
 {
 	const ob_step_data *data = c->data;
@@ -294,7 +294,7 @@ static bool open_pause(const scheduler *c, ob_phase phase)
 	return true;
 }
 
-// ---- a participant's share
+// ---- work of a participant
 
 static void do_nothing(ob_sim *s)
 {
@@ -367,7 +367,7 @@ static void list_pairs(ob_sim *s)
 	}
 }
 
-// Of a chunk, whose beginning they may be.
+// Solves n islands of a chunk, side by side where they fly; begins: they are its first.
 static void solve_abreast(ob_sim *s, uint32_t first, uint32_t n, bool begins)
 {
 	bool flown[OB_ISLANDS_ABREAST];
@@ -385,8 +385,8 @@ static void solve_abreast(ob_sim *s, uint32_t first, uint32_t n, bool begins)
 	}
 }
 
-// The next chunk: one's own if they are shared, else one that is claimed. To the contained they are dealt out so that
-// chunk w is worker w's.
+// Returns the next chunk: the worker's own if chunks are shared out, else one that it claims. Contained simulators
+// claim so that chunk w is worker w's.
 static bool next_chunk(const ob_sim *s, uint32_t *chunks, uint32_t *chunk)
 {
 	if (!s->data->count->shared || ob_universe_contains(s->u))
@@ -402,7 +402,7 @@ static void note_home(const ob_sim *s, uint32_t island)
 		ob_home_set(s->u, s->data->member[is->first_member + k], s->worker);
 }
 
-// What of the islands from the first on is read from anywhere.
+// Prefetches the data of n islands from the first on, which lie anywhere.
 static void prefetch_islands(ob_sim *s, uint32_t first, uint32_t n)
 {
 	for (uint32_t k = 0; k < n; k++)
@@ -412,8 +412,10 @@ static void prefetch_islands(ob_sim *s, uint32_t first, uint32_t n)
 static void solve_islands(ob_sim *s)
 {
 	const ob_step_data *data = s->data;
-	const bool notes = !data->count->shared && !ob_universe_contains(s->u); // else who deals them does
-	const uint32_t most = s->settings->freezes ? 1 : OB_ISLANDS_ABREAST; // what fails there has a budget of its own
+	const bool notes = !data->count->shared && !ob_universe_contains(s->u); // else they are noted when islands are
+										// dealt
+	const uint32_t most = s->settings->freezes ? 1 : OB_ISLANDS_ABREAST; // an object may fail there, with a budget
+									     // of its own
 	uint32_t chunk, chunks = 0, objects = 0;
 	if (s->settings->one_per_object) {
 		solve_abreast(s, data->result_island[s->worker], 1, true);
@@ -425,7 +427,7 @@ static void solve_islands(ob_sim *s)
 		for (uint32_t i = first, n; i < end; i += n) {
 			n = end - i < most ? end - i : most;
 			prefetch_islands(s, i, n);
-			// Beyond the chunk another worker writes what would be read here.
+			// Another worker writes the data beyond the chunk.
 			for (uint32_t k = i + n; k < i + 2 * n && k < end; k++)
 				ob_prefetch_members(s->u, k);
 			solve_abreast(s, i, n, i == first);
@@ -463,17 +465,17 @@ static void step_baseline(ob_sim *s)
 
 // ---- the serial parts
 
-// The host may ask for a pause at a step that has just gone by: then the next one will do.
+// True if the run pauses here. The host may request a pause at a step that has just passed: then it is the next one.
 static bool must_pause(const scheduler *c)
 {
 	const bool due = ob_step_count(c->u) >= ob_gate_pause_step(c->u);
 	if (ob_universe_ranks(c->u) < 2)
 		return due;
-	// Where motions are not here the host has asked too late for them: they come when others hear of it.
+	// Other ranks' motions may be missing here if the request came late: they come when the others receive it.
 	return due && (!ob_halo_is_partial(ob_commit_halo(c->sim->committer)) || ob_gate_stopped(c->u));
 }
 
-// An object must be solved in this step, or a pair be checked before it, by whichever rank.
+// True if some rank has an object to solve in this step, or a pair to check before it.
 static bool is_anybody_due(const scheduler *c)
 {
 	const uint64_t step = ob_step_count(c->u);
@@ -483,7 +485,7 @@ static bool is_anybody_due(const scheduler *c)
 	return ob_calendar_is_due(&solve, step) || ob_calendar_is_due(&look, step);
 }
 
-// Of several ranks the first is asked, and has told the others.
+// Makes the requested move of an object; on several ranks rank 0 receives requests and sends them to the others.
 static void make_move(const scheduler *c)
 {
 	if (ob_universe_ranks(c->u) == 1) {
@@ -494,7 +496,7 @@ static void make_move(const scheduler *c)
 	}
 }
 
-// Contacts of other ranks' islands of the step before: as island_builder.c has it of this one's.
+// Ends contacts of other ranks' islands of the step before, as island_builder.c does for this one's.
 static void end_parted(const scheduler *c)
 {
 	uint32_t pair;
@@ -523,7 +525,7 @@ static ob_phase build_islands(const scheduler *c)
 
 static ob_phase after_links(const scheduler *c)
 {
-	bool islands = true; // of whichever rank
+	bool islands = true; // on any rank
 	if (ob_universe_ranks(c->u) > 1 && !ob_commit_share_islands(c->sim->committer, c->u, &c->sim->peers, &islands))
 		return OB_PHASE_PAUSE;
 	ob_islands_list_members(c->u);
@@ -550,7 +552,7 @@ static ob_phase begin_step(const scheduler *c)
 	return count->checked != step && is_anybody_due(c) ? OB_PHASE_FORECAST : build_islands(c);
 }
 
-// How many objects are awake, and how many kinematic, after somebody has changed any.
+// Counts awake and kinematic objects, after any have been changed.
 static void count_awake(const scheduler *c)
 {
 	const uint32_t ids = ob_universe_ids(c->u);
@@ -565,7 +567,7 @@ static void count_awake(const scheduler *c)
 	c->data->count->kinematic = kinematic;
 }
 
-// Of several ranks.
+// Gives new bodies regions and owners, on several ranks.
 static void settle(const scheduler *c)
 {
 	if (ob_regions_settle(ob_commit_regions(c->sim->committer), c->u))
@@ -583,8 +585,8 @@ static ob_phase after_resume(const scheduler *c)
 	return OB_PHASE_BROADPHASE_START;
 }
 
-// next: the phase after it. Who checks new pairs in that finds out how far apart they are; contained simulators would
-// have to hand it over. false: the step has failed.
+// Merges the changes of pairs. next: the phase after it; if it checks new pairs, it measures their distances, too, but
+// contained simulators would have to hand them over. false: the step has failed.
 static bool merge_pairs(const scheduler *c, uint64_t steps, ob_phase next)
 {
 	const bool checked = next == OB_PHASE_FORECAST || next == OB_PHASE_LATE_CONTACTS;
@@ -608,14 +610,14 @@ static ob_phase after_broadphase_start(const scheduler *c)
 	return merge_pairs(c, ob_step_count(c->u), next) ? next : OB_PHASE_PAUSE;
 }
 
-// What moves otherwise now may touch others. Objects that are created or removed the host places at once.
+// Queries the neighbours of objects whose motion has changed. The host creates and removes objects at once.
 static ob_phase after_scripts(const scheduler *c)
 {
 	uint32_t queries;
 	if (ob_scripts_carry_out(c->sim))
 		count_awake(c);
 	if (ob_universe_ranks(c->u) > 1)
-		settle(c); // motions that scripts have changed
+		settle(c); // for motions that scripts have changed
 	if (ob_scripts_have_requests(c->u))
 		return OB_PHASE_PAUSE;
 	if (c->settings->monolith)
@@ -646,7 +648,7 @@ static ob_phase after_late_contacts(const scheduler *c)
 	const bool late = c->data->count->late;
 	ob_late_contacts_end(c->u);
 	c->sim->counters.island_merges += late;
-	*ob_worker_counters(c->u, c->sim->worker) = c->sim->counters; // before anybody may look
+	*ob_worker_counters(c->u, c->sim->worker) = c->sim->counters; // before any reader may look
 	if (late) {
 		ob_islands_merge(c->u);
 		return after_links(c);
@@ -665,7 +667,7 @@ static ob_phase after_baseline(const scheduler *c)
 	return OB_PHASE_COMPLETE;
 }
 
-// Somebody looks at the universe: all ranks have all of it, as far as he wants it. false: the step has failed.
+// Gathers the universe on all ranks, as far as a reader needs it. false: the step has failed.
 static bool gather(const scheduler *c)
 {
 	ob_halo *halo = ob_commit_halo(c->sim->committer);
@@ -708,13 +710,13 @@ static const step_phase phases[] = {
 };
 // clang-format on
 
-// Of a step that has failed nothing is published any more: the universe stays at the step before.
+// Returns the phase that follows. A failed step publishes nothing more: the universe stays at the step before.
 static ob_phase next_phase(const scheduler *c, ob_phase finished)
 {
 	return ob_step_failed(c->u, NULL) == OB_STEP_OK ? phases[finished].next(c) : OB_PHASE_PAUSE;
 }
 
-// From this phase to the first for which the gate opens, or to a pause. Returns which.
+// Runs from this phase to the first for which the gate opens, or to a pause. Returns which.
 static ob_phase open_from(const scheduler *c, ob_phase phase)
 {
 	while (!phases[phase].open || !phases[phase].open(c, phase))
@@ -722,7 +724,7 @@ static ob_phase open_from(const scheduler *c, ob_phase phase)
 	return phase;
 }
 
-// The last to arrive, alone: what comes next. Returns the phase that the gate is open with, or PAUSE.
+// Chooses the next phase; the last worker to arrive alone calls it. Returns the phase of the open gate, or PAUSE.
 static ob_phase schedule(ob_sim *s, ob_phase finished)
 {
 	const scheduler c = { s->u, s, s->data, s->settings };
@@ -736,8 +738,7 @@ static ob_phase schedule(ob_sim *s, ob_phase finished)
 	return next;
 }
 
-// What the simulators of all ranks have handed over. The arranger alone resumes a run, each rank's for itself. false:
-// STOP.
+// Commits the results of all ranks' simulators. Each rank's arranger resumes the run by itself. false: STOP.
 static bool commit(ob_sim *s, ob_phase phase)
 {
 	const bool alone = s->peers.ranks < 2 || phase == OB_PHASE_RESUME;
@@ -751,8 +752,8 @@ static bool commit(ob_sim *s, ob_phase phase)
 	return true;
 }
 
-// The arranger: commits what simulators hand over at the end of each phase, and schedules the next, until the host has
-// the turn again. false: STOP.
+// Runs the arranger: commits results at the end of each phase, and schedules the next, until the host takes over.
+// false: STOP.
 static bool arrange(ob_sim *s, ob_phase phase)
 {
 	while (phase != OB_PHASE_PAUSE) {
@@ -795,7 +796,7 @@ void ob_sim_resume(ob_universe *u)
 {
 	const scheduler c = { u, NULL, ob_universe_step_data(u), ob_universe_settings(u) };
 	const uint32_t arranger = ob_universe_simulators(u);
-	if (!ob_invariants_check(u, OB_INVARIANTS_AT_RESUME)) // it stays paused, and ob_sim_failure says why
+	if (!ob_invariants_check(u, OB_INVARIANTS_AT_RESUME)) // it stays paused, and ob_sim_failure gives the reason
 		return;
 	ob_step_begin(u);
 	if (ob_universe_contains(u))
@@ -804,11 +805,11 @@ void ob_sim_resume(ob_universe *u)
 		open_from(&c, after_resume(&c));
 }
 
-// ---- why the run cannot go on
+// ---- reasons why the run cannot go on
 
 enum { NAMED = 120 }; // bytes of "object 4294967295 (" and a name
 
-// "object 3 (crate)", in one of two texts of the thread in turn
+// Returns "object 3 (crate)", in one of two texts of the thread in turn.
 static const char *name_of(const ob_universe *u, uint32_t id)
 {
 	static _Thread_local char texts[2][NAMED];
@@ -819,7 +820,7 @@ static const char *name_of(const ob_universe *u, uint32_t id)
 	return text;
 }
 
-// Names the object that is near most others: it is the one that is too large, or too fast.
+// Names the object that is near most others: the one that is too large, or too fast.
 static void tell_of_neighbours(const ob_universe *u, const char *what, uint32_t most, uint32_t blamed, char *text,
 			       size_t size)
 {
@@ -837,7 +838,7 @@ static void tell_of_neighbours(const ob_universe *u, const char *what, uint32_t 
 		 most, what, name_of(u, id), others);
 }
 
-// Names some of the island that took so much work.
+// Names some objects of the island that took so much work.
 static void tell_of_work(const ob_universe *u, uint32_t object, unsigned long long step, char *text, size_t size)
 {
 	enum { SHOWN = 4 };
@@ -863,7 +864,7 @@ static void tell_of_work(const ob_universe *u, uint32_t object, unsigned long lo
 		 "--step");
 }
 
-// Names the culprit, if simulators are contained: then it is known.
+// Names the culprit, which is known if simulators are contained.
 static const char *damage(const ob_universe *u)
 {
 	static _Thread_local char text[OB_STEP_BLAME_MAX + 32];

@@ -23,7 +23,7 @@ bool ob_surface_moves(const ob_passport *p)
 	return p->flags & OB_OBJECT_KINEMATIC || ob_norm2(p->surface_velocity) > 0;
 }
 
-// As of a body that moves itself: a sphere's spin moves points, but no surface.
+// Sets the speed bound as for a dynamic body: a sphere's spin moves points, but no surface.
 static void set_speed_bound(ob_body *body, const ob_state *now)
 {
 	const double points = body->radius * ob_norm(now->w);
@@ -55,7 +55,7 @@ void ob_surface_add(ob_sim *s, uint32_t row, uint32_t pair)
 	set_speed_bound(body, &state);
 }
 
-// Pairs come in their order, and so do their surfaces.
+// Finds the pair's row; surfaces are sorted by pair.
 uint32_t ob_surface_row(const ob_island_work *w, uint32_t pair)
 {
 	const ob_surfaces *x = &w->surfaces;
@@ -97,7 +97,7 @@ static bool touches(const ob_island_work *w, const ob_surface *x)
 	return contact_of(w, x)->lane != OB_NO_LANE;
 }
 
-// N s, of the contact's points
+// Returns the load, N s, of the contact's points.
 static double load_of(const ob_island_work *w, const ob_surface *x)
 {
 	const ob_contact *c = contact_of(w, x);
@@ -107,8 +107,8 @@ static double load_of(const ob_island_work *w, const ob_surface *x)
 	return sum;
 }
 
-// m/s^2, as large as gravity seems to who is carried: the surface's turning counts as far as it presses the two
-// together, for what it does along the contact, and away from it, friction alone can follow.
+// Returns the gravity, m/s^2, that a carried body feels. The surface's rotation counts as far as it presses the two
+// together: its acceleration along the contact, and away from it, acts by friction alone.
 static double pressing(const ob_island_work *w, const ob_surface *x)
 {
 	const ob_contact *c = contact_of(w, x);
@@ -136,10 +136,10 @@ void ob_surfaces_begin(ob_sim *s)
 			w->max_acceleration = ob_max(w->max_acceleration, pressing(w, &x->surface[i]));
 }
 
-static const double unnoticed_share = 1e-9; // of gravity: what speeds up less along the contact goes evenly
-static const double sliding_share = .999; // of its bound: a smaller friction impulse holds
+static const double unnoticed_share = 1e-9; // share of gravity: a smaller acceleration along the contact counts as none
+static const double sliding_share = .999; // share of its bound: a smaller friction impulse holds
 
-// s: until the slip at the surface's contact is 0, where friction then turns round
+// Returns the time, s, until the slip at the surface's contact is 0, where friction then reverses.
 static double reversal(const ob_island_work *w, const ob_surface *x)
 {
 	const ob_contact *c = contact_of(w, x);
@@ -198,7 +198,7 @@ static double step_time(const ob_sim *s)
 	return (double)ob_step_count(s->u) * s->settings->step_length;
 }
 
-// In the island's frame; since: s, from the step's start
+// Returns the surface's state in the island's frame; since: s, from the step's start.
 static ob_state state_at(const ob_sim *s, const ob_surface *x, const ob_body *body, double since)
 {
 	if (!goes(&x->motion))
@@ -209,7 +209,7 @@ static ob_state state_at(const ob_sim *s, const ob_surface *x, const ob_body *bo
 	return at;
 }
 
-// Where a point of the body in one pose is in another.
+// Moves a point of the body in one pose to its place in another.
 static ob_vec3 carried_to(const ob_pose *from, const ob_pose *to, ob_vec3 at)
 {
 	const ob_mat3 r = ob_quat_matrix(from->q), q = ob_quat_matrix(to->q);
@@ -221,7 +221,7 @@ static ob_vec3 velocity_of(const ob_state *x, ob_vec3 at)
 	return ob_add(x->v, ob_cross(x->w, ob_sub(at, x->pose.p)));
 }
 
-// World, in the plane of the contact
+// Returns the running surface's velocity, world, in the plane of the contact.
 static ob_vec3 running_velocity(const ob_island_work *w, const ob_surface *x)
 {
 	const ob_contact *c = contact_of(w, x);
@@ -315,7 +315,7 @@ void ob_surface_halve(ob_sim *s, uint32_t row)
 	body->start_w = x->begin.w;
 	body->halved = true;
 	const ob_vec3 way =
-		ob_scale(x->begin.v, .5 * w->h); // as the bodies that are halved go: at the start's velocity
+		ob_scale(x->begin.v, .5 * w->h); // as halved bodies move: at the velocity at the start
 	set_row(body->first_half, way, ob_v3(0, 0, 0));
 	body->p = ob_add(body->p, way);
 }

@@ -2,7 +2,7 @@
 
 #include "sim/results.h"
 
-// Whether it is a body whose script has an on_contact.
+// True for a body whose script has an on_contact.
 static bool feels(const ob_step_data *data, uint32_t id)
 {
 	const uint32_t cell = data->script_of[id];
@@ -34,7 +34,7 @@ void ob_touches_note(ob_universe *u, uint32_t a, uint32_t b, double impulse, ob_
 		ob_commit_touch(u, b, a, impulse, point);
 }
 
-// From the frame in which the island is solved; t: s into the partial substep.
+// Converts from the frame in which the island is solved; t: s into the partial substep.
 static ob_vec3 in_world(const ob_island_work *w, ob_vec3 point, double t)
 {
 	return ob_madd(point, .5 * (w->time + t) * (w->time + t), w->frame);
@@ -59,7 +59,7 @@ void ob_touches_note_solved(ob_sim *s)
 	}
 }
 
-// Where a body is hit in several places at once, each is told the change of its momentum in its own direction.
+// Notes an impact. A body hit in several places at once gets for each the change of its momentum in that direction.
 void ob_touches_note_impact(ob_sim *s, const ob_impact_instant *i)
 {
 	const ob_island_work *w = &s->island;

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-// Lower triangle of a symmetric matrix, row i of width "stride", into its Cholesky factor. A direction of which
-// rounding left nothing does not move.
+// Factors the lower triangle of a symmetric matrix, row i of width "stride" (Cholesky). A direction with nothing left
+// but rounding does not move.
 static void cholesky(int n, int stride, const double *m, int root_stride, double *root, double *inverse)
 {
 	for (int i = 0; i < n; i++)

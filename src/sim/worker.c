@@ -21,7 +21,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->island.unit = ob_run_settings_units(run);
 		s->island.tolerance = OB_DEFAULT_TOLERANCE * s->island.unit.length;
 		s->island.run_coarseness = s->island.coarseness = ob_run_settings_coarseness(run);
-		s->counters = *ob_worker_counters(u, worker); // another may have run them before
+		s->counters = *ob_worker_counters(u, worker); // another worker may have run its objects before
 		s->times.timed = s->times.wanted = run->timed;
 		s->span.traced = ob_universe_traced(u);
 		s->island.row_of = calloc(capacity, sizeof *s->island.row_of);
@@ -44,7 +44,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 			return NULL;
 		}
 	}
-	if (s->times.timed) { // it waits at the gate from now on; another's waiting ended with it
+	if (s->times.timed) { // it waits at the gate from now on; the previous worker's wait ended with it
 		s->counters.since_ns = ob_clock_ns();
 		s->times.cpu_end = ob_clock_thread_cpu();
 		*ob_worker_counters(u, worker) = s->counters;
