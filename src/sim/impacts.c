@@ -19,20 +19,17 @@
 static const double max_smooth_acceleration = 3; // times the largest external one: more is the echo of an impact
 static const double least_approach = 1e-6; // m/s
 static const double aftershock_threshold = 1e-10; // m/s: slower approaches of bodies that were just hit are rounding
-						  // errors
 static const uint32_t max_aftershocks = 4; // maximum for a contact in a partial substep
 static const double reach = 1e-3; // m: points this near at the instant are part of the contact's geometry
 static const double min_curvature = 1e-8; // m
 static const uint32_t max_rounds = 1000; // pairs that still approach then are left to the contact solver
 static const uint32_t max_rebounds = 100; // maximum for a contact in a partial substep: later ones are plastic
 
-// Thresholds of plastic hits
+// Thresholds of plastic hits; the contact solver takes approaches that are no hits
 static const double touching = 1e-5; // m: points this near may be hit together with a hit beside them
-static const double settling = 4; // substeps: an approach that the drift builds up within these many belongs to
-				  // a lasting contact.
-static const double slow_share = .1; // So does one slower than this share of gravity's change of velocity in a substep.
-static const double unnoticed = .2; // share of the tolerance: in a coarse run so does one with a smaller error of
-				    // geometry
+static const double settling = 4; // substeps: an approach that drift builds up within these is no hit
+static const double slow_share = .1; // share of gravity's change of velocity in a substep: a slower approach is no hit
+static const double unnoticed = .2; // share of the tolerance: in a coarse run a smaller error of geometry is no hit
 
 enum {
 	MAX_NEWTON_STEPS = 20,
@@ -158,8 +155,8 @@ static unsigned may_hit(const ob_island_work *w, const ob_contact *contact)
 	return mask;
 }
 
-// Returns the speed, m/s, below which approaches are left to the contact solver. Lower where both bodies have just been
-// hit: so an impact's motion ends the same for any order of its parts.
+// Returns the speed, m/s, below which approaches are left to the contact solver. It is lower if both bodies have just
+// been hit: so an impact's motion ends the same for any order of its parts.
 static double threshold_of(const ob_island_work *w, const ob_contact *contact)
 {
 	const double a = w->body[contact->a].hit, b = w->body[contact->b].hit;

@@ -11,7 +11,7 @@
 #include "sim/relative_speed.h"
 #include "sim/surfaces.h"
 
-static const double least_turning = 1e-6; // m/s^2: less change of a row by turning is ignored;
+static const double least_turning = 1e-6; // m/s^2: less change of a row by turning is ignored
 static const double least_face_turning = 5e-5; // the same with three held points, which leave no freedom to tilt
 static const double longest_way = .2; // share of the smaller thickness: path in a partial substep of bodies that are
 				      // halved

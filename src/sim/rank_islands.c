@@ -15,7 +15,7 @@ enum { NONE = UINT32_MAX };
 typedef struct island {
 	uint32_t root; // the body that names it
 	uint32_t to; // simulator that is to solve it
-	uint32_t votes; // majority of its bodies in that one's region
+	uint32_t votes; // lead of its bodies in that one's region over the others
 	uint32_t pinned; // lowest of its bodies that are pinned to a simulator; NONE: none is
 	uint64_t work;
 	bool meets; // linked to another rank's
