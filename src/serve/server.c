@@ -7,6 +7,7 @@
 #include <sys/random.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -26,6 +27,7 @@ static const double detail_interval = .25; // s, between two statistics, and det
 static const double commands_rate = 200, creations_rate = 40; // 1/s, per client
 static const char film_path[] = "/recording", meshes_path[] = "/meshes/";
 static const double door_interval = .25; // s, between two checks of deadlines
+static const struct timespec idle_wait = { .tv_nsec = 1000000 };
 enum {
 	SEND_BUFFER = 1 << 18, // bytes: the kernel's buffer for a client; in a larger one, messages would grow old
 	PLACES_MAX = 512, // connections other than viewers
@@ -60,6 +62,7 @@ struct ob_server {
 	uint32_t count;
 	double details_at; // s
 	uint64_t frozen_told; // ns: time of the latest failure that viewers were sent
+	bool called; // the library has called back in this turn of the loop
 };
 
 // The library's data for a connection: half of it for pages, half for a viewer
@@ -111,6 +114,7 @@ static void look(lws_sorted_usec_list_t *tick)
 {
 	ob_server *s = lws_container_of(tick, ob_server, tick);
 	double begin = ob_clock_wall();
+	s->called = true;
 	ob_pace_state pace = ob_pace_get(s->pace);
 	bool details = begin >= s->details_at;
 	bool contacts = false;
@@ -295,6 +299,7 @@ static int confirm_upgrade(struct lws *wsi)
 static void look_at_door(lws_sorted_usec_list_t *tick)
 {
 	ob_server *s = lws_container_of(tick, ob_server, door_tick);
+	s->called = true;
 	ob_door_look(&s->door, ob_clock_wall());
 	lws_sul_schedule(s->context, 0, &s->door_tick, look_at_door, (lws_usec_t)(1e6 * door_interval));
 }
@@ -361,6 +366,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 {
 	ob_server *s = lws_context_user(lws_get_context(wsi));
 	session *now = user;
+	s->called = true;
 	switch (reason) {
 	case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
 		return !ob_door_enter(&s->door, wsi, ob_clock_wall());
@@ -407,8 +413,13 @@ static void *serve(void *argument)
 {
 	ob_server *s = argument;
 	pthread_setname_np(pthread_self(), "server");
-	while (!is_ending(s) && lws_service(s->context, 0) >= 0)
-		;
+	while (!is_ending(s) && lws_service(s->context, 0) >= 0) {
+		// The library polls without waiting while a connection has sent more than may be read before its answer
+		// ends, and in the last millisecond before a timer. Such a turn does nothing.
+		if (!s->called)
+			nanosleep(&idle_wait, NULL);
+		s->called = false;
+	}
 	return NULL;
 }
 

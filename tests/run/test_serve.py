@@ -1,5 +1,6 @@
 """obsim serve: pages over HTTP, the universe over WebSockets, and attacks."""
 
+import glob
 import os
 import random
 import signal
@@ -329,6 +330,35 @@ class Serve(Case):
 			self.assertGreaterEqual(len(got), size)
 			got = got[size:]
 		self.assertEqual(statuses, [200, 200, 404, 200, 200])
+		self.end()
+
+	def sleeps(self):
+		"""Returns how often the server's thread has gone to sleep."""
+		for task in glob.glob(f"/proc/{self.run_.pid}/task/*"):
+			with open(f"{task}/status") as f:
+				lines = dict(line.split(":", 1) for line in f)
+			if lines["Name"].strip() == "server":
+				return int(lines["voluntary_ctxt_switches"])
+		raise AssertionError("there is no thread of this name")
+
+	def test_waiting(self):
+		"""The server's thread sleeps while an answer waits for a client that has sent more, or sends no more."""
+		self.serve()
+		v = self.viewer()
+		requests = f"GET /drawing.js HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n\r\n".encode() * 500
+		for half in False, True:
+			with socket.socket() as s:
+				s.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+				s.connect(("127.0.0.1", self.port))
+				s.sendall(requests)
+				if half:
+					s.shutdown(socket.SHUT_WR)
+				for _ in range(60): # until the socket's buffer is full
+					v.receive()
+				before = self.sleeps()
+				for _ in range(60):
+					v.receive()
+				self.assertGreater(self.sleeps() - before, 15)
 		self.end()
 
 	def test_nonsense(self):
