@@ -148,6 +148,7 @@ static void carry_out(ob_host *h, packet *p, ssize_t n, ob_error *e)
 		ob_fail(e, "the request is not of this version of obsim");
 		return;
 	}
+	r->origin = 0;
 	if (r->kind == OB_REQUEST_ADD) {
 		r->def.passport.name[OB_NAME_MAX - 1] = 0;
 		ob_utf8_make_plain(r->def.passport.name);

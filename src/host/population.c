@@ -32,8 +32,9 @@ typedef struct slot {
 	bool driven : 1; // by its path or time-dependent force, those of the scene's object of this id
 	bool kinematic : 1; // counted as kinematic, whatever its passport, which others can write, says now
 	uint32_t born; // step
+	uint32_t origin; // of the request that has added it; 0: none
 } slot;
-static_assert(sizeof(slot) == 12, "all objects have one, and what is kept of it");
+static_assert(sizeof(slot) == 16, "all objects have one, and what is kept of it");
 
 struct ob_population {
 	ob_universe *u;
@@ -210,6 +211,7 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	ob_sim_place(p->u, id, &def->state);
 	p->slots[id].use = SLOT_PRESENT;
 	p->slots[id].created = false;
+	p->slots[id].origin = 0;
 	p->slots[id].kinematic = pass.flags & OB_OBJECT_KINEMATIC;
 	p->kinematic += p->slots[id].kinematic;
 	p->pushed += def->force != NULL;
@@ -396,10 +398,11 @@ static void add_asked_for(ob_population *p, const ob_request *r)
 	ob_error e;
 	ob_object_def def = r->def;
 	ob_passport *pass = &def.passport;
+	uint32_t id;
 	if (pass->shape == OB_SHAPE_HULL && r->corners.count && !ob_hulls_give(&p->hulls, &r->corners, pass, &e))
 		ob_log_warn("object \"%s\" was not added: %s", pass->name, e.text);
-	else
-		add_on_request(p, &def, NULL);
+	else if ((id = add_on_request(p, &def, NULL)) != UINT32_MAX)
+		p->slots[id].origin = r->origin;
 }
 
 static void publish_roster(ob_population *p)
@@ -414,6 +417,7 @@ static void publish_roster(ob_population *p)
 		ob_roster_entry *entry = &entries[n++];
 		entry->id = id;
 		entry->generation = pass->generation;
+		entry->origin = p->slots[id].origin;
 		const ob_script_turn *turn = ob_script_turn_of(p->u, id);
 		entry->script = turn ? (uint8_t)turn->script : 0;
 		entry->own_worker = one_per_object;

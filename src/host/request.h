@@ -15,6 +15,7 @@ typedef enum ob_request_kind {
 typedef struct ob_request {
 	uint32_t kind; // ob_request_kind
 	uint32_t id, generation; // of the object; unused for an object to add
+	uint32_t origin; // of an object to add: number of the viewer's connection; 0: none
 	ob_object_def def; // to add
 	ob_hull_corners corners; // of a hull
 	float colour[4]; // linear

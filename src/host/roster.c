@@ -9,7 +9,7 @@
 
 // Entry as it is stored: names take only their own length.
 typedef struct kept {
-	uint32_t id, generation;
+	uint32_t id, generation, origin;
 	uint32_t name; // offset in the snapshot's names
 	uint8_t script;
 	bool own_worker;
@@ -89,7 +89,7 @@ static snapshot *new_snapshot(uint64_t number, const ob_roster_entry *entries, s
 	for (size_t i = 0; i < n; i++) {
 		const ob_roster_entry *from = &entries[i];
 		const size_t length = name_length(from);
-		s->entry[i] = (kept){ from->id, from->generation, at, from->script, from->own_worker };
+		s->entry[i] = (kept){ from->id, from->generation, from->origin, at, from->script, from->own_worker };
 		memcpy(s->names + at, from->name, length);
 		s->names[at + length] = 0;
 		at += (uint32_t)length + 1;
@@ -143,6 +143,7 @@ static ob_roster_entry whole(const snapshot *s, const kept *of)
 {
 	ob_roster_entry entry = { .id = of->id,
 				  .generation = of->generation,
+				  .origin = of->origin,
 				  .script = of->script,
 				  .own_worker = of->own_worker };
 	strcpy(entry.name, s->names + of->name);

@@ -32,6 +32,8 @@ typedef struct ob_client {
 	double taken_at; // s: time of its last progress, or of an empty queue
 	bool contacts; // it shows them
 	uint32_t inspected; // id; UINT32_MAX: none
+	uint32_t number; // origin of its requests: from 1, of this connection only
+	uint32_t frozen, first_frozen; // its objects that were frozen, of which it was not notified; id of the first
 	ob_allowance commands, creations;
 	char command[OB_COMMAND_BYTES_MAX + 1];
 	size_t command_size;

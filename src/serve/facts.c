@@ -80,28 +80,58 @@ ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
 	return m;
 }
 
+// Returns the latest of these deaths that froze objects; NULL: none.
+static const ob_death *latest_frozen(const ob_death *death, uint32_t n)
+{
+	while (n > 0 && death[n - 1].frozen == 0)
+		n--;
+	return n ? &death[n - 1] : NULL;
+}
+
+static ob_message *notice(const char *text)
+{
+	ob_message *m = ob_message_new(true);
+	if (!m)
+		return NULL;
+	ob_message_print(m, "{\"notice\":");
+	ob_message_put_json(m, text);
+	ob_message_print(m, "}");
+	return m;
+}
+
 ob_message *ob_facts_frozen(ob_host *h, uint64_t *since)
 {
 	ob_death deaths[OB_DEATHS_KEPT];
 	const uint32_t n = ob_host_get_deaths(h, deaths);
 	ob_error text;
-	ob_message *m = NULL;
-	for (uint32_t i = 0; i < n && !m; i++) {
+	for (uint32_t i = 0; i < n; i++) {
 		const ob_death *d = &deaths[i];
 		if (d->when <= *since || d->frozen == 0)
 			continue;
 		*since = d->when;
-		m = ob_message_new(true);
-		if (!m)
-			return NULL;
 		ob_death_print(d, text.text, sizeof text.text);
 		size_t end = strlen(text.text);
 		snprintf(text.text + end, sizeof text.text - end, "; frozen for it: %u", d->frozen);
-		ob_message_print(m, "{\"notice\":");
-		ob_message_put_json(m, text.text);
-		ob_message_print(m, "}");
+		return notice(text.text);
 	}
-	return m;
+	return NULL;
+}
+
+ob_message *ob_facts_own_frozen(ob_host *h, uint32_t id, uint32_t more)
+{
+	ob_death deaths[OB_DEATHS_KEPT];
+	const ob_death *d = latest_frozen(deaths, ob_host_get_deaths(h, deaths));
+	ob_roster_entry entry;
+	ob_error why;
+	char text[sizeof why.text + OB_NAME_MAX + 80], others[32] = "";
+	if (!d || !ob_roster_find(ob_host_roster(h), id, &entry))
+		return NULL;
+	ob_death_print(d, why.text, sizeof why.text);
+	if (more > 0)
+		snprintf(others, sizeof others, " and %u more of yours", more);
+	snprintf(text, sizeof text, "your object %u%s%s%s%s was frozen: %s", id, *entry.name ? " (" : "", entry.name,
+		 *entry.name ? ")" : "", others, why.text);
+	return notice(text);
 }
 
 static const char *state_of(const ob_passport *p, const ob_motion *m)

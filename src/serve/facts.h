@@ -14,6 +14,8 @@ ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers);
 // {"notice": the latest failure after *since (ns) that froze objects, in words}, and sets since; NULL also if there is none
 ob_message *ob_facts_frozen(ob_host *h, uint64_t *since);
+// {"notice": an object that this viewer has created was frozen, and why}. more: further ones. NULL: none, or no memory.
+ob_message *ob_facts_own_frozen(ob_host *h, uint32_t id, uint32_t more);
 // {"details": name, state, mass, island, worker ..}, or that the object is gone
 ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t id);
 

@@ -15,7 +15,7 @@ enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24 }; // offsets of counts
 typedef struct known {
 	uint32_t id, generation;
 	bool announced, told; // announced: the object was sent; told: its motion was
-	bool fixed;
+	bool fixed, froze; // froze: not yet taken
 	double radius; // m
 	ob_passport passport;
 	uint64_t passport_version; // read before the passport
@@ -38,6 +38,7 @@ struct ob_feed {
 	size_t contact_room;
 	double time; // s, simulated: last one sent
 	ob_pace_state pace; // last one sent
+	uint32_t froze; // objects that were frozen, not yet taken
 	bool lost; // memory ran out, and viewers may lack something: the whole state is sent again
 };
 
@@ -317,6 +318,8 @@ static bool tell_roster(ob_feed *f, ob_message *out, uint32_t *created)
 			    fresh.passport.generation != fresh.generation)
 				continue;
 			fresh.fixed = fresh.passport.flags & OB_OBJECT_STATIC;
+			fresh.froze = fresh.passport.flags & OB_OBJECT_FROZEN; // since a checkpoint before its creation
+			f->froze += fresh.froze;
 			fresh.radius = ob_shape_radius((ob_shape)fresh.passport.shape, fresh.passport.size);
 			now[kept++] = fresh;
 			++*created;
@@ -358,11 +361,28 @@ static uint32_t tell_looks(ob_feed *f, ob_message *out)
 		if ((now.flags & OB_OBJECT_STATIC) != 0 && !k->fixed) { // it was frozen: its pose is sent again
 			k->fixed = true;
 			k->told = false;
+			k->froze = true;
+			f->froze++;
 		}
 		put_object(out, &f->source, k);
 		told++;
 	}
 	return told;
+}
+
+bool ob_feed_take_frozen(ob_feed *f, size_t *at, uint32_t *id)
+{
+	while (f->froze > 0 && *at < f->objects) {
+		known *k = &f->object[(*at)++];
+		if (!k->froze)
+			continue;
+		k->froze = false;
+		f->froze--;
+		*id = k->id;
+		return true;
+	}
+	f->froze = 0; // the rest has been removed
+	return false;
 }
 
 // ---- messages

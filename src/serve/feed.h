@@ -93,6 +93,9 @@ void ob_feed_destroy(ob_feed *f); // NULL is allowed
 ob_message *ob_feed_next(ob_feed *f, const ob_pace_state *pace);
 // The whole state so far, for a new viewer. NULL: out of memory.
 ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace);
+// Takes the id of an object that viewers were sent as frozen, each once. at: 0 at the first of several calls. false:
+// none is left.
+bool ob_feed_take_frozen(ob_feed *f, size_t *at, uint32_t *id);
 // All contact points. NULL: out of memory.
 ob_message *ob_feed_contacts(ob_feed *f);
 // A mesh of the scene: content, which never changes. NULL: out of memory.

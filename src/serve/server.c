@@ -59,7 +59,7 @@ struct ob_server {
 	ob_door door;
 	ob_feed *feed;
 	ob_client *clients;
-	uint32_t count;
+	uint32_t count, numbers; // numbers: given to clients so far
 	double details_at; // s
 	uint64_t frozen_told; // ns: time of the latest failure that viewers were sent
 	bool called; // the library has called back in this turn of the loop
@@ -110,6 +110,28 @@ static void tell_error(ob_client *c, const char *text)
 	send_one(c, m);
 }
 
+// Notifies viewers of frozen objects: all of the cause, and the creators of theirs.
+static void tell_frozen(ob_server *s)
+{
+	size_t at = 0;
+	uint32_t id;
+	ob_roster_entry entry;
+	send_all(s, ob_facts_frozen(s->host, &s->frozen_told), false);
+	while (ob_feed_take_frozen(s->feed, &at, &id)) {
+		if (!ob_roster_find(ob_host_roster(s->host), id, &entry) || entry.origin == 0)
+			continue;
+		for (ob_client *c = s->clients; c; c = c->next) {
+			if (c->number == entry.origin && c->frozen++ == 0)
+				c->first_frozen = id;
+		}
+	}
+	for (ob_client *c = s->clients; c; c = c->next) {
+		if (c->frozen > 0)
+			send_one(c, ob_facts_own_frozen(s->host, c->first_frozen, c->frozen - 1));
+		c->frozen = 0;
+	}
+}
+
 static void look(lws_sorted_usec_list_t *tick)
 {
 	ob_server *s = lws_container_of(tick, ob_server, tick);
@@ -132,7 +154,7 @@ static void look(lws_sorted_usec_list_t *tick)
 	if (contacts)
 		send_all(s, ob_feed_contacts(s->feed), true);
 	if (details && s->clients) {
-		send_all(s, ob_facts_frozen(s->host, &s->frozen_told), false);
+		tell_frozen(s);
 		send_all(s, ob_facts_statistics(s->host, s->count), false);
 		s->details_at = begin + detail_interval;
 	}
@@ -156,7 +178,8 @@ static void create(ob_server *s, ob_client *c, const ob_object_def *def)
 		tell_error(c, "too many objects in a second: try again");
 	else if (ob_roster_copy(ob_host_roster(s->host), NULL, 0) >= ob_universe_capacity(ob_host_universe(s->host)))
 		tell_error(c, "the universe is full: remove an object first");
-	else if (!ob_host_request_add(s->host, def, &e))
+	else if (!ob_host_request(s->host,
+				  &(ob_request){ .kind = OB_REQUEST_ADD, .origin = c->number, .def = *def }, &e))
 		tell_error(c, e.text);
 }
 
@@ -314,6 +337,7 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 			  .next = s->clients,
 			  .taken_at = now,
 			  .inspected = UINT32_MAX,
+			  .number = ++s->numbers,
 			  .commands = { commands_rate, now },
 			  .creations = { creations_rate, now } };
 	s->clients = c;

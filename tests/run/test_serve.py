@@ -90,6 +90,24 @@ class Serve(Case):
 		self.assertRegex(v.told["notice"], r"^step \d+ takes more work than a step may: object 1 \(brick 1\).*; frozen for it: 40$")
 		self.end(saying="frozen: object 1 (brick 1)")
 
+	def test_frozen_own(self):
+		"""The creator of a frozen object is told that it is theirs, and why; others are told why."""
+		self.serve("-D", "n=3", "--isolation", "process", "--workers", "objects", "--on-death", "freeze", scene="falling_boxes")
+		creator, other = self.viewer(), self.viewer()
+		creator.send(do="create", shape="sphere", size=[.2, 0, 0], at=[9, 9, 50], mass=5, name="guest")
+		creator.until(lambda: any(o["name"] == "guest" for o in creator.objects.values()))
+		i = next(i for i, o in creator.objects.items() if o["name"] == "guest")
+		other.send(do="inspect", id=i)
+		other.until(lambda: other.told.get("details", {}).get("pid"))
+		os.kill(other.told["details"]["pid"], signal.SIGKILL)
+		creator.until(lambda: creator.told.get("notice", "").startswith("your"))
+		self.assertRegex(creator.told["notice"], rf"^your object {i} \(guest\) was frozen: .*was killed by SIGKILL")
+		other.until(lambda: other.told["statistics"]["frozen"] == 1 and other.objects[i]["frozen"] and "notice" in other.told)
+		later = other.told["statistics"]["step"] + 60
+		other.until(lambda: other.told["statistics"]["step"] > later)
+		self.assertRegex(other.told["notice"], r"was killed by SIGKILL.*; frozen for it: 1$")
+		self.end(saying="was killed by SIGKILL")
+
 	def test_clock(self):
 		self.serve("--paused")
 		v = self.viewer()
