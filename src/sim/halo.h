@@ -1,6 +1,6 @@
 // Halo: motions that one of several ranks (peers.h) keeps. It has those of its own bodies, which it solved last, and of
-// their neighbours in pairs, which it needs to check pairs. Other bodies: it knows their
-// fat AABBs, which they cannot leave, and a motion that may be out of date.
+// their neighbours in pairs, which it needs to check pairs. For all other bodies it knows the fat AABBs, which they
+// cannot leave, and a motion that may be out of date.
 //
 //   rank 0's bodies    rank 1's bodies
 //   o o o o o o o o  | n n . . . . . .     rank 0     o   its own

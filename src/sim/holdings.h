@@ -1,5 +1,5 @@
-// Ranks that hold the contents of pairs' records between steps, of several ranks (peers.h): the rank that solved a
-// pair's island last, and no other.
+// Ranks that hold the contents of pairs' records (ob_pair_state) between steps, of several ranks (peers.h): the rank
+// that solved a pair's island last, and no other.
 //
 //                          rank 0     rank 1     rank 2
 //   island A, solved last    x                              all know: the record exists, and if the pair touches

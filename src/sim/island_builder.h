@@ -9,9 +9,9 @@
 enum { OB_ISLANDS_MANY = 256 }; // due bodies; with fewer the gate costs more than other workers gain
 enum { OB_ISLANDS_AT_ONCE = 32 }; // islands listed, or published, by one task: some ten us
 
-// Groups the due objects (ob_schedule.due), and those that they touch or are expected to touch, into islands, and the
-// islands into chunks of about equal work, largest first. Each of several ranks does so with its own bodies, a chunk
-// for each of its simulators. Islands that an awake object touches, or is expected to touch, wake.
+// Groups the due objects (ob_schedule.due), and those that they touch or are expected to touch, into islands. Groups
+// the islands into chunks of about equal work, largest first. Each of several ranks does so with its own bodies, a
+// chunk for each of its simulators. Islands that an awake object touches, or is expected to touch, wake.
 //
 //   begin ──> link .. link ──> list members ──> list pairs .. list pairs ──> deal
 //             tasks, each once    ^             tasks, each once

@@ -15,8 +15,8 @@
 
 enum { OB_ISLANDS_ABREAST = OB_COURSES };
 
-// Advances, side by side, those of n islands (up to OB_ISLANDS_ABREAST) from `first` on that have one body in ballistic
-// flight through the coming step, and stages their motions. flown: [n], true: it is done.
+// Advances islands of one body in ballistic flight through the coming step, side by side, and stages their motions.
+// Takes those among n islands (up to OB_ISLANDS_ABREAST) from `first` on. flown: [n], true: it is done.
 void ob_islands_fly(ob_sim *s, uint32_t first, uint32_t n, bool *flown);
 // Solves island i of the universe, which has not flown, through the coming step, stores its contacts and stages its
 // bodies' motions. Results follow from published state alone: the same bits on any worker, whatever flies beside it.

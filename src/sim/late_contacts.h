@@ -3,9 +3,9 @@
 //
 // Islands are made of pairs that touch and of pairs that are expected to (ob_pair_key.expected). The forecast assumes
 // that every object goes on as it does. It fails where an object is hit and hits another one within the same step. So
-// after the islands are solved, each pair of a solved object that was in no island is checked: if both bodies' paths
-// have used up the known distance, and the two touch at the step's end or did on the way, it is a late contact. Then
-// their islands are merged and solved again.
+// after the islands are solved, each pair of a solved object that was in no island is checked. A late contact is one
+// whose bodies' paths have used up the known distance, and that touches at the step's end or did on the way. Then their
+// islands are merged and solved again.
 #ifndef OB_SIM_LATE_CONTACTS_H
 #define OB_SIM_LATE_CONTACTS_H
 

@@ -13,8 +13,8 @@ typedef struct ob_ode_baseline ob_ode_baseline;
 ob_ode_baseline *ob_ode_baseline_create(ob_universe *u);
 void ob_ode_baseline_destroy(ob_ode_baseline *m); // NULL is allowed
 
-// Runs one step: takes in and drops objects as the passports say, steps, publishes all motions as of step
-// ob_step_count(u) + 1, writes the touching pairs to the step data, and notes those that have begun to touch for their
+// Runs one step. Takes in and drops objects as the passports say, steps, and publishes all motions as of step
+// ob_step_count(u) + 1. Writes the touching pairs to the step data, and notes those that have begun to touch for their
 // scripts. The caller completes the step. An error fails the step (ob_step_failed).
 void ob_ode_baseline_step(ob_ode_baseline *m);
 // Applies, between two steps, an impulse (N s) at the object's centre and an angular impulse (N m s).

@@ -1,4 +1,4 @@
-// One universe on several ranks. Each rank has the same number of simulators, solves its share of each phase, and
+// One universe on several ranks. Each rank has the same number of simulators and solves its share of each phase. It
 // commits the results of all ranks' simulators that concern it, in the order of ranks. So each computes the same
 // universe, of which it holds a part (halo.h), and the same as one rank with as many simulators.
 //
@@ -63,10 +63,10 @@ typedef struct ob_parcel {
 uint64_t ob_peers_digest(const ob_universe *u);
 // Empties the mail and leaves room for a head. false: no memory.
 bool ob_peers_begin(ob_mail *mail);
-// Sends the mail with this head. Returns the mails of all ranks, with heads, in the order of ranks: rank r's from
-// at[r] to at[r + 1], valid until the next call. NULL: the others are at another step, or one has left, and the step
-// has failed. Then all know the move requested on rank 0 (ob_peers.move), the next step with work, or with a reader of
-// all motions (ob_peers.look), and the numbers of islands and of awake bodies.
+// Sends the mail with this head. Returns the mails of all ranks, with heads, in the order of ranks: rank r's from at[r]
+// to at[r + 1], valid until the next call. NULL: the others are at another point of the run, or one has left, and the
+// step has failed. Then all know the move requested on rank 0 (ob_peers.move), and the next step with work, or with a
+// reader of all motions (ob_peers.look). They also know the numbers of islands and of awake bodies.
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
 // The same with another mail for each rank, mail[rank].
 const char *ob_peers_deal(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);

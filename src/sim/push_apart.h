@@ -3,7 +3,7 @@
 // If nothing external acts, a push keeps momentum, angular momentum and energy of the two bodies, too. Their
 // displacements are equal and opposite, along the normals, but they change the angular momentum of bodies that move
 // past each other. One turn of both about their centre of mass gives it back, in which no contact of theirs opens or
-// slides. The energy of that turn is taken from their relative motion. If that has too little, they stay where they
+// slides. The energy of that turn is exchanged with their relative motion. If that has too little, they stay where they
 // are.
 #ifndef OB_SIM_PUSH_APART_H
 #define OB_SIM_PUSH_APART_H

@@ -12,8 +12,8 @@
 // (rank_islands.h), and a body's state goes with it then. A cut follows from data that all ranks have: fat AABBs, pairs
 // that touch, and, after an exchange, the costs of bodies.
 //
-// A cut is made at the start. It is made again if islands had to go to others than those of their region, for balance,
-// and the bodies' cost since the last cut exceeds that of a new one many times.
+// A cut is made at the start. A new one needs two reasons: islands had to go to others than those of their region, for
+// balance, and the cost of bodies since the last cut exceeds that of a new one many times.
 //
 // Thread-safety: the arranger alone calls these functions.
 #ifndef OB_SIM_REGIONS_H
