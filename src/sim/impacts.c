@@ -272,8 +272,8 @@ static bool refine_instant(ob_sim *s, ob_impact_instant *i, double earliest, ob_
 	return false;
 }
 
-// Keeps rows open where nothing external acts and hits do all the work. Bodies were set back to the partial substep's
-// start; an approach that the contact solver would find there is the turn of the geometry alone.
+// Raises a contact's gaps so that its rows do not close, where nothing external acts and hits do all the work. Bodies
+// were set back to the partial substep's start; an approach of rows there is due to the turn of the geometry alone.
 static void keep_open(const ob_island_work *w, const ob_contact *contact)
 {
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];

@@ -13,8 +13,8 @@
 
 static const double least_turning = 1e-6; // m/s^2: less change of a row by turning is ignored
 static const double least_face_turning = 5e-5; // the same with three held points, which leave no freedom to tilt
-static const double longest_way = .2; // share of the smaller thickness: path in a partial substep of bodies that are
-				      // halved
+static const double longest_way = .2; // share of the smaller thickness: longest path of halved bodies in a partial
+				      // substep
 static const double loose_gap = 1e-5; // m: a point farther off is not held at the surface
 
 // Returns the least change of velocity, m/s, in the partial substep that is noticed.
@@ -177,7 +177,7 @@ static double turned(double now, double start, double impulse)
 }
 
 // Sets the velocity by turning of each row. A point that opens at the midpoint may come back as fast, so no push on it
-// does work. At the start, the geometry was the mean of the one before and this one; a new point moved with its bodies.
+// does work. The start's geometry is interpolated between the one before and this; a new point moved with its bodies.
 static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geometry *old)
 {
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];

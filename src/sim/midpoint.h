@@ -1,7 +1,7 @@
 // Contacts whose geometry turns: edges, corners and rims on which a body rocks, pivots or rolls under load.
 //
 // If rows of J are constant, J u = 0 at the end of a partial substep is right for the next one. If they turn, the
-// constraint of its start, or of its end, turns a share h of the motion into an approach. That is lost, in every
+// constraint of its start, or of its end, turns a share h of the motion into an approach. It is lost, in every
 // partial substep. So bodies with such contacts are moved by halves (Stoermer and Verlet; Hairer, Lubich and Wanner,
 // "Geometric Numerical Integration", 2006, section VII.1):
 //

@@ -22,7 +22,7 @@ struct ob_sim {
 	ob_peers peers; // the arranger's; ranks = 0: this is the only one
 	struct ob_ode_baseline *baseline; // NULL unless one ODE world holds all objects
 	struct { // sim/budget.h
-		uint64_t noted, told; // work; share of it added to the step's sum, or the share's
+		uint64_t noted, told; // work: total; part already added to the step's sum, or the share's
 		uint64_t share; // spent in the running share, if that has a budget of its own
 		uint32_t object;
 		bool spent;
