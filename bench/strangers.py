@@ -5,8 +5,10 @@
 
 Each run serves scenes/falling_boxes.lua (40 boxes, two simulators in processes) with --check and five viewers at a time, for
 SECONDS (30). In runs with an odd seed a simulator is also killed about every two seconds. TOGETHER runs (4) share the machine.
+The requests of each run are logged and replayed with --check, in one thread: that must come to the same states.
 
-Prints a line for each run: what was asked for, kills, restarts, frozen objects. Exits with 1 if a universe has ended.
+Prints a line for each run: what was asked for, kills, restarts, frozen objects. Exits with 1 if a universe has ended, or if a
+replay differs.
 """
 
 import base64
@@ -118,12 +120,20 @@ def watch(run, seconds, r, count):
 	return run.poll() is None
 
 
+def replay(obsim, log):
+	"""What a replay of the requests differs in; "": in nothing."""
+	done = subprocess.run([obsim, "run", SCENE, "-D", "n=40", "--workers", "1", "--check", "--replay-requests", log],
+		stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+	return "" if done.returncode == 0 else f"replayed with {done.returncode}: " + "\n".join(done.stderr.splitlines()[-3:])
+
+
 def live(obsim, seconds, seed):
-	"""One run. Returns whether its universe was alive at the end, and what is to be said of it."""
+	"""One run. Returns whether its universe was alive at the end and is replayed, and what is to be said of it."""
 	count, stop = dict.fromkeys(("connections", "create", "remove", "kills"), 0), threading.Event()
-	with tempfile.TemporaryFile("w+") as errors:
+	with tempfile.TemporaryFile("w+") as errors, tempfile.TemporaryDirectory() as folder:
+		log = os.path.join(folder, "asked")
 		run = subprocess.Popen([obsim, "serve", SCENE, "-D", "n=40", "--isolation", "process", "--workers", "2", "--check",
-			"--listen", "127.0.0.1:0"], stdout=subprocess.PIPE, stderr=errors, text=True)
+			"--listen", "127.0.0.1:0", "--log-requests", log], stdout=subprocess.PIPE, stderr=errors, text=True)
 		port = int(re.search(r":(\d+)/", run.stdout.readline())[1])
 		viewers = [threading.Thread(target=visit, args=(port, random.Random(seed * 1000 + i), stop, count)) for i in range(VIEWERS)]
 		for v in viewers:
@@ -136,10 +146,12 @@ def live(obsim, seconds, seed):
 		code = run.wait()
 		errors.seek(0)
 		lines = [line for line in errors.read().splitlines() if "was not added" not in line]
+		differs = replay(obsim, log)
 	alive = alive and code == 0 and count["create"] > 0
 	count["restarts"] = sum("restarting all" in line for line in lines)
 	count["freezes"] = sum("; frozen:" in line for line in lines)
-	return alive, f"seed {seed}: {count} {'alive' if alive else f'ended with {code}:'}" + ("" if alive else "\n" + "\n".join(lines[-5:]))
+	said = f"seed {seed}: {count} " + ("alive" if alive else f"ended with {code}:\n" + "\n".join(lines[-5:]))
+	return alive and not differs, said + (", " + differs if differs else ", replayed")
 
 
 def main():
@@ -151,7 +163,7 @@ def main():
 			alive, text = future.result()
 			ended += not alive
 			print(text, flush=True)
-	print(f"{runs - ended} of {runs} universes alive")
+	print(f"{runs - ended} of {runs} universes alive and replayed")
 	return ended > 0
 
 
