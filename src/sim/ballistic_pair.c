@@ -44,7 +44,7 @@ static bool find_touch(ob_sim *s, const ob_course c[2], double until, touch *x)
 	double when;
 	s->counters.swept_tests++;
 	if (!ob_time_of_touch(&a, &b, turning, until - since, points_margin * s->island.unit.length,
-			      ob_narrowphase_finder(s), &when, &x->m))
+			      ob_narrowphase_follower(s), &when, &x->m))
 		return false;
 	x->time = since + when;
 	const ob_vec3 gone = ob_sub(ob_centre_at(&c[1].m, x->time), b.p);

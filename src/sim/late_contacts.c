@@ -90,7 +90,7 @@ static double time_of_contact(const pair_check *c, const moving_pair *p, double 
 	const ob_placed *a = &p->at[0], *b = &p->at[1];
 	double speed = relative_speed(a, b, h);
 	double gap = ob_min(contact_gap * c->s->island.unit.length, contact_gap_share * p->thin);
-	return ob_time_of_nearing(a, b, ob_max(speed, 1e-9), h, p->h, gap, ob_narrowphase_finder(c->s), apart);
+	return ob_time_of_nearing(a, b, ob_max(speed, 1e-9), h, p->h, gap, ob_narrowphase_follower(c->s), apart);
 }
 
 // True if the two have passed through each other since the step began.

@@ -98,9 +98,11 @@ static uint64_t work_of_points(const ob_placed *a, const ob_placed *b)
 	return is_round(a) && is_round(b) ? OF_TWO_ROUND : OF_A_CORNER * (corners_of(a) + corners_of(b));
 }
 
-// Runs a collision test. Once the budget is spent nothing touches any more, so that loops over many pairs end soon.
+// Runs a collision test. Once the budget is spent all shapes are far apart, so that loops over many pairs, and searches
+// in time, end soon.
 static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
+	const double far = 1e30; // m: beyond all that moves within a run
 	ob_sim *s = with;
 	const ob_run_settings *run = s->settings;
 	ob_budget_note(s, work_of_test(a, b));
@@ -108,7 +110,7 @@ static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, do
 	out->valid_path = INFINITY;
 	if (ob_budget_spent(s)) {
 		out->points = 0;
-		out->separation = margin;
+		out->separation = far;
 		return;
 	}
 	if (run->narrow_phase == OB_NARROW_AABB) {
@@ -124,6 +126,20 @@ static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, do
 ob_manifold_finder ob_narrowphase_finder(ob_sim *s)
 {
 	return (ob_manifold_finder){ find_manifold, s, s->settings->narrow_phase == OB_NARROW_AABB };
+}
+
+// Tests two shapes at an instant of a search. The search places both by their rotation and looks for a direction along
+// which they stay apart, which costs several tests.
+static void find_on_the_way(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	enum { WORK_OF_ADVANCE = 16 };
+	ob_budget_note(with, WORK_OF_ADVANCE);
+	find_manifold(with, a, b, margin, out);
+}
+
+ob_manifold_finder ob_narrowphase_follower(ob_sim *s)
+{
+	return (ob_manifold_finder){ find_on_the_way, s, s->settings->narrow_phase == OB_NARROW_AABB };
 }
 
 double ob_narrowphase_rest_depth(const ob_sim *s, double thickness, bool pressed)
@@ -210,7 +226,8 @@ static double time_of_impact(ob_sim *s, const ob_contact *contact, double horizo
 	place(s, contact->b, &b);
 	double near = ob_min(swept_gap * w->unit.length, .25 * smaller_thickness(w, contact));
 	s->counters.swept_tests++;
-	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, near, reach, ob_narrowphase_finder(s), m);
+	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, near, reach, ob_narrowphase_follower(s),
+				 m);
 }
 
 double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *contact, double horizon)

@@ -24,6 +24,8 @@ void ob_narrowphase_place(const ob_sim *s, uint32_t row, ob_vec3 p, const ob_mat
 
 // Returns the collision test that the run's settings ask for; it takes any two shapes.
 ob_manifold_finder ob_narrowphase_finder(ob_sim *s);
+// The same for searches in time (contact/manifold.h): notes the work of an advance, too.
+ob_manifold_finder ob_narrowphase_follower(ob_sim *s);
 
 // Time of impact (s from now) of the two, if they go on as they do; infinity: not before "horizon".
 double ob_narrowphase_time_of_impact(ob_sim *s, const ob_contact *t, double horizon);

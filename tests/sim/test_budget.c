@@ -121,6 +121,78 @@ static void test_collision_tests(void)
 	free(s);
 }
 
+// A finder that counts its calls.
+typedef struct counted {
+	ob_manifold_finder finder;
+	uint64_t calls;
+} counted;
+
+static void count(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	counted *c = with;
+	c->calls++;
+	c->finder.find(c->finder.with, a, b, margin, out);
+}
+
+// Looks for an impact of two shapes, of "size" (m) and thin, that turn at "spin" (rad/s) beside each other. Returns the
+// number of advances.
+static uint64_t search(ob_sim *s, ob_shape shape, double size, double slenderness, double spin, bool nearing)
+{
+	const double thin = size / slenderness, speed = 2 * spin * size + 1;
+	ob_placed x[2];
+	ob_manifold m = { .valid_path = INFINITY };
+	counted c = { .finder = ob_narrowphase_follower(s) };
+	double apart;
+	for (int i = 0; i < 2; i++)
+		x[i] = (ob_placed){ .shape = shape,
+				    .size = shape == OB_SHAPE_BOX ? ob_v3(size, thin, thin) : ob_v3(thin, size, 0),
+				    .p = ob_v3(0, 8 * thin * i, 0),
+				    .r = ob_quat_matrix(ob_quat_identity()),
+				    .v = ob_v3(0, -.1 * i, 0),
+				    .w = shape == OB_SHAPE_BOX ? ob_v3(0, spin, .1 * spin)
+							       : ob_v3(.1 * spin, 0, spin) };
+	if (nearing)
+		ob_time_of_nearing(&x[0], &x[1], speed, .1, .1, .1 * thin, (ob_manifold_finder){ count, &c, false },
+				   &apart);
+	else
+		ob_time_of_impact(&x[0], &x[1], speed, 1. / 60, .1 * thin, .1 * thin,
+				  (ob_manifold_finder){ count, &c, false }, &m);
+	return c.calls;
+}
+
+// Each advance of a search costs as much as two dozen pairs in an iteration, however thin and fast the shapes are. Once
+// the budget is spent a search ends after its first test.
+static void test_searches(void)
+{
+	static const ob_shape shapes[] = { OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
+	enum { LEAST = 24 };
+	little_scene *scene = little_scene_new();
+	ob_world_sphere(&scene->world, 500, .5, ob_v3(0, 0, 9));
+	little_universe l;
+	little_open(&l, scene);
+	for (int spent = 0; spent < 2; spent++) {
+		uint64_t most = 0;
+		ob_budget_begin_share(l.sim, 0);
+		if (spent)
+			ob_step_work_add(l.u, UINT64_C(1) << 40);
+		for (int i = 0; i < 3 * 3 * 3 * 3 * 2; i++) {
+			const double size = (double[]){ 1e-6, 1, 1e6 }[i % 3],
+				     slenderness = (double[]){ 1, 100, 1e4 }[i / 3 % 3];
+			const double fastest = ob_min(1e4, 1e5 / size),
+				     spin = fastest * (double[]){ 0, .01, 1 }[i / 9 % 3];
+			const uint64_t before = l.sim->budget.noted;
+			if (spent)
+				ob_budget_note(l.sim, 1 << 20);
+			const uint64_t n = search(l.sim, shapes[i / 27 % 3], size, slenderness, spin, i / 81);
+			CHECK(l.sim->budget.noted - before >= LEAST * n);
+			most = n > most ? n : most;
+		}
+		CHECK(spent ? most == 1 : most > 100);
+	}
+	little_close(&l);
+	free(scene);
+}
+
 static void test_diverged(void)
 {
 	little_scene *s = little_scene_new();
@@ -158,6 +230,7 @@ int main(void)
 	test_spent_in_flight();
 	test_small_shares();
 	test_collision_tests();
+	test_searches();
 	test_diverged();
 	test_engine();
 	return check_end();
