@@ -33,9 +33,18 @@ static blockers find_blockers(const ob_host *h)
 
 // ---- the watch
 
+// Hash of the objects on which the workers work: changes with each share.
+static uint64_t shares_of(const ob_host *h)
+{
+	uint64_t hash = 0;
+	for (uint32_t w = 0; w < h->workers; w++)
+		hash = hash * 0x9e3779b97f4a7c15u + ob_worker_object(h->u, w);
+	return hash;
+}
+
 ob_stall_watch ob_stall_watch_start(const ob_host *h)
 {
-	return (ob_stall_watch){ .step = ob_step_count(h->u), .clock = ob_hang_clock_start() };
+	return (ob_stall_watch){ .step = ob_step_count(h->u), .shares = shares_of(h), .clock = ob_hang_clock_start() };
 }
 
 static bool one_is_runnable(const ob_host *h)
@@ -53,7 +62,7 @@ bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h)
 {
 	static const double busy = .02; // of a core: below that nothing computes
 	uint64_t step = ob_step_count(h->u);
-	if (step != s->step) {
+	if (step != s->step || shares_of(h) != s->shares) {
 		*s = ob_stall_watch_start(h);
 		return false;
 	}

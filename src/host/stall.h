@@ -1,4 +1,5 @@
-// Stalls: no step is completed for longer than the run's patience.
+// Stalls: neither a step nor a share of one (sim/budget.h) is completed for longer than the run's patience. Where objects
+// may be frozen each share has a budget of its own, so a step of many hard islands takes longer than one share may.
 //
 // Only time in which the run could have gone on counts. Time in which this process stood still does not (base/clock.h),
 // so Ctrl-Z, a suspended machine and a debugger on the host end no run. While simulators compute, their CPU time
@@ -14,13 +15,14 @@
 
 typedef struct ob_stall_watch {
 	uint64_t step; // complete at the last look
+	uint64_t shares; // hash of the objects on which the workers worked then
 	ob_hang_clock clock; // since then
 	double looked, counted; // s, clock at the last look; s counted so far
 	uint64_t cpu_ns; // CPU time of all workers at the last look; 0 = unknown
 } ob_stall_watch;
 
 ob_stall_watch ob_stall_watch_start(const ob_host *h);
-// Call it about ten times a second. true: patience (s) has ended without a completed step.
+// Call it about ten times a second. true: patience (s) has ended without a completed step or share.
 bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h);
 // Returns the first of the workers that block the step, as the next function names them; UINT32_MAX: none blocks it.
 uint32_t ob_stall_first(const ob_host *h);

@@ -7,6 +7,7 @@
 #include "check.h"
 #include "host/host_state.h"
 #include "host/restart.h"
+#include "host/stall.h"
 #include "little_scene.h"
 #include "sim/now.h"
 #include "workers.h"
@@ -268,7 +269,8 @@ static void test_frozen(void)
 	free(s.object);
 }
 
-// An object that diverges at once, and came in a later pause of the same step than others, is frozen in the first restart.
+// An object that diverges at once, and came in a later pause of the same step than others, is frozen in the first
+// restart.
 static void test_frozen_newcomer(ob_isolation isolation)
 {
 	ob_scene s = little_scene(0);
@@ -393,6 +395,27 @@ static void test_again_and_again(void)
 	free(s.object);
 }
 
+// Patience begins anew with each share of a step, as each may take all of the budget. One that goes on exceeds it.
+static void test_patience_of_shares(void)
+{
+	ob_scene s = busy_heap(BALLS);
+	ob_host_config c = little_config(&s, OB_ISOLATION_THREAD, 2);
+	ob_error e = { "" };
+	ob_host *h = ob_host_start(&s, &c, &e);
+	ob_host_go(h, 1);
+	CHECK(ob_host_wait(h, &e));
+	ob_stall_watch watch = ob_stall_watch_start(h);
+	for (uint32_t share = 0; share < 8; share++) {
+		ob_worker_set_object(h->u, share % 2, 10 + share);
+		watch.counted = 61; // s
+		CHECK(!ob_stall_watch_look(&watch, h) && watch.counted == 0);
+	}
+	watch.counted = 61;
+	CHECK(ob_stall_watch_look(&watch, h));
+	ob_host_stop(h);
+	free(s.object);
+}
+
 // Kills one simulator after the other, each before the first step after its start, on a machine on which each restart
 // takes "seconds". Returns the number of restarts, 16 at most.
 static unsigned kill_before_first_step(ob_host *h, int signal, double seconds)
@@ -463,5 +486,6 @@ int main(void)
 	test_interrupted();
 	test_again_and_again();
 	test_killed_before_first_step();
+	test_patience_of_shares();
 	return check_end();
 }
