@@ -4,8 +4,8 @@
 #include "contact/manifold.h"
 #include "motion/flight.h"
 #include "sim/budget.h"
-#include "sim/ghost.h"
-#include "sim/narrowphase.h"
+#include "solver/ghost.h"
+#include "solver/narrowphase.h"
 #include "sim/touches.h"
 
 static const double least_approach = 1e-6; // m/s: the contact solver treats slower approaches
@@ -28,8 +28,8 @@ static ob_placed placed_of(ob_sim *s, const ob_course *c, ob_vec3 v)
 			    .v = v,
 			    .w = now.w,
 			    .inertia = p->inertia,
-			    .rest_depth = ob_narrowphase_rest_depth(s, ob_shape_thickness(p->shape, p->size), false),
-			    .far_future = ob_narrowphase_far_future(s),
+			    .rest_depth = ob_narrowphase_rest_depth(&s->solver, ob_shape_thickness(p->shape, p->size), false),
+			    .far_future = ob_narrowphase_far_future(&s->solver),
 			    .hull = ob_hull_of(s->u, p) };
 }
 
@@ -42,9 +42,9 @@ static bool find_touch(ob_sim *s, const ob_course c[2], double until, touch *x)
 	const ob_placed a = placed_of(s, &c[0], v), b = placed_of(s, &c[1], none);
 	const ob_turning turning[2] = { { c[0].spin, since - c[0].m.t0 }, { c[1].spin, since - c[1].m.t0 } };
 	double when;
-	s->counters.swept_tests++;
-	if (!ob_time_of_touch(&a, &b, turning, until - since, points_margin * s->island.unit.length,
-			      ob_narrowphase_follower(s), &when, &x->m))
+	s->solver.counters.swept_tests++;
+	if (!ob_time_of_touch(&a, &b, turning, until - since, points_margin * s->solver.island.unit.length,
+			      ob_narrowphase_follower(&s->solver), &when, &x->m))
 		return false;
 	x->time = since + when;
 	const ob_vec3 gone = ob_sub(ob_centre_at(&c[1].m, x->time), b.p);
@@ -58,7 +58,7 @@ static bool find_touch(ob_sim *s, const ob_course c[2], double until, touch *x)
 static uint32_t points_of(const ob_sim *s, const ob_manifold *m, const ob_state at[2], double mu, double e,
 			  ob_impact_point *point)
 {
-	const double near = OB_IMPACT_SIMULTANEOUS * s->island.unit.length;
+	const double near = OB_IMPACT_SIMULTANEOUS * s->solver.island.unit.length;
 	double level = 0;
 	uint32_t n = 0;
 	for (int j = 0; j < m->points; j++)
@@ -95,7 +95,7 @@ static bool apply_impact(ob_sim *s, const ob_course c[2], const ob_manifold *m, 
 		ob_inverse_inertia(p[i]->inertia, &r, body[i].inv_inertia);
 	}
 	const double approach = ob_impact_approach(body, point, points);
-	if (!(approach > least_approach * s->island.unit.speed))
+	if (!(approach > least_approach * s->solver.island.unit.speed))
 		return false;
 	const bool parted = ob_impact_part(body, 2, point, points, approach);
 	ob_touches_note(s->u, c[0].id, c[1].id, p[0]->mass * ob_dot(ob_sub(body[0].v, at[0].v), m->normal),
@@ -148,16 +148,16 @@ bool ob_ballistic_pair_advance(ob_sim *s, const uint32_t id[2])
 	ob_course c[2];
 	uint32_t impacts;
 	if (s->settings->integrator == OB_INTEGRATOR_ODE || s->settings->narrow_phase == OB_NARROW_AABB ||
-	    ob_ghosts_used(s) ||
+	    ob_ghosts_used(&s->solver) ||
 	    !(ob_pair_restitution(ob_passport_of(s->u, id[0])->restitution, ob_passport_of(s->u, id[1])->restitution) >
 	      0))
 		return false;
 	ob_courses_begin(s, id, c, 2);
 	const bool parted = ob_equal(c[0].m.a, c[1].m.a) && follow(s, c, end, &impacts);
-	ob_budget_note(s, c[0].work + c[1].work);
+	ob_budget_note(&s->solver, c[0].work + c[1].work);
 	if (!parted)
 		return false;
-	s->counters.impacts += impacts;
+	s->solver.counters.impacts += impacts;
 	for (int i = 0; i < 2; i++)
 		ob_course_publish(s, &c[i]);
 	return true;

@@ -11,7 +11,7 @@
 #include "motion/drift.h"
 #include "sim/now.h"
 #include "sim/publish.h"
-#include "sim/relative_speed.h"
+#include "solver/relative_speed.h"
 #include "sim/results.h"
 
 // ---- spatial index
@@ -464,14 +464,6 @@ void ob_tight_aabb(const ob_universe *u, const ob_passport *p, ob_pose pose, dou
 		ob_hull_bounds(hull, pose, bounds);
 	else
 		ob_shape_bounds(p->shape, p->size, pose, bounds);
-}
-
-double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w, double s)
-{
-	if (ob_has_axis(shape) && inertia.x == inertia.y) // its axis turns at a constant rate
-		w.z = 0, s = 0;
-	double rate = shape == OB_SHAPE_SPHERE ? 0 : ob_drift_bound(w, inertia, s);
-	return rate == 0 ? 0 : rate * ob_shape_radius(shape, size);
 }
 
 double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_quat q, ob_vec3 v, ob_vec3 w)

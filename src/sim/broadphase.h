@@ -14,9 +14,6 @@
 
 // ---- fat AABBs
 
-// Bounds the speed (m/s) that rotation adds to an object's surface within s seconds, from the angular velocity w
-// (rad/s, body frame). 0 for spheres, without rotation, and for a round body that spins about its axis.
-double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w, double s);
 // Bounds the distance (m) that any point of the object moves in one step from this attitude and these velocities, under
 // its external acceleration.
 double ob_step_reach(const ob_run_settings *run, const ob_passport *p, ob_quat q, ob_vec3 v, ob_vec3 w);

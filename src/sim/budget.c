@@ -2,23 +2,16 @@
 
 #include "table/outbox.h"
 
-enum { GRAIN = 1 << 12 };
-
 // Work for small but hard scenes, and for each object of a large one.
 static const uint64_t base = UINT64_C(1) << 27, per_object = 1 << 15;
-
-static uint64_t work_so_far(const ob_sim *s)
-{
-	return s->budget.noted + s->counters.pair_solves;
-}
 
 void ob_budget_begin_share(ob_sim *s, uint32_t object)
 {
 	s->budget.object = object;
-	s->budget.told = work_so_far(s);
+	s->solver.budget.told = ob_budget_work(&s->solver);
 	s->budget.share = 0;
 	if (s->settings->freezes)
-		s->budget.spent = false;
+		s->solver.budget.spent = false;
 	ob_worker_set_object(s->u, s->worker, object);
 }
 
@@ -46,18 +39,15 @@ static bool spends_share(ob_sim *s, uint64_t work)
 	return stopped || s->budget.share > most_work(s->u);
 }
 
-bool ob_budget_spent(ob_sim *s)
+bool ob_budget_spend(void *sim, uint64_t work)
 {
-	const uint64_t work = (work_so_far(s) - s->budget.told) / GRAIN * GRAIN;
-	if (work == 0 || s->budget.spent)
-		return s->budget.spent;
-	s->budget.told += work;
+	ob_sim *s = sim;
 	if (s->settings->freezes)
-		return s->budget.spent = spends_share(s, work);
+		return spends_share(s, work);
 	if (ob_universe_contained(s->u))
 		ob_outbox_end_of(s->u)->worked_on = s->budget.object;
 	if (ob_gate_stopped(s->u))
 		ob_step_fail(s->u, OB_STEP_LEFT, s->budget.object);
 	ob_budget_add(s->u, work, s->budget.object);
-	return s->budget.spent = ob_step_failed(s->u, NULL) != OB_STEP_OK;
+	return ob_step_failed(s->u, NULL) != OB_STEP_OK;
 }

@@ -16,20 +16,16 @@
 #define OB_SIM_BUDGET_H
 
 #include "sim/state.h"
+#include "solver/budget.h"
 
 // Begins a share. object: named as the cause if the budget is exceeded or the worker dies in this share.
 void ob_budget_begin_share(ob_sim *s, uint32_t object);
-// True if the budget is spent or the run was stopped. Then the step has failed, and unfinished work may be left as it
-// is.
-bool ob_budget_spent(ob_sim *s);
 
 // Adds work done elsewhere on this object. Returns true if the budget is spent; then the step has failed.
 bool ob_budget_add(ob_universe *u, uint64_t work, uint32_t object);
 
-// Notes work that the counters do not contain.
-static inline void ob_budget_note(ob_sim *s, uint64_t work)
-{
-	s->budget.noted += work;
-}
+// The solver's account (ob_island_calls.spend) of this worker: adds work to the share's object. Returns true if the budget
+// is spent or the run was stopped; then the step has failed.
+bool ob_budget_spend(void *sim, uint64_t work);
 
 #endif

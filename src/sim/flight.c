@@ -148,11 +148,11 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 	const ob_mat3 r = ob_quat_matrix(state->pose.q);
 	ob_inverse_inertia(passport->inertia, &r, body[0].inv_inertia);
 	const uint32_t points =
-		points_on_plane(s->island.unit, passport, ob_hull_of(s->u, passport), &ground, state, point);
+		points_on_plane(s->solver.island.unit, passport, ob_hull_of(s->u, passport), &ground, state, point);
 	for (uint32_t k = 0; k < points; k++)
 		point[k].mu = mu, point[k].e = e;
 	const double approach = ob_impact_approach(body, point, points);
-	if (!(approach > contact_approach * s->island.unit.speed))
+	if (!(approach > contact_approach * s->solver.island.unit.speed))
 		return false;
 	const bool parted = ob_impact_part(body, 2, point, points, approach);
 	if (points > 0)
@@ -290,9 +290,9 @@ static ob_state state_by_ode(ob_sim *s, uint32_t id)
 	ob_vec3 force = ob_scale(ob_passport_of(s->u, id)->force, h);
 	bool done = true;
 	enum { WORK_OF_SUBSTEP = 32 };
-	for (uint32_t i = 0; i < run->substeps && done && !ob_budget_spent(s); i++) {
-		ob_budget_note(s, WORK_OF_SUBSTEP);
-		done = ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->u, id), &now, force, ob_v3(0, 0, 0), h);
+	for (uint32_t i = 0; i < run->substeps && done && !ob_budget_spent(&s->solver); i++) {
+		ob_budget_note(&s->solver, WORK_OF_SUBSTEP);
+		done = ob_ode_body_step(ob_ode_bodies_get(&s->solver.ode_bodies, run->gravity, id, ob_passport_of(s->u, id)), &now, force, ob_v3(0, 0, 0), h);
 	}
 	if (!done)
 		ob_step_fail(s->u, OB_STEP_ENGINE, id);
@@ -334,7 +334,7 @@ static double flight_horizon(const ob_sim *s, uint32_t id, ob_vec3 v, ob_vec3 a)
 	if (neighbours != UINT32_MAX)
 		length = ob_max(length, side * most_neighbours / ob_max(1, neighbours));
 	double speed = ob_norm(v), fall = sqrt(speed * speed + 2 * ob_norm(a) * length);
-	return ob_min(max_horizon * s->island.unit.time, 2 * length / (speed + fall)); // time to move so far
+	return ob_min(max_horizon * s->solver.island.unit.time, 2 * length / (speed + fall)); // time to move so far
 }
 
 // Takes the rotation of a visibly rotating object from the cache, or computes it anew.
@@ -373,7 +373,7 @@ void ob_courses_find_landings(ob_sim *s, ob_course *const *c, uint32_t n)
 		from[k] = ob_max(c[k]->m.valid_until, c[k]->since);
 		first[k] = INFINITY;
 	}
-	for (uint32_t i = 0; i < data->count->planes && !ob_budget_spent(s); i++) {
+	for (uint32_t i = 0; i < data->count->planes && !ob_budget_spent(&s->solver); i++) {
 		const ob_half_space ground = half_space(s->u, data->plane[i]);
 		for (uint32_t k = 0; k < n; k++) {
 			c[k]->work += WORK_OF_LANDING;
@@ -493,10 +493,10 @@ void ob_ballistic_advance(ob_sim *s, const uint32_t *id, uint32_t n, bool *done)
 	}
 	for (uint32_t k = 0; k < n; k++) {
 		ob_budget_begin_share(s, id[k]); // own share: the sum does not depend on the objects beside it
-		ob_budget_note(s, c[k].work);
-		ob_budget_spent(s);
+		ob_budget_note(&s->solver, c[k].work);
+		ob_budget_spent(&s->solver);
 		if (done[k]) {
-			s->counters.impacts += c[k].impacts;
+			s->solver.counters.impacts += c[k].impacts;
 			ob_course_publish(s, &c[k]);
 		}
 	}

@@ -8,12 +8,12 @@
 #include "sim/budget.h"
 #include "sim/calendar.h"
 #include "sim/flight.h"
-#include "sim/narrowphase.h"
+#include "solver/narrowphase.h"
 #include "sim/now.h"
 #include "sim/pair_rank.h"
 #include "sim/pairs.h"
 #include "sim/prefetch.h"
-#include "sim/relative_speed.h"
+#include "solver/relative_speed.h"
 #include "sim/results.h"
 
 static const double contact_gap = 2e-4; // m: a forecast takes bodies this near to be touching,
@@ -54,9 +54,9 @@ static ob_placed shape_of(const pair_check *c, uint32_t id, const ob_motion *m, 
 			  .w = now.w,
 			  .inertia = p->inertia,
 			  .a = a,
-			  .rest_depth = ob_narrowphase_rest_depth(c->s, ob_shape_thickness(p->shape, p->size),
+			  .rest_depth = ob_narrowphase_rest_depth(&c->s->solver, ob_shape_thickness(p->shape, p->size),
 								  ob_norm2(c->s->settings->gravity) > 0),
-			  .far_future = ob_narrowphase_far_future(c->s),
+			  .far_future = ob_narrowphase_far_future(&c->s->solver),
 			  .hull = ob_hull_of(c->u, p) };
 	return out;
 }
@@ -89,8 +89,8 @@ static double time_of_contact(const pair_check *c, const moving_pair *p, double 
 {
 	const ob_placed *a = &p->at[0], *b = &p->at[1];
 	double speed = relative_speed(a, b, h);
-	double gap = ob_min(contact_gap * c->s->island.unit.length, contact_gap_share * p->thin);
-	return ob_time_of_nearing(a, b, ob_max(speed, 1e-9), h, p->h, gap, ob_narrowphase_follower(c->s), apart);
+	double gap = ob_min(contact_gap * c->s->solver.island.unit.length, contact_gap_share * p->thin);
+	return ob_time_of_nearing(a, b, ob_max(speed, 1e-9), h, p->h, gap, ob_narrowphase_follower(&c->s->solver), apart);
 }
 
 // True if the two have passed through each other since the step began.
@@ -112,8 +112,8 @@ static bool passed_through(const pair_check *c, const ob_pair_key *k, const movi
 static bool touched_in_step(const pair_check *c, ob_pair_key *k, const moving_pair *end)
 {
 	ob_manifold m;
-	ob_manifold_finder finder = ob_narrowphase_finder(c->s);
-	finder.find(finder.with, &end->at[0], &end->at[1], ob_max(contact_gap * c->s->island.unit.length, end->reach),
+	ob_manifold_finder finder = ob_narrowphase_finder(&c->s->solver);
+	finder.find(finder.with, &end->at[0], &end->at[1], ob_max(contact_gap * c->s->solver.island.unit.length, end->reach),
 		    &m);
 	if (m.separation <= 0 || passed_through(c, k, end))
 		return true;
@@ -248,7 +248,7 @@ static bool spheres_exclude_contact(const pair_check *c, ob_pair_key *k, double 
 		return false;
 	const bounding_spheres round =
 		bounding_spheres_of(c, k, ob_result_of(c->u, k->a), ob_result_of(c->u, k->b), c->steps);
-	const double contact = contact_gap * c->s->island.unit.length;
+	const double contact = contact_gap * c->s->solver.island.unit.length;
 	if (round.gap <= contact || (paths >= k->limit && may_have_met(c, k, &round, paths, solved)))
 		return false;
 	const double apart = round.straight ? time_apart(&round, contact) : 0;
@@ -528,7 +528,7 @@ static void prepare_shapes(const pair_check *c, shapes_ahead *x)
 static void check_shapes_ahead(const pair_check *c, shapes_ahead *x, bool *late)
 {
 	prepare_shapes(c, x);
-	for (uint32_t k = 0; k < x->n && !ob_budget_spent(c->s); k++) {
+	for (uint32_t k = 0; k < x->n && !ob_budget_spent(&c->s->solver); k++) {
 		ob_pair_key *pair = pair_ahead(c, x, k);
 		check_shapes(c, pair, x->left[k], x->solved[k]);
 		*late |= pair->late;
@@ -552,7 +552,7 @@ static void check_all_by_motions(const pair_check *c, const uint32_t *checks, ui
 		ob_pair_key *k = begin_change(c, checks[i - AHEAD], &x.copy[x.n]);
 		if (i == AHEAD)
 			ob_budget_begin_share(c->s, moves(c, k->a) ? k->a : k->b);
-		if (ob_budget_spent(c->s))
+		if (ob_budget_spent(&c->s->solver))
 			return;
 		if (c->contained)
 			k->late = k->expected = 0; // state after check_by_schedule

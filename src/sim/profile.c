@@ -32,10 +32,10 @@ void ob_profile_begin(ob_sim *s, ob_profile_section section)
 	s->tasks.cpu = s->times.cpu;
 	s->tasks.n = 0;
 	s->tasks.sum = s->tasks.told = 0;
-	if (!s->counters.since_ns)
+	if (!s->solver.counters.since_ns)
 		return;
-	s->counters.gate_ns += s->times.since - s->counters.since_ns;
-	s->counters.gate_cpu_ns += (uint64_t)(1e9 * (s->times.cpu - s->times.cpu_end));
+	s->solver.counters.gate_ns += s->times.since - s->solver.counters.since_ns;
+	s->solver.counters.gate_cpu_ns += (uint64_t)(1e9 * (s->times.cpu - s->times.cpu_end));
 }
 
 // Divides the CPU time since the clock was read, its reading included, among the tasks. So a task in which the worker
@@ -94,9 +94,9 @@ uint64_t ob_profile_end(ob_sim *s)
 	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)
 		wall += (double)s->times.wall[i];
 	for (int i = 0; i < OB_PROFILE_SECTIONS && wall > 0; i++)
-		s->counters.time_ns[i] += (uint64_t)((double)s->times.wall[i] * ob_min(1, cpu / wall));
-	s->counters.held_ns += (uint64_t)ob_max(0, wall + (double)s->times.asking - cpu);
-	s->counters.since_ns = s->times.since;
+		s->solver.counters.time_ns[i] += (uint64_t)((double)s->times.wall[i] * ob_min(1, cpu / wall));
+	s->solver.counters.held_ns += (uint64_t)ob_max(0, wall + (double)s->times.asking - cpu);
+	s->solver.counters.since_ns = s->times.since;
 	return (uint64_t)cpu;
 }
 
@@ -107,7 +107,7 @@ uint64_t ob_profile_show(ob_sim *s)
 	else
 		s->times.since = ob_clock_ns();
 	s->times.section = OB_PROFILE_LOAD;
-	s->times.shown = s->times.wanted = true;
+	s->times.shown = s->solver.timed = true;
 	return s->times.since;
 }
 
@@ -115,18 +115,18 @@ void ob_profile_hide(ob_sim *s)
 {
 	count_section(s);
 	s->times.shown = false;
-	s->times.wanted = s->times.timed;
+	s->solver.timed = s->times.timed;
 }
 
 enum { LARGE_ISLAND = 64, SAMPLED_STEPS = 16 };
 
 static uint32_t islands_solved(const ob_sim *s)
 {
-	return (uint32_t)(s->counters.ballistic_advances + s->counters.island_steps);
+	return (uint32_t)(s->solver.counters.ballistic_advances + s->solver.counters.island_steps);
 }
 static uint32_t members_solved(const ob_sim *s)
 {
-	return (uint32_t)(s->counters.ballistic_advances + s->counters.body_steps);
+	return (uint32_t)(s->solver.counters.ballistic_advances + s->solver.counters.body_steps);
 }
 
 void ob_span_turn_to(ob_sim *s, ob_trace_kind next)

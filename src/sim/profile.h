@@ -13,7 +13,7 @@
 void ob_profile_change(ob_sim *s, ob_profile_section section);
 static inline void ob_profile_enter(ob_sim *s, ob_profile_section section)
 {
-	if (s->times.wanted)
+	if (s->solver.timed)
 		ob_profile_change(s, section);
 }
 

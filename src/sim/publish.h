@@ -26,10 +26,4 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end);
 // Publishes the motion that another worker has solved for this worker's object.
 void ob_result_copy(ob_sim *s, uint32_t id);
 
-// Gravity and the passport's constant force, per mass (m/s^2); 0 for static objects.
-static inline ob_vec3 ob_external_acceleration(const ob_run_settings *run, const ob_passport *p)
-{
-	return p->mass > 0 ? ob_madd(run->gravity, 1 / p->mass, p->force) : ob_v3(0, 0, 0);
-}
-
 #endif

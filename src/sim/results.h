@@ -12,15 +12,6 @@ typedef struct ob_found_result {
 	ob_motion motion;
 } ob_found_result;
 
-// Contact as the solver of its island leaves it. kept: it touches or has touched, so its state is worth keeping.
-typedef struct ob_found_contact {
-	uint32_t pair; // index
-	uint8_t active, kept, two_sided, reserved; // two_sided: impulse_b is valid
-	double limit;
-	ob_pair_state state;
-	double impulse_b[OB_PAIR_ROWS];
-} ob_found_contact;
-
 enum { OB_LATE_CONTACTS_BATCH = 256 }; // pairs that a worker checks at a time
 
 // By the worker that found the result, in phase ..

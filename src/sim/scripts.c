@@ -45,8 +45,8 @@ static void run_share(ob_sim *s, uint32_t cell)
 {
 	enum { INSTRUCTIONS_PER_WORK = 4 };
 	ob_budget_begin_share(s, s->data->script_turn[cell].object);
-	ob_budget_note(s, run(s, cell) / INSTRUCTIONS_PER_WORK);
-	ob_budget_spent(s);
+	ob_budget_note(&s->solver, run(s, cell) / INSTRUCTIONS_PER_WORK);
+	ob_budget_spent(&s->solver);
 }
 
 void ob_scripts_run(ob_sim *s)

@@ -2,30 +2,37 @@
 #ifndef OB_SIM_STATE_H
 #define OB_SIM_STATE_H
 
-#include "sim/island.h"
-#include "sim/ode_bodies.h"
 #include "sim/rotation_cache.h"
 #include "sim/sim.h"
+#include "solver/solver.h"
 #include "table/trace.h"
 
 enum { OB_TASKS_TIMED = 64 };
+
+// Input of the island that is being solved (sim/islands.c); memory grown as needed, never shrunk.
+typedef struct ob_island_scratch {
+	ob_island_input in;
+	const ob_island *island;
+	ob_island_object *object;
+	ob_island_pair *pair;
+	uint32_t objects_max, pairs_max;
+	uint32_t *index_of; // [object of the universe]: its place in the input, if it is there
+} ob_island_scratch;
 
 struct ob_sim {
 	ob_universe *u;
 	ob_step_data *data; // of u, constant
 	const ob_run_settings *settings; // of u, constant
 	uint32_t worker;
-	ob_ode_bodies ode_bodies;
-	ob_island_work island; // scratch
+	ob_solver solver;
+	ob_island_scratch scratch;
 	ob_rotation_cache rotations;
 	struct ob_committer *committer; // NULL unless this is the arranger (commit.h)
 	ob_peers peers; // the arranger's; ranks = 0: this is the only one
 	struct ob_ode_baseline *baseline; // NULL unless one ODE world holds all objects
 	struct { // sim/budget.h
-		uint64_t noted, told; // work: total; part already added to the step's sum, or the share's
 		uint64_t share; // spent in the running share, if that has a budget of its own
 		uint32_t object;
-		bool spent;
 	} budget;
 	struct { // sim/scripts.h; NULL: this worker runs none
 		ob_script_run run;
@@ -34,10 +41,8 @@ struct ob_sim {
 		ob_script_cell cell; // the copy that it hands over
 	} scripts;
 	uint64_t fault_chances; // in this process (sim/fault.h)
-	ob_counters counters; // handed over to the universe at the end of each phase
 	struct { // sim/profile.h
 		bool timed, shown; // for the counters; for the trace
-		bool wanted; // timed or shown
 		ob_profile_section section; // section to which the time is added
 		uint64_t since, wall[OB_PROFILE_SECTIONS]; // ns, in the running phase
 		uint64_t asking; // ns, wall, of the running phase: spent reading the CPU clock, part of no section

@@ -52,7 +52,7 @@
 #include "sim/fault.h"
 #include "sim/invariants.h"
 #include "sim/island_builder.h"
-#include "sim/island_solver.h"
+#include "sim/islands.h"
 #include "sim/late_contacts.h"
 #include "sim/ode_baseline.h"
 #include "sim/pairs.h"
@@ -304,11 +304,11 @@ static void do_nothing(ob_sim *s)
 static void query(ob_sim *s, uint32_t id)
 {
 	enum { TESTS_PER_WORK = 16 };
-	const uint64_t tests = s->counters.box_tests;
+	const uint64_t tests = s->solver.counters.box_tests;
 	ob_budget_begin_share(s, id);
-	ob_pairs_query(s->u, id, &s->counters.box_tests);
-	ob_budget_note(s, (s->counters.box_tests - tests) / TESTS_PER_WORK);
-	ob_budget_spent(s);
+	ob_pairs_query(s->u, id, &s->solver.counters.box_tests);
+	ob_budget_note(&s->solver, (s->solver.counters.box_tests - tests) / TESTS_PER_WORK);
+	ob_budget_spent(&s->solver);
 }
 
 static void query_neighbours(ob_sim *s)
@@ -377,7 +377,7 @@ static void solve_abreast(ob_sim *s, uint32_t first, uint32_t n, bool begins)
 		if (k)
 			shown = ob_span_island_begin(s, first + k, false);
 		if (!flown[k])
-			ob_island_solve(s, first + k);
+			ob_island_advance(s, first + k);
 		if (shown)
 			ob_span_island_end(s, first + k);
 		ob_fault_chance(s);
@@ -460,7 +460,7 @@ static void publish_results(ob_sim *s)
 static void step_baseline(ob_sim *s)
 {
 	ob_ode_baseline_step(s->baseline);
-	s->counters.box_tests = ob_ode_baseline_box_tests(s->baseline);
+	s->solver.counters.box_tests = ob_ode_baseline_box_tests(s->baseline);
 }
 
 // ---- the serial parts
@@ -647,8 +647,8 @@ static ob_phase after_late_contacts(const scheduler *c)
 {
 	const bool late = c->data->count->late;
 	ob_late_contacts_end(c->u);
-	c->sim->counters.island_merges += late;
-	*ob_worker_counters(c->u, c->sim->worker) = c->sim->counters; // before any reader may look
+	c->sim->solver.counters.island_merges += late;
+	*ob_worker_counters(c->u, c->sim->worker) = c->sim->solver.counters; // before any reader may look
 	if (late) {
 		ob_islands_merge(c->u);
 		return after_links(c);
@@ -780,9 +780,9 @@ bool ob_step(ob_sim *s)
 	const uint64_t worked = ob_profile_end(s);
 	ob_phase_worked(s->u, worked, ob_profile_beside(s, worked));
 	if (ob_universe_contained(s->u))
-		ob_outbox_end_of(s->u)->counters = s->counters;
+		ob_outbox_end_of(s->u)->counters = s->solver.counters;
 	else
-		*ob_worker_counters(s->u, s->worker) = s->counters;
+		*ob_worker_counters(s->u, s->worker) = s->solver.counters;
 	if (ob_turn_arrive(s->u, s->worker)) {
 		ob_span_turn(s, OB_TRACE_SCHEDULE);
 		phase = schedule(s, phase);

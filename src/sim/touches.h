@@ -5,13 +5,11 @@
 
 #include "sim/state.h"
 
+// True if the script of a member receives its contacts.
+bool ob_touches_are_felt(const ob_sim *s, const ob_island *is);
 // Forgets the touches noted in an earlier attempt to solve the island.
 void ob_touches_begin(ob_sim *s, const ob_island *is);
 // Notes that two objects began to touch at a point (m), or adds to their normal impulse (N s).
 void ob_touches_note(ob_universe *u, uint32_t a, uint32_t b, double impulse, ob_vec3 point);
-// Adds the impulses of a partial substep to the contacts that began in this step.
-void ob_touches_note_solved(ob_sim *s);
-// Notes an impact of a contact that began in this step.
-void ob_touches_note_impact(ob_sim *s, const ob_impact_instant *i);
 
 #endif

@@ -2,11 +2,21 @@
 
 #include "base/clock.h"
 #include "sim/commit.h"
-#include "sim/island_solver.h"
+#include "sim/islands.h"
 #include "sim/ode_baseline.h"
 #include "sim/peers.h"
 #include "sim/sim.h"
 #include "sim/state.h"
+
+// Number of ODE bodies that a worker keeps. All together keep no more than there are objects, or a few for each: a worker
+// that claims islands comes to solve, in the course of a run, every object.
+static uint32_t ode_bodies_of(const ob_universe *u)
+{
+	enum { LEAST = 256 }; // for the members of an island, whoever leads it: .35 MB
+	const uint32_t objects = ob_universe_capacity(u), workers = ob_universe_workers(u);
+	const uint32_t share = objects / workers + (objects % workers != 0);
+	return share < LEAST ? (objects < LEAST ? objects : LEAST) : share;
+}
 
 ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 {
@@ -18,15 +28,12 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->data = ob_universe_step_data(u);
 		s->settings = run;
 		s->worker = worker;
-		s->island.unit = ob_run_settings_units(run);
-		s->island.tolerance = OB_DEFAULT_TOLERANCE * s->island.unit.length;
-		s->island.run_coarseness = s->island.coarseness = ob_run_settings_coarseness(run);
-		s->counters = *ob_worker_counters(u, worker); // another worker may have run its objects before
-		s->times.timed = s->times.wanted = run->timed;
+		s->solver.counters = *ob_worker_counters(u, worker); // another worker may have run its objects before
+		s->times.timed = s->solver.timed = run->timed;
 		s->span.traced = ob_universe_traced(u);
-		s->island.row_of = calloc(capacity, sizeof *s->island.row_of);
 	}
-	if (!s || !s->island.row_of || !ob_ode_bodies_create(&s->ode_bodies, u) ||
+	const ob_island_calls calls = ob_island_calls_of(s);
+	if (!s || !ob_solver_create(&s->solver, run, &calls, ode_bodies_of(u)) || !ob_island_scratch_create(s) ||
 	    !ob_rotation_cache_create(&s->rotations, capacity) ||
 	    (run->monolith && !(s->baseline = ob_ode_baseline_create(u)))) {
 		ob_sim_destroy(s);
@@ -34,7 +41,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		return NULL;
 	}
 	if (run->one_per_object && worker < capacity && ob_passport_of(u, worker)->flags & OB_OBJECT_PRESENT) {
-		ob_ode_bodies_get(&s->ode_bodies, u, worker); // its own object
+		ob_ode_bodies_get(&s->solver.ode_bodies, run->gravity, worker, ob_passport_of(u, worker)); // its own
 	}
 	if (ob_universe_contains(u) && worker == ob_universe_simulators(u)) {
 		s->committer = ob_committer_create(u);
@@ -45,9 +52,9 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		}
 	}
 	if (s->times.timed) { // it waits at the gate from now on; the previous worker's wait ended with it
-		s->counters.since_ns = ob_clock_ns();
+		s->solver.counters.since_ns = ob_clock_ns();
 		s->times.cpu_end = ob_clock_thread_cpu();
-		*ob_worker_counters(u, worker) = s->counters;
+		*ob_worker_counters(u, worker) = s->solver.counters;
 	}
 	return s;
 }
@@ -56,9 +63,9 @@ void ob_sim_destroy(ob_sim *s)
 {
 	if (!s)
 		return;
-	ob_ode_bodies_finish(&s->ode_bodies);
 	ob_ode_baseline_destroy(s->baseline);
-	ob_island_work_finish(&s->island);
+	ob_solver_finish(&s->solver);
+	ob_island_scratch_finish(s);
 	ob_rotation_cache_finish(&s->rotations);
 	ob_committer_destroy(s->committer);
 	free(s);

@@ -5,7 +5,7 @@
 
 #include "check.h"
 #include "sim/budget.h"
-#include "sim/narrowphase.h"
+#include "solver/narrowphase.h"
 #include "little_universe.h"
 
 // Checks the failure's message; the state of the previous step stands.

@@ -3,7 +3,7 @@
 
 #include "check.h"
 #include "little_universe.h"
-#include "sim/island.h"
+#include "solver/island.h"
 
 enum { SIDE = 10, BOXES = SIDE * SIDE };
 static_assert(BOXES > (int)OB_COLOURS, "more partners than colours");

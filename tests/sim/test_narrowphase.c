@@ -3,7 +3,7 @@
 
 #include "base/cpu.h"
 #include "base/clock.h"
-#include "sim/narrowphase.h"
+#include "solver/narrowphase.h"
 
 #include "../check.h"
 #include "little_universe.h"

@@ -4,7 +4,7 @@
 #include "check.h"
 #include "little_universe.h"
 #include "ode/ode_body.h"
-#include "sim/ode_bodies.h"
+#include "solver/ode_bodies.h"
 
 enum { OBJECTS = 1500, WORKERS = 3 };
 

@@ -1,5 +1,5 @@
 // The elimination for closed cycles of joints, against the equations that it solves, and its refusals.
-#include "sim/sparse_solver.h"
+#include "solver/sparse_solver.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // The elimination along a tree against the same equations solved all at once.
-#include "sim/tree_solver.h"
+#include "solver/tree_solver.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,0 +1,30 @@
+// Bodies of an island: loads them, moves them and reports their motions.
+#ifndef OB_SOLVER_BODIES_H
+#define OB_SOLVER_BODIES_H
+
+#include "solver/solver.h"
+
+// Loads the island's bodies in ascending id, then the fixed bodies that they may touch: one row each.
+void ob_bodies_load(ob_solver *s, const ob_island_input *in);
+// Applies the displacement row to the pose, and updates the gaps of contacts that were computed for the old pose. The
+// angular velocity turns with the body, so its energy stays.
+void ob_body_update_pose(ob_island_work *w, uint32_t row);
+// Sets the pose; leaves the gaps.
+void ob_body_place(ob_body *body, ob_vec3 p, ob_quat q);
+// Sets v and the speed bound that follows from it. linear: m/s; angular: rad/s.
+void ob_body_set_velocity(ob_island_work *w, uint32_t row, ob_vec3 linear, ob_vec3 angular);
+// Updates the speed bounds of bodies that were hit in the partial substep.
+void ob_bodies_update_speed_bounds(ob_solver *s);
+// Sets dv to the change of velocity by external accelerations and the last impulses, for the present contacts.
+void ob_bodies_warm_start(ob_solver *s);
+// Sets u = v + dv.
+void ob_bodies_predict_velocities(ob_solver *s);
+// Moves the bodies through the partial substep. Between impulses each turns as in free flight. u becomes the new v.
+void ob_bodies_integrate_positions(ob_solver *s);
+// Updates the rest timers after the last substep, in the world frame. Returns the time (s) for which all bodies have
+// been slow and in contact.
+double ob_bodies_update_rest(ob_solver *s);
+// Reports the motions of the island's bodies after the step. rest: OB_MOTION_ASLEEP, OB_MOTION_EQUILIBRIUM, or 0.
+void ob_bodies_report(ob_solver *s, uint32_t rest);
+
+#endif

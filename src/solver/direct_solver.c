@@ -1,0 +1,563 @@
+#include "solver/direct_solver.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/allocate.h"
+#include "solver/budget.h"
+#include "solver/relative_speed.h"
+
+enum { ROOT = UINT32_MAX, UNREACHED = ROOT - 1 }; // values of parent_contact[]
+
+static const double compliance = 1e-6; // share of a row's own response
+static const double compliance_in_cycles = 1e-5; // the same in cycles, where rows may depend on each other
+static const uint32_t max_block_products = 64; // products of blocks in the sparse factorisation, per body, at most
+static const uint32_t max_cyclic_bodies = 512; // bodies of an island with cycles, at most
+
+// Thresholds above which a direct solve is worth its cost.
+static const double residual_threshold = 1e-7; // m/s
+static const double residual_after_correction = 1e-8; // m/s, if the last partial substep was solved directly
+static const int max_solves = 4; // in a partial substep
+static const double creep_speed = 1e-4; // m/s: slower bodies whose contacts hold should stand still
+static const double neutral_speed = 1e-9; // m/s: a point that opens more slowly holds, even if it does not press
+static const double standing_speed = .02; // m/s: faster bodies fall or slide
+static const double rest_speed = 1e-3, min_rest_time = .25; // m/s, s: a body rests that has been slower for longer
+static const double unmoved_path = 2e-4; // m: or that has moved less since its start
+
+static ob_batch *batch_of(const ob_island_work *w, const ob_direct_contact *c)
+{
+	return &w->batch[w->contact[c->contact].lane / OB_LANES];
+}
+
+static double length(double x, double y)
+{
+	return sqrt(x * x + y * y);
+}
+
+static int lane_of(const ob_island_work *w, const ob_direct_contact *c)
+{
+	return w->contact[c->contact].lane % OB_LANES;
+}
+
+// Finds the change n of four normal impulses that changes nothing else (null space of J^T): four points can share a
+// load in many ways. On a plane its elements are the areas of the triangles between the other three points, with
+// alternating signs. Returns false if the points lie on a line.
+static bool normal_null_space(const ob_batch *b, int l, double *n)
+{
+	double at[4][2], length2 = 0;
+	for (int j = 0; j < 4; j++) {
+		const lanes *arm = b->ja[j];
+		at[j][0] = arm[0][l] * b->t1[0][l] + arm[1][l] * b->t1[1][l] + arm[2][l] * b->t1[2][l];
+		at[j][1] = arm[0][l] * b->t2[0][l] + arm[1][l] * b->t2[1][l] + arm[2][l] * b->t2[2][l];
+	}
+	for (int j = 0; j < 4; j++) {
+		const double *p = at[(j + 1) % 4], *q = at[(j + 2) % 4], *r = at[(j + 3) % 4];
+		double area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+		n[j] = j % 2 ? -area : area;
+		length2 += n[j] * n[j];
+	}
+	for (int j = 0; j < 4; j++)
+		n[j] /= sqrt(length2);
+	return length2 > 0;
+}
+
+static bool has_four_normals(const ob_direct_contact *c)
+{
+	return c->joint.rows >= 4 && c->row[3] == 3;
+}
+
+// ---- assembling
+
+// Lists the rows that hold: normals that press or are about to, friction and twist within their bounds. Returns their
+// number.
+static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, double neutral, uint8_t *row)
+{
+	const double within = .999;
+	uint32_t n = 0;
+	double sum = 0;
+	for (int j = 0; j < OB_POINTS; j++) {
+		sum += b->impulse[j][l];
+		if (b->inv_diag[j][l] > 0 && (rate[j][l] - neutral) * b->inv_diag[j][l] < b->impulse[j][l])
+			row[n++] = (uint8_t)j;
+	}
+	double bound = within * b->mu[l] * sum;
+	if (n && b->mu[l] > 0 && length(b->impulse[4][l], b->impulse[5][l]) <= bound)
+		row[n++] = 4, row[n++] = 5;
+	if (n && b->mu[l] > 0 && b->radius[l] > 0 && fabs(b->impulse[6][l]) <= bound * b->radius[l])
+		row[n++] = 6;
+	return n;
+}
+
+// Fills one row of the joint for both bodies. The sides a and b of a batch differ in sign.
+static void fill_row(const ob_batch *b, int l, int row, bool child_is_a, uint32_t r, ob_joint *j)
+{
+	static const lanes none[3];
+	const lanes *along = row < 4 ? b->n : row == 4 ? b->t1 : row == 5 ? b->t2 : none;
+	const lanes *about_a = row < 4 ? b->ja[row] : row == 4 ? b->fa1 : row == 5 ? b->fa2 : b->n;
+	const lanes *about_b = row < 4 ? b->jb[row] : row == 4 ? b->fb1 : row == 5 ? b->fb2 : b->n;
+	for (int c = 0; c < 3; c++) {
+		double n = child_is_a ? along[c][l] : -along[c][l];
+		j->child[c][r] = n;
+		j->parent[r][c] = -n;
+		j->child[3 + c][r] = child_is_a ? about_a[c][l] : -about_b[c][l];
+		j->parent[r][3 + c] = child_is_a ? -about_b[c][l] : about_a[c][l];
+	}
+}
+
+static void fill_joint(const ob_island_work *w, ob_direct_contact *c)
+{
+	const ob_batch *b = batch_of(w, c);
+	int l = lane_of(w, c);
+	ob_joint *j = &c->joint;
+	double n[4], null_part = 0, softness = w->direct.shape == OB_DIRECT_CYCLIC ? compliance_in_cycles : compliance;
+	memset(j->child, 0, sizeof j->child);
+	memset(j->parent, 0, sizeof j->parent);
+	for (uint32_t r = 0; r < j->rows; r++) {
+		int row = c->row[r];
+		fill_row(b, l, row, w->contact[c->contact].a == c->child, r, j);
+		j->parent[r][6] = -w->direct.velocity[b - w->batch][row][l];
+		j->compliance[r] = softness * b->diag[row][l];
+	}
+	// Four points on a plane have no response along the null space: the velocity along it is removed.
+	if (!has_four_normals(c) || !normal_null_space(b, l, n))
+		return;
+	for (int r = 0; r < 4; r++)
+		null_part += n[r] * j->parent[r][6];
+	for (int r = 0; r < 4; r++)
+		j->parent[r][6] -= n[r] * null_part;
+}
+
+static void fill_link(const ob_body *m, ob_link *k)
+{
+	memset(k->m, 0, sizeof k->m);
+	for (int i = 0; i < 3; i++) {
+		const double *r = m->r.m[i];
+		k->m[i][i] = m->mass;
+		for (int j = 0; j < 3; j++) {
+			const double *q = m->r.m[j];
+			k->m[3 + i][3 + j] =
+				r[0] * q[0] * m->inertia.x + r[1] * q[1] * m->inertia.y + r[2] * q[2] * m->inertia.z;
+		}
+	}
+}
+
+// Adds contact i if any of its rows holds; else returns NULL.
+static ob_direct_contact *add_contact(ob_island_work *w, uint32_t i, uint32_t child)
+{
+	ob_direct_solver *f = &w->direct;
+	const ob_contact *contact = &w->contact[i];
+	ob_direct_contact *c = &f->contact[f->contacts];
+	if (contact->lane == OB_NO_LANE)
+		return NULL;
+	uint32_t batch = contact->lane / OB_LANES;
+	c->joint.rows = holding_rows(&w->batch[batch], contact->lane % OB_LANES, f->velocity[batch],
+				     neutral_speed * w->unit.speed, c->row);
+	if (!c->joint.rows)
+		return NULL;
+	c->contact = i;
+	c->child = child;
+	c->parent = contact->a == child ? contact->b : contact->a;
+	fill_joint(w, c);
+	f->contacts++;
+	return c;
+}
+
+static uint32_t find_roots(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		bool a_fixed = w->body[contact->a].inv_mass == 0, b_fixed = w->body[contact->b].inv_mass == 0;
+		uint32_t at = a_fixed ? contact->b : contact->a;
+		if ((!a_fixed && !b_fixed) || f->parent_contact[at] != UNREACHED)
+			continue;
+		const ob_direct_contact *c = add_contact(w, i, at);
+		if (!c)
+			continue;
+		ob_link_anchor(&f->link[at], &c->joint);
+		f->parent_contact[at] = ROOT;
+		f->order[n++] = at;
+	}
+	return n;
+}
+
+static uint32_t find_children(ob_island_work *w, uint32_t at, uint32_t n)
+{
+	ob_direct_solver *f = &w->direct;
+	const ob_body *body = &w->body[at];
+	for (uint32_t k = 0; k < body->adjacent; k++) {
+		uint32_t i = w->adjacency[body->first_adjacent + k];
+		uint32_t other = w->contact[i].a == at ? w->contact[i].b : w->contact[i].a;
+		if (w->body[other].inv_mass == 0 || f->parent_contact[other] != UNREACHED || !add_contact(w, i, other))
+			continue;
+		f->parent_contact[other] = f->contacts - 1;
+		f->order[n++] = other;
+	}
+	return n;
+}
+
+// Builds the trees. Every body enters the order once; bodies that nothing holds become trees of their own.
+static void build_trees(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	f->contacts = 0;
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		f->parent_contact[i] = UNREACHED;
+		fill_link(&w->body[i], &f->link[i]);
+	}
+	uint32_t n = find_roots(w), root = 1;
+	for (uint32_t done = 0; done < w->bodies; done++) {
+		for (; done == n; root++)
+			if (f->parent_contact[root] == UNREACHED) {
+				f->parent_contact[root] = ROOT;
+				f->order[n++] = root;
+			}
+		n = find_children(w, f->order[done], n);
+	}
+}
+
+// Adds all contacts with a row that holds.
+static void add_all_contacts(ob_island_work *w)
+{
+	w->direct.contacts = 0;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		add_contact(w, i, w->body[contact->a].inv_mass == 0 ? contact->b : contact->a);
+	}
+}
+
+// ---- solving
+
+static void find_row_velocities(ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->batches; i++) {
+		lanes *rate = w->direct.velocity[i];
+		ob_batch_row_velocities(&w->batch[i], w->u, rate);
+		for (int j = 0; j < OB_POINTS; j++)
+			rate[j] += w->batch[i].bias[j];
+		for (int j = OB_POINTS; w->batch[i].turning && j < OB_ROWS; j++)
+			rate[j] += (lanes)(lanes_mask(w->batch[i].turning) & (lane_mask)w->batch[i].turn[j]);
+	}
+}
+
+static void solve_trees(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	for (uint32_t k = w->bodies; k-- > 0;) {
+		uint32_t i = f->order[k];
+		ob_direct_contact *c = f->parent_contact[i] == ROOT ? NULL : &f->contact[f->parent_contact[i]];
+		ob_link_eliminate(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
+	}
+	for (uint32_t k = 0; k < w->bodies; k++) {
+		uint32_t i = f->order[k];
+		ob_direct_contact *c = f->parent_contact[i] == ROOT ? NULL : &f->contact[f->parent_contact[i]];
+		ob_link_substitute(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
+	}
+	for (uint32_t k = 0; k < f->contacts; k++)
+		if (w->body[f->contact[k].parent].inv_mass == 0)
+			ob_link_anchor_impulses(&f->link[f->contact[k].child], &f->contact[k].joint);
+}
+
+static uint32_t sparse_index(const ob_island_work *w, uint32_t row)
+{
+	return w->body[row].inv_mass > 0 ? row - 1 : OB_SPARSE_FIXED;
+}
+
+// Solves for all contacts that were added. Returns false if that would cost too much.
+static bool solve_sparse(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	ob_sparse_begin(&f->sparse, w->bodies);
+	for (uint32_t k = 0; k < f->contacts; k++)
+		ob_sparse_link(&f->sparse, f->contact[k].child - 1, sparse_index(w, f->contact[k].parent));
+	if (!ob_sparse_analyse(&f->sparse, max_block_products))
+		return false;
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		fill_link(&w->body[i], &f->link[i]);
+		ob_sparse_add_inertia(&f->sparse, i - 1, f->link[i].m);
+	}
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		const ob_direct_contact *c = &f->contact[k];
+		ob_sparse_add_joint(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));
+	}
+	ob_sparse_solve(&f->sparse);
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		ob_direct_contact *c = &f->contact[k];
+		ob_sparse_joint_impulses(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));
+	}
+	return true;
+}
+
+// Distributes a load on four points so that none pulls, which is possible if the load lies between them. Moves x, the
+// four impulses, along the null space to the middle of the admissible range.
+static void distribute_load(const ob_batch *b, int l, double *x)
+{
+	double n[4], from = -INFINITY, to = INFINITY;
+	if ((x[0] >= 0 && x[1] >= 0 && x[2] >= 0 && x[3] >= 0) || !normal_null_space(b, l, n))
+		return;
+	for (int j = 0; j < 4; j++) {
+		if (n[j] > 0)
+			from = ob_max(from, -x[j] / n[j]);
+		if (n[j] < 0)
+			to = ob_min(to, -x[j] / n[j]);
+	}
+	if (isinf(from) || isinf(to))
+		return;
+	for (int j = 0; j < 4; j++)
+		x[j] += n[j] * .5 * (from + to);
+}
+
+static void project_on_cone(const ob_batch *b, int l, double *x)
+{
+	double sum = 0;
+	for (int j = 0; j < OB_POINTS; j++)
+		sum += x[j] = ob_max(0, x[j]);
+	double bound = b->mu[l] * sum, friction = length(x[4], x[5]);
+	if (friction > bound) {
+		x[4] *= bound / friction;
+		x[5] *= bound / friction;
+	}
+	x[6] = ob_max(-bound * b->radius[l], ob_min(bound * b->radius[l], x[6]));
+}
+
+// Projects the share alpha of the solution on the cones: finds the changes of impulses, and of velocities in w->delta.
+static void project_solution(ob_island_work *w, double alpha)
+{
+	ob_direct_solver *f = &w->direct;
+	memset(f->impulse_change, 0, w->batches * sizeof *f->impulse_change);
+	memset(w->delta, 0, w->rows * sizeof *w->delta);
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		const ob_direct_contact *c = &f->contact[k];
+		const ob_batch *b = batch_of(w, c);
+		int l = lane_of(w, c);
+		double x[OB_ROWS];
+		for (int i = 0; i < OB_ROWS; i++)
+			x[i] = b->impulse[i][l];
+		for (uint32_t r = 0; r < c->joint.rows; r++)
+			x[c->row[r]] += c->joint.x[r];
+		if (has_four_normals(c))
+			distribute_load(b, l, x);
+		for (int i = 0; i < OB_ROWS; i++)
+			x[i] = b->impulse[i][l] + alpha * (x[i] - b->impulse[i][l]);
+		project_on_cone(b, l, x);
+		for (int i = 0; i < OB_ROWS; i++)
+			f->impulse_change[b - w->batch][i][l] = x[i] - b->impulse[i][l];
+	}
+	for (uint32_t i = 0; i < w->batches; i++)
+		ob_batch_apply_impulses(&w->batch[i], f->impulse_change[i], w->delta);
+}
+
+// Returns the share of the change, at most 1, that minimises the residual energy, slope t + curvature t^2 / 2.
+static double line_search(const ob_island_work *w)
+{
+	const ob_direct_solver *f = &w->direct;
+	double slope = 0, curvature = 0;
+	for (uint32_t i = 0; i < w->batches; i++) {
+		lanes r[OB_ROWS], s = lanes_of(0), c = lanes_of(0);
+		ob_batch_row_velocities(&w->batch[i], w->delta, r);
+		for (int k = 0; k < OB_ROWS; k++) {
+			s += f->velocity[i][k] * f->impulse_change[i][k];
+			c += r[k] * f->impulse_change[i][k];
+		}
+		for (int l = 0; l < OB_LANES; l++) {
+			slope += s[l];
+			curvature += c[l];
+		}
+	}
+	return slope < 0 && curvature > 0 ? ob_min(1, -slope / curvature) : 0;
+}
+
+static bool find_direction(ob_island_work *w)
+{
+	if (w->direct.shape == OB_DIRECT_CYCLIC) {
+		if (w->bodies > max_cyclic_bodies)
+			return false;
+		add_all_contacts(w);
+		return solve_sparse(w);
+	}
+	build_trees(w);
+	solve_trees(w);
+	return true;
+}
+
+bool ob_direct_solve(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	ob_direct_solver *f = &w->direct;
+	const double backtrack = .3, min_step = .5; // the projection bends the direction: then a smaller share is tried
+	const double min_alpha = f->shape == OB_DIRECT_CYCLIC ? backtrack : 1e-3;
+	double alpha = 1, t;
+	for (uint32_t i = 0; i < w->batches; i++)
+		ob_batch_prepare(&w->batch[i]);
+	find_row_velocities(w);
+	s->counters.direct_solves++;
+	enum { OF_TREES = 64, SPARSE = 640 }; // work for each body, at most
+	ob_budget_note(s, (uint64_t)(f->shape == OB_DIRECT_CYCLIC ? SPARSE : OF_TREES) * w->bodies);
+	if (!find_direction(w))
+		return false;
+	for (project_solution(w, alpha); (t = line_search(w)) < min_step && alpha > min_alpha;
+	     project_solution(w, alpha))
+		alpha *= backtrack;
+	f->gave_up = t < min_step;
+	if (f->gave_up)
+		return false;
+	for (uint32_t i = 0; i < w->batches; i++)
+		for (int k = 0; k < OB_ROWS; k++)
+			w->batch[i].impulse[k] += t * f->impulse_change[i][k];
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		for (int c = 0; c < 6; c++)
+			w->u[i][c] += t * w->delta[i][c];
+	memset(w->delta, 0, w->rows * sizeof *w->delta);
+	return true;
+}
+
+// ---- decision for a direct solve
+
+void ob_direct_begin(ob_direct_solver *f)
+{
+	f->used_last = f->gave_up = false;
+}
+
+void ob_direct_begin_partial(ob_direct_solver *f)
+{
+	f->shape = OB_DIRECT_UNKNOWN;
+	f->solves = 0;
+}
+
+void ob_direct_finish(ob_direct_solver *f)
+{
+	free(f->link);
+	free(f->order);
+	free(f->parent_contact);
+	free(f->contact);
+	free(f->velocity);
+	free(f->impulse_change);
+	ob_sparse_finish(&f->sparse);
+}
+
+static void reserve(ob_direct_solver *f, const ob_island_work *w)
+{
+	if (w->rows > f->rows_max) {
+		f->rows_max = w->rows + w->rows / 2;
+		f->link = ob_reallocate(f->link, f->rows_max * sizeof *f->link);
+		f->order = ob_reallocate(f->order, f->rows_max * sizeof *f->order);
+		f->parent_contact = ob_reallocate(f->parent_contact, f->rows_max * sizeof *f->parent_contact);
+	}
+	if (w->contacts > f->contacts_max) {
+		f->contacts_max = w->contacts + w->contacts / 2;
+		free(f->contact);
+		f->contact = ob_allocate(f->contacts_max * sizeof *f->contact);
+	}
+	if (w->batches > f->batches_max) {
+		f->batches_max = w->batches + w->batches / 2;
+		free(f->velocity);
+		free(f->impulse_change);
+		f->velocity = ob_allocate_aligned(32, f->batches_max * sizeof *f->velocity);
+		f->impulse_change = ob_allocate_aligned(32, f->batches_max * sizeof *f->impulse_change);
+	}
+}
+
+// Returns the largest relative speed (m/s) of touching bodies, at the velocities in rows. sum: sum over all contacts
+// (m/s). Sliding along a plane without friction does not count.
+static double fastest_contact(const ob_island_work *w, const ob_body_row *rows, double *sum)
+{
+	double most = 0;
+	*sum = 0;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+		const double *va = rows[contact->a], *vb = rows[contact->b];
+		ob_vec3 v = ob_v3(va[0] - vb[0], va[1] - vb[1], va[2] - vb[2]);
+		if (contact->lane == OB_NO_LANE)
+			continue;
+		double speed = contact->mu > 0 ? ob_norm(v) : ob_relative_speed(a->shape, &a->r, b->shape, &b->r, v);
+		most = ob_max(most, speed);
+		*sum += speed;
+	}
+	return most;
+}
+
+static bool stands_still(const ob_island_work *w)
+{
+	double sum;
+	return fastest_contact(w, w->v, &sum) <= standing_speed * w->unit.speed;
+}
+
+// True if contacts close cycles: trees would load one contact with what several carry.
+static bool closes_cycles(const ob_island_work *w)
+{
+	uint32_t touching = 0;
+	for (uint32_t i = 0; i < w->contacts; i++)
+		touching += w->contact[i].lane != OB_NO_LANE;
+	return touching > w->bodies;
+}
+
+// True if a body has been slow for some time, or has not moved yet. A body that was hit is slow for a moment each time
+// it turns back; its contacts are not in equilibrium then.
+static bool rests(const ob_island_work *w, const ob_body *body)
+{
+	return body->speed <= rest_speed * w->unit.speed &&
+	       (body->rest_time >= min_rest_time * w->unit.time || body->path <= unmoved_path * w->unit.length);
+}
+
+static bool has_come_to_rest(const ob_island_work *w)
+{
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		if (!rests(w, &w->body[i]))
+			return false;
+	return true;
+}
+
+// True if bodies creep that should stand still. The residual does not show it: in an island that sways as a whole it
+// changes little from pair to pair. The sum over all pairs does: no body moves faster against the ground.
+static bool creeps(const ob_island_work *w)
+{
+	double sum, fastest = fastest_contact(w, w->u, &sum);
+	return sum > residual_threshold * w->unit.speed && fastest < creep_speed * w->unit.speed;
+}
+
+static bool is_worthwhile(const ob_solver *s, double residual)
+{
+	const ob_direct_solver *f = &s->island.direct;
+	if (f->gave_up || f->shape == OB_DIRECT_UNFIT || s->settings->solver != OB_SOLVER_COLOURED)
+		return false;
+	// After a direct solve, the next partial substep is solved finely, too. The correction is part of the impulses
+	// that the warm start repeats; left alone, it would oscillate for ever.
+	const double enough =
+		f->used_last && f->shape != OB_DIRECT_CYCLIC ? residual_after_correction : residual_threshold;
+	return residual > enough * s->island.unit.speed || (!f->solves && creeps(&s->island));
+}
+
+static void find_shape(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	ob_direct_solver *f = &w->direct;
+	if (f->shape == OB_DIRECT_UNKNOWN)
+		f->shape = !stands_still(w)      ? OB_DIRECT_UNFIT
+			   : !closes_cycles(w)   ? OB_DIRECT_TREES
+			   : has_come_to_rest(w) ? OB_DIRECT_CYCLIC
+						 : OB_DIRECT_UNFIT;
+	if (f->shape != OB_DIRECT_UNFIT)
+		reserve(f, w);
+}
+
+bool ob_direct_wanted(ob_solver *s, double residual)
+{
+	ob_direct_solver *f = &s->island.direct;
+	if (!is_worthwhile(s, residual))
+		return false;
+	find_shape(s);
+	if (f->shape != OB_DIRECT_TREES || f->solves == max_solves)
+		return false;
+	f->solves++;
+	return true;
+}
+
+bool ob_direct_settles(ob_solver *s, double residual)
+{
+	if (!is_worthwhile(s, residual))
+		return false;
+	find_shape(s);
+	return s->island.direct.shape == OB_DIRECT_CYCLIC;
+}

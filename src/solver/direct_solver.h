@@ -1,0 +1,46 @@
+// Direct solve of an island's contacts, for cases in which iterations over its pairs would take too long.
+//
+// An iteration carries an impulse one pair further: a stack of n bodies takes about n^2 iterations, a load of n times
+// its carrier's mass about as many. In an island that stands, all contacts that hold are solved at once. If they form
+// trees on fixed bodies, that costs no more than some iterations (solver/tree_solver.h):
+//
+//        [3]                 breadth-first from the fixed bodies: 1 is a root (its
+//        [2]    [5]          contact is an anchor), 2 is a child of 1, 3 of 2; 4 is a
+//        [1]    [4]          root, 5 a child of 4. A contact that closes a cycle keeps
+//      ==============        its impulses, which this solve takes as given.
+//
+// If there are more contacts than bodies (walls, pyramids, towers of planks), all contacts take part
+// (solver/sparse_solver.h). This happens after the iterations, in islands at rest or not yet moved. Their solution must be
+// found to the end. Each contact's error adds to a sway of the whole, in which no contact has a residual that an
+// iteration would see: a tower of planks of 16 layers creeps by what iterations leave. So direct solves are repeated
+// while they reduce the residual; when one does not, conjugate iterations (solver/conjugate.h) bring the impulses nearer.
+// While anything sways from a hit, no equilibrium exists, and iterations are used.
+//
+// The last iteration shows which rows hold. Normals hold that press, or are about to (lambda D > r, the active set of a
+// semismooth Newton step: Hintermueller, Ito and Kunisch 2003). Normals hold, too, that neither press nor open: before
+// the first impulses nothing presses, and a standing body holds everywhere. Friction and twist hold within their
+// bounds. The solution for these rows is a direction: the impulses move along it, projected on the cones, as far as the
+// residual energy x r + x A x / 2 falls (projected Newton: Bertsekas 1982). Iterations and direct solves alternate, as
+// in the projected Gauss-Seidel method with subspace minimisation (Silcowitz, Niebe and Erleben 2010).
+//
+// The result is a function of the island's published state: every worker finds the same bits.
+#ifndef OB_SOLVER_DIRECT_SOLVER_H
+#define OB_SOLVER_DIRECT_SOLVER_H
+
+#include "solver/solver.h"
+
+// Resets the solver before the first substep of an island.
+void ob_direct_begin(ob_direct_solver *f);
+// Resets it before the iterations of a partial substep.
+void ob_direct_begin_partial(ob_direct_solver *f);
+// True if a direct solve of trees is worth its cost after an iteration that still changed velocities by "residual"
+// (m/s). Then the caller must make it.
+bool ob_direct_wanted(ob_solver *s, double residual);
+// True if the island stands, its contacts close cycles, and it has to be solved to the end. residual: m/s.
+bool ob_direct_settles(ob_solver *s, double residual);
+// Solves, and moves impulses and u along the solution. Returns false, with nothing changed, if the solution does not
+// reduce the residual, or would cost too much.
+bool ob_direct_solve(ob_solver *s);
+void ob_direct_finish(ob_direct_solver *f);
+
+#endif

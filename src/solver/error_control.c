@@ -1,0 +1,187 @@
+#include "solver/error_control.h"
+
+#include "solver/contacts.h"
+
+static const uint32_t max_substeps = OB_MAX_SUBSTEPS;
+static_assert(1 << (OB_SUBSTEP_CHOICES - 1) == OB_MAX_SUBSTEPS, "each number of substeps has its place");
+static const uint32_t max_substeps_for_creep = 64; // more do not help friction to hold
+static const double creep_time = 1; // s: time for which slip is remembered
+static const double sticking_share = .999; // share of its bound: friction holds if its impulse is smaller
+static const double error_ratio = 8; // factor by which the error may grow with half as many substeps
+
+uint32_t ob_error_control_substeps(const ob_solver *s, const ob_island_input *in)
+{
+	const ob_run_settings *run = s->settings;
+	uint32_t most = run->substeps;
+	if (!(run->tolerance > 0))
+		return most;
+	for (uint32_t i = 0; i < in->members; i++) {
+		uint32_t asked = in->object[i].motion->substeps;
+		most = asked > most && asked <= max_substeps ? asked : most;
+	}
+	return most;
+}
+
+static bool has_tolerance(const ob_solver *s)
+{
+	return s->settings->tolerance > 0;
+}
+
+// ---- notes
+
+void ob_error_control_note_depth(ob_solver *s, bool at_start)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t i = 0; has_tolerance(s) && i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		if (contact->lane == OB_NO_LANE)
+			continue;
+		double depth = ob_max(0, -ob_contact_gap(w, contact));
+		if (at_start)
+			contact->initial_depth = depth;
+		else if (depth > contact->initial_depth) {
+			w->new_error = ob_max(w->new_error, depth);
+			contact->depth_growth = ob_max(contact->depth_growth, depth - contact->initial_depth);
+		}
+		w->error = ob_max(w->error, depth);
+	}
+}
+
+// Returns the slip (m/s) at the contact's centroid in the solution, if friction holds it; else 0.
+static double slip_of(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES;
+	const double *va = w->u[contact->a], *vb = w->u[contact->b];
+	double sum = 0, rate[2] = { 0, 0 };
+	for (uint32_t j = 0; j < contact->points; j++)
+		sum += b->impulse[j][l];
+	double bound = sticking_share * contact->mu * sum;
+	if (b->slides >> l & 1 ||
+	    !(b->impulse[4][l] * b->impulse[4][l] + b->impulse[5][l] * b->impulse[5][l] < bound * bound))
+		return 0;
+	for (int c = 0; c < 3; c++) {
+		rate[0] += b->t1[c][l] * (va[c] - vb[c]) + b->fa1[c][l] * va[3 + c] - b->fb1[c][l] * vb[3 + c];
+		rate[1] += b->t2[c][l] * (va[c] - vb[c]) + b->fa2[c][l] * va[3 + c] - b->fb2[c][l] * vb[3 + c];
+	}
+	for (int k = 0; k < 2 && b->turning >> l & 1; k++)
+		rate[k] += b->turn[4 + k][l];
+	return sqrt(rate[0] * rate[0] + rate[1] * rate[1]);
+}
+
+void ob_error_control_note_slip(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t i = 0; has_tolerance(s) && i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		if (contact->lane != OB_NO_LANE && contact->mu > 0)
+			contact->slip += w->h * slip_of(w, contact);
+	}
+}
+
+void ob_error_control_note_bounce(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	const double tolerance = s->settings->tolerance;
+	const ob_impact_rows at = { w->v, w->drift, w->d };
+	double lost = 0;
+	for (uint32_t i = 0; has_tolerance(s) && w->elastic && w->max_acceleration > 0 && i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		if (contact->lane == OB_NO_LANE || !(contact->e > 0))
+			continue;
+		// m/s: approach that would rebound to the height of the tolerance; slowest approach that is resolved
+		double tolerable = sqrt(2 * w->max_acceleration * tolerance) / contact->e,
+		       resolved = 4 * w->max_acceleration * w->substep;
+		ob_impact slow = { .h = w->h, .threshold = tolerable, .gain = INFINITY, .points = ~0u };
+		if (resolved > tolerable &&
+		    ob_impact_time(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &slow, &at) <= slow.h)
+			lost = ob_max(lost, contact->e * contact->e * resolved * resolved / (2 * w->max_acceleration));
+	}
+	w->error = ob_max(w->error, lost);
+	w->new_error = ob_max(w->new_error, lost);
+}
+
+// ---- accepting a solution, or asking for another
+
+// Returns the share of the accumulated slip that is forgotten in a step.
+static double fading_of(const ob_island_work *w, const ob_run_settings *run)
+{
+	return ob_min(1, run->step_length / (creep_time * ob_coarse_time(w)));
+}
+
+// Accumulates slip. It fades over the creep time.
+static void note_creep(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = s->settings;
+	const double tolerance = run->tolerance, fading = fading_of(w, run);
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		contact->creep = contact->creep * (1 - fading) + contact->slip;
+		w->error = ob_max(w->error, contact->creep);
+		bool goes_on = contact->slip > fading * tolerance && w->substeps < max_substeps_for_creep;
+		if (contact->creep > tolerance && (goes_on || contact->slip > .5 * tolerance))
+			w->new_error = ob_max(w->new_error, contact->creep);
+	}
+}
+
+// Returns the number of substeps that a contact needs. It grows before the error is too large, so that few islands are
+// solved twice; it falls if the error would stay tolerable.
+static uint32_t substeps_for(const ob_island_work *w, const ob_contact *contact, const ob_run_settings *run)
+{
+	const double tolerance = run->tolerance, fading = fading_of(w, run);
+	double depth = contact->initial_depth + contact->depth_growth,
+	       creep = contact->slip / fading; // sum to which slip at this rate converges
+	double change = ob_max(depth, contact->creep) > .5 * tolerance ? ob_max(contact->depth_growth, creep)
+								       : contact->depth_growth;
+	uint32_t n = w->substeps;
+	if (contact->creep > .75 * tolerance && creep > tolerance && n < max_substeps_for_creep)
+		n *= 2;
+	for (; n >= 2 * run->substeps && change * error_ratio <= tolerance; change *= error_ratio)
+		n /= 2;
+	return n;
+}
+
+// Sets each body's next substeps to the largest number that its contacts need.
+static void set_next_substeps(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	const ob_run_settings *run = s->settings;
+	for (uint32_t i = 0; i < w->rows; i++)
+		w->body[i].next_substeps = run->substeps;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		uint32_t n = substeps_for(w, contact, run);
+		for (int side = 0; side < 2; side++) {
+			ob_body *body = &w->body[side ? contact->b : contact->a];
+			body->next_substeps = n > body->next_substeps ? n : body->next_substeps;
+		}
+	}
+}
+
+bool ob_error_control_accept(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	const double tolerance = s->settings->tolerance;
+	if (!has_tolerance(s))
+		return true;
+	ob_contacts_update(s, 0);
+	ob_error_control_note_depth(s, false);
+	note_creep(s);
+	if (w->new_error > tolerance && w->substeps < max_substeps) {
+		w->substeps *= w->new_error > 16 * tolerance ? 4 : 2;
+		w->substeps = w->substeps < max_substeps ? w->substeps : max_substeps;
+		return false;
+	}
+	const bool floats = w->max_acceleration == 0 && ob_norm2(w->frame) > 0;
+	if (w->new_error > tolerance && floats && !w->in_field) {
+		w->in_field = true;
+		w->substeps = s->settings->substeps;
+		return false;
+	}
+	set_next_substeps(s);
+	s->counters.islands_over += w->error > tolerance;
+	s->counters.error = ob_max(s->counters.error, w->error);
+	s->counters.chosen[31 - __builtin_clz(w->substeps)]++;
+	return true;
+}

@@ -1,0 +1,245 @@
+#include "solver/few_contacts.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_ROWS = OB_FEW_CONTACTS * OB_ROWS, NO_BODY = UINT32_MAX };
+
+static const double at_limit = 1 - 1e-9; // share of its bound: a larger friction impulse slides
+// Share of a row's own response. Rows of a face depend on each other; rounding errors grow by its inverse.
+static const double compliance = 1e-7;
+
+// Unknown of the linear system: the effect of its unit on both bodies, and on their velocities.
+typedef struct unknown {
+	uint32_t contact; // index in few.lane
+	int row; // of the batch; OB_POINTS: friction, along or across the first tangent
+	uint32_t a, b; // rows of bodies; NO_BODY for one that does not move
+	bool brings; // its load brings friction
+	double of_a[6], of_b[6]; // J^T
+	double to_a[6], to_b[6]; // M^-1 J^T, with the friction that a load brings
+	double left, extra; // m/s or rad/s: its velocity; addition to its response
+	double tangents[2]; // shares of friction's two tangents
+} unknown;
+
+typedef struct few {
+	uint32_t contacts, lane[OB_FEW_CONTACTS];
+	double brought[OB_FEW_CONTACTS][OB_ROWS]; // friction and twist for a unit of load
+	uint32_t unknowns;
+	unknown unknown[MOST_ROWS];
+	double m[MOST_ROWS][MOST_ROWS + 1];
+} few;
+
+static void add_row(const ob_batch *b, uint32_t l, int row, double share, double *of_a, double *of_b)
+{
+	const lanes *along = row < OB_POINTS ? b->n : row == 4 ? b->t1 : b->t2;
+	const lanes *about_a = row < OB_POINTS ? b->ja[row] : row == 4 ? b->fa1 : row == 5 ? b->fa2 : b->n;
+	const lanes *about_b = row < OB_POINTS ? b->jb[row] : row == 4 ? b->fb1 : row == 5 ? b->fb2 : b->n;
+	for (int c = 0; c < 3; c++) {
+		of_a[c] += row < 6 ? share * along[c][l] : 0;
+		of_b[c] -= row < 6 ? share * along[c][l] : 0;
+		of_a[3 + c] += share * about_a[c][l];
+		of_b[3 + c] -= share * about_b[c][l];
+	}
+}
+
+// Finds the change of velocity by an impulse. Returns false if the body does not move.
+static bool accelerate(double inv_mass, const lanes *inertia, uint32_t l, const double *impulse, double *to)
+{
+	if (!(inv_mass > 0))
+		return false;
+	const double x = impulse[3], y = impulse[4], z = impulse[5];
+	for (int c = 0; c < 3; c++)
+		to[c] = inv_mass * impulse[c];
+	to[3] = inertia[0][l] * x + inertia[1][l] * y + inertia[2][l] * z;
+	to[4] = inertia[1][l] * x + inertia[3][l] * y + inertia[4][l] * z;
+	to[5] = inertia[2][l] * x + inertia[4][l] * y + inertia[5][l] * z;
+	return true;
+}
+
+static double dot6(const double *x, const double *y)
+{
+	double sum = 0;
+	for (int c = 0; c < 6; c++)
+		sum += x[c] * y[c];
+	return sum;
+}
+
+// Adds an unknown: a row, or friction in a direction (tangents: shares of the two).
+static unknown *add_unknown(const ob_island_work *w, few *f, uint32_t contact, int row, const double *tangents)
+{
+	const uint32_t l = f->lane[contact] % OB_LANES;
+	const ob_batch *b = &w->batch[f->lane[contact] / OB_LANES];
+	unknown *x = &f->unknown[f->unknowns++];
+	double push_a[6], push_b[6];
+	memset(x, 0, sizeof *x);
+	x->contact = contact, x->row = row;
+	if (row == OB_POINTS) {
+		memcpy(x->tangents, tangents, sizeof x->tangents);
+		add_row(b, l, 4, tangents[0], x->of_a, x->of_b);
+		add_row(b, l, 5, tangents[1], x->of_a, x->of_b);
+	} else {
+		add_row(b, l, row, 1, x->of_a, x->of_b);
+	}
+	x->left = dot6(x->of_a, w->u[b->body_a[l]]) + dot6(x->of_b, w->u[b->body_b[l]]);
+	if (row < OB_POINTS)
+		x->left += b->bias[row][l];
+	else if (b->turning >> l & 1)
+		x->left += row == 6 ? b->turn[6][l] : tangents[0] * b->turn[4][l] + tangents[1] * b->turn[5][l];
+	memcpy(push_a, x->of_a, sizeof push_a);
+	memcpy(push_b, x->of_b, sizeof push_b);
+	for (int i = OB_POINTS; row < OB_POINTS && i < OB_ROWS; i++)
+		if (f->brought[contact][i] != 0)
+			add_row(b, l, i, f->brought[contact][i], push_a, push_b), x->brings = true;
+	x->a = accelerate(b->ima[l], b->ia, l, push_a, x->to_a) ? b->body_a[l] : NO_BODY;
+	x->b = accelerate(b->imb[l], b->ib, l, push_b, x->to_b) ? b->body_b[l] : NO_BODY;
+	return x;
+}
+
+// Finds the slip along the two tangents (m/s).
+static void slip_of(const ob_island_work *w, const ob_batch *b, uint32_t l, double *slip)
+{
+	for (int k = 0; k < 2; k++) {
+		double of_a[6] = { 0 }, of_b[6] = { 0 };
+		add_row(b, l, 4 + k, 1, of_a, of_b);
+		slip[k] = dot6(of_a, w->u[b->body_a[l]]) + dot6(of_b, w->u[b->body_b[l]]);
+		slip[k] += b->turning >> l & 1 ? b->turn[4 + k][l] : 0;
+	}
+}
+
+static void add_contact(const ob_island_work *w, few *f, uint32_t lane)
+{
+	const uint32_t l = lane % OB_LANES, contact = f->contacts++;
+	const ob_batch *b = &w->batch[lane / OB_LANES];
+	const double x4 = b->impulse[4][l], x5 = b->impulse[5][l], x6 = b->impulse[6][l],
+		     force = sqrt(x4 * x4 + x5 * x5);
+	double sum = 0, slip[2];
+	f->lane[contact] = lane;
+	memset(f->brought[contact], 0, sizeof *f->brought);
+	for (int i = 0; i < OB_POINTS; i++)
+		sum += b->impulse[i][l];
+	if (!(sum > 0))
+		return;
+	const double bound = b->mu[l] * sum, twist = bound * b->radius[l];
+	const bool slides = force >= at_limit * bound, spins = fabs(x6) >= at_limit * twist;
+	if (slides)
+		f->brought[contact][4] = x4 / sum, f->brought[contact][5] = x5 / sum;
+	if (spins)
+		f->brought[contact][6] = x6 / sum;
+	for (int i = 0; i < OB_POINTS; i++)
+		if (b->impulse[i][l] > 0 && ob_batch_has_point(b, (int)l, i))
+			add_unknown(w, f, contact, i, NULL);
+	if (!slides) {
+		add_unknown(w, f, contact, OB_POINTS, (double[2]){ 1, 0 });
+		add_unknown(w, f, contact, OB_POINTS, (double[2]){ 0, 1 });
+	} else if (bound > 0) {
+		slip_of(w, b, l, slip);
+		const double against = -(slip[0] * x4 + slip[1] * x5) / (force * force);
+		add_unknown(w, f, contact, OB_POINTS, (double[2]){ -x5 / force, x4 / force })->extra =
+			ob_max(0, against);
+	}
+	if (!spins)
+		add_unknown(w, f, contact, 6, NULL);
+}
+
+static double response(const unknown *i, const unknown *j)
+{
+	double sum = 0;
+	if (i->a != NO_BODY)
+		sum += i->a == j->a ? dot6(i->of_a, j->to_a) : i->a == j->b ? dot6(i->of_a, j->to_b) : 0;
+	if (i->b != NO_BODY)
+		sum += i->b == j->b ? dot6(i->of_b, j->to_b) : i->b == j->a ? dot6(i->of_b, j->to_a) : 0;
+	return sum;
+}
+
+// Fills the matrix. It is symmetric except for loads that bring friction.
+static void fill_matrix(few *f)
+{
+	for (uint32_t i = 0; i < f->unknowns; i++) {
+		const unknown *x = &f->unknown[i];
+		for (uint32_t j = 0; j <= i; j++) {
+			const unknown *y = &f->unknown[j];
+			f->m[i][j] = response(x, y);
+			f->m[j][i] = x->brings || y->brings ? response(y, x) : f->m[i][j];
+		}
+		f->m[i][i] = f->m[i][i] * (1 + compliance) + x->extra;
+		f->m[i][MOST_ROWS] = -x->left;
+	}
+}
+
+// Solves by elimination without pivots; the last column becomes the solution.
+static void solve(few *f)
+{
+	const uint32_t n = f->unknowns;
+	for (uint32_t k = 0; k < n; k++) {
+		const double inverse = 1 / f->m[k][k];
+		for (uint32_t i = k + 1; i < n; i++) {
+			const double share = f->m[i][k] * inverse;
+			if (share == 0)
+				continue;
+			for (uint32_t j = k + 1; j < n; j++)
+				f->m[i][j] -= share * f->m[k][j];
+			f->m[i][MOST_ROWS] -= share * f->m[k][MOST_ROWS];
+		}
+	}
+	for (uint32_t k = n; k-- > 0;) {
+		for (uint32_t j = k + 1; j < n; j++)
+			f->m[k][MOST_ROWS] -= f->m[k][j] * f->m[j][MOST_ROWS];
+		f->m[k][MOST_ROWS] /= f->m[k][k];
+	}
+}
+
+// Returns the share of the solution up to the place where the first point's impulse reaches zero.
+static double share_of(const ob_island_work *w, const few *f)
+{
+	double share = 1;
+	for (uint32_t k = 0; k < f->unknowns; k++) {
+		const unknown *x = &f->unknown[k];
+		const double change = f->m[k][MOST_ROWS];
+		if (!isfinite(change))
+			return 0;
+		if (x->row >= OB_POINTS)
+			continue;
+		const uint32_t lane = f->lane[x->contact];
+		const double before = w->batch[lane / OB_LANES].impulse[x->row][lane % OB_LANES];
+		if (before + share * change < 0)
+			share = -before / change;
+	}
+	return share;
+}
+
+static void apply(ob_island_work *w, const few *f, double share)
+{
+	for (uint32_t k = 0; k < f->unknowns; k++) {
+		const unknown *x = &f->unknown[k];
+		const uint32_t lane = f->lane[x->contact], l = lane % OB_LANES;
+		ob_batch *b = &w->batch[lane / OB_LANES];
+		const double change = share * f->m[k][MOST_ROWS];
+		if (x->row == OB_POINTS) {
+			b->impulse[4][l] += x->tangents[0] * change;
+			b->impulse[5][l] += x->tangents[1] * change;
+		} else {
+			b->impulse[x->row][l] += change;
+		}
+		if (x->row < OB_POINTS) {
+			b->impulse[x->row][l] = ob_max(0, b->impulse[x->row][l]);
+			for (int i = OB_POINTS; i < OB_ROWS; i++)
+				b->impulse[i][l] += f->brought[x->contact][i] * change;
+		}
+		for (int c = 0; c < 6 && x->a != NO_BODY; c++)
+			w->u[x->a][c] += change * x->to_a[c];
+		for (int c = 0; c < 6 && x->b != NO_BODY; c++)
+			w->u[x->b][c] += change * x->to_b[c];
+	}
+}
+
+void ob_few_contacts_step(ob_island_work *w)
+{
+	few f;
+	f.contacts = f.unknowns = 0;
+	for (uint32_t i = 0; i < w->batches; i++)
+		for (unsigned left = w->batch[i].live & ~w->batch[i].isolated; left; left &= left - 1)
+			add_contact(w, &f, i * OB_LANES + (uint32_t)__builtin_ctz(left));
+	fill_matrix(&f);
+	solve(&f);
+	apply(w, &f, share_of(w, &f));
+}

@@ -1,0 +1,273 @@
+// Working state of one island through one step, private to the worker that solves it. Plain data: the files that solve
+// an island (island_solver.c is their table of contents) share it, and say which part of it they write.
+//
+// Velocities lie in rows (contact/batch.h). v: at the start of the partial substep. dv: change by external acceleration
+// and by the impulses of the last partial substep at the present contacts (the warm start). u = v + dv, solved to the
+// partial substep's end. d: displacement since the poses were last updated. Row 0 stands for all that does not move.
+#ifndef OB_SOLVER_ISLAND_H
+#define OB_SOLVER_ISLAND_H
+
+#include <assert.h>
+
+#include "contact/batch.h"
+#include "contact/impact.h"
+#include "solver/sparse_solver.h"
+#include "solver/tree_solver.h"
+#include "settings/settings.h"
+#include "table/pair_state.h"
+
+static_assert((int)OB_POINTS == (int)OB_PAIR_POINTS && (int)OB_ROWS == (int)OB_PAIR_ROWS,
+	      "a pair is stored as it is solved");
+
+enum { OB_COLOURS = 64, OB_NO_LANE = UINT32_MAX };
+
+typedef struct ob_body {
+	uint32_t id;
+	ob_shape shape;
+	const ob_hull *hull; // shape of a hull, in the universe
+	ob_vec3 size, p;
+	ob_quat q;
+	ob_mat3 r;
+	double mass, inv_mass;
+	ob_vec3 inertia; // principal
+	ob_vec3 acceleration; // m/s^2, external, in the island's frame
+	ob_vec3 torque; // N m, world, external
+	double inv_inertia[6]; // world
+	double friction, restitution, radius, thickness;
+	double rest_depth; // m, as ob_placed.rest_depth
+	double path, speed; // m, as ob_motion.path; m/s bound of any point
+	double turning; // m/s, part of the surface's speed that turning adds
+	float rest_time; // s, as ob_motion.rest_time
+	bool isotropic; // inertia is the same about all axes
+	bool moved_freely; // it touched nothing at any time in this step
+	uint32_t contacts; // number of those that touch
+	uint32_t in_reach; // number that may carry load in the running partial substep: 0, 1 or more
+	bool loaded; // its free motion within the partial substep includes the last one's contact forces
+	double hit; // s into the partial substep: its last impact; 0: none
+	uint64_t colours; // bit per colour in use
+	uint32_t next_substeps; // its request for the next step (solver/error_control.h)
+	uint32_t active_iteration; // last iteration that changed its velocity by more than the wake threshold
+	uint32_t first_adjacent, adjacent; // range in adjacency
+	uint32_t next_ghost; // chain of its ghosts' rows (solver/ghost.h); 0 ends
+	uint32_t ghost_of; // of a ghost: the row that it stands for
+	bool holds; // fixed or driven row that holds the island: accelerations are felt relative to it (solver/frame.h)
+	uint32_t surface; // 1 + index into the kinematic surfaces (solver/surfaces.h); 0: none
+	double carried; // N s, sum over all surfaces that carry it
+	bool among_others; // it touches moving bodies
+	bool turns; // it has a contact whose geometry turns
+	bool halved; // it is at the midpoint of the partial substep (solver/midpoint.h)
+	ob_body_row first_half; // m, rad: displacement to the midpoint
+	ob_vec3 start_p, start_w; // state before that
+	ob_quat start_q;
+} ob_body;
+
+// A pair that touches, or may touch in this step.
+typedef struct ob_contact {
+	uint32_t key; // index of its pair in the input
+	uint32_t a, b; // rows
+	uint32_t lane; // batch * OB_LANES + lane; OB_NO_LANE = in no batch
+	uint32_t colour;
+	uint32_t points;
+	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
+	ob_vec3 friction_a, friction_b; // m: where friction acts
+	int8_t was[OB_PAIR_POINTS]; // for each point: its index in the previous geometry; -1: none
+	double disc_radius; // m, of the manifold
+	double spin_lever_a, spin_lever_b; // m, of its points (solver/relative_speed.h); 0 while separated
+	double path,
+		limit; // m: relative path in this step; bound up to which the geometry holds
+	double since; // s, from the time of the geometry to the partial substep's start; infinity: unknown
+	double found_for; // s: length of the partial substep for which the geometry was found
+	bool turns; // its geometry turns noticeably within the partial substep (solver/midpoint.h)
+	double mu, e; // coefficients of friction and of restitution
+	double initial_depth,
+		depth_growth; // m (solver/error_control.h): at the step's start; growth within the step
+	double slip, creep; // m: within this step; within the last second
+	uint32_t rebounds; // in the partial substep
+	bool left_to_solver; // its hits in the partial substep have too many points: the contact solver takes them
+	bool misses; // its bodies approach fast, but it does not close in the partial substep, as following them has
+		     // shown
+	bool as_of_instant; // its geometry is that of an instant in the running partial substep
+	bool began; // its bodies did not touch at the step's start
+	bool mirror; // second contact of a pair that is solved for each side apart: its own body is b
+} ob_contact;
+
+// A contact in a direct solve. parent: row of a fixed body if it is an anchor.
+typedef struct ob_direct_contact {
+	uint32_t contact, child, parent;
+	uint8_t row[OB_JOINT_ROWS]; // row of the batch, for each row of the joint
+	ob_joint joint;
+} ob_direct_contact;
+
+// Working state of solver/direct_solver.c; memory grown as needed, never shrunk.
+typedef struct ob_direct_solver {
+	enum {
+		OB_DIRECT_UNKNOWN,
+		OB_DIRECT_UNFIT,
+		OB_DIRECT_TREES,
+		OB_DIRECT_CYCLIC
+	} shape; // class of the running partial substep's contacts: too fast, trees, or with cycles
+	bool used_last; // the last partial substep was solved directly
+	bool gave_up; // a solve in this step did not reduce the residual
+	int solves; // in the running partial substep
+	uint32_t rows_max, contacts_max, batches_max;
+	ob_link *link; // [row]
+	uint32_t *order; // rows, parents before children
+	uint32_t *parent_contact; // [row]
+	uint32_t contacts;
+	ob_direct_contact *contact;
+	ob_sparse_solver sparse;
+	lanes (*velocity)[OB_ROWS], (*impulse_change)[OB_ROWS]; // [batch], per row
+} ob_direct_solver;
+
+// Working state of solver/conjugate.c; memory grown as needed, never shrunk.
+typedef struct ob_conjugate {
+	uint32_t batches_max;
+	lanes (*direction)[OB_ROWS], (*change)[OB_ROWS]; // [batch]: of the impulses; by the last iteration
+	double last; // J, squared change in the previous iteration
+} ob_conjugate;
+
+// A contact that hits within the partial substep.
+typedef struct ob_impact_instant {
+	uint32_t contact;
+	double time, approach; // s into the partial substep; m/s
+	bool joined; // part of the impact that is solved
+	uint32_t first_point, set_points; // first point and number of points of its set
+	ob_manifold m; // geometry at that time
+} ob_impact_instant;
+
+// A body at an instant within the partial substep: m, m/s, rad/s.
+typedef struct ob_body_at {
+	ob_vec3 p, v, w;
+	ob_quat q;
+	ob_mat3 r;
+} ob_body_at;
+
+// Working state of solver/impacts.c; memory grown as needed, never shrunk.
+typedef struct ob_impacts {
+	uint32_t count; // number of pending impacts
+	uint32_t contacts_max, rows_max;
+	ob_impact_instant *pending; // [2 contacts]: with the contacts that touch a hit
+	uint32_t *next; // [contacts]: chains of pending impacts of one set
+	uint32_t *seen; // [contacts]: last round that has checked it
+	uint32_t *set; // [contacts]: roots of the sets of a round
+	uint32_t *root, *head; // [rows]: union-find over bodies; first pending impact of a set
+	double *first; // [rows], s: earliest of the body's pending impacts
+	uint32_t changes, *changed; // [rows]: bodies that were hit in a round
+	uint32_t *slot; // [rows]: index in the set that is solved
+	uint32_t bodies, points; // of that set
+	uint32_t *row; // [bodies]
+	ob_body_at *at; // [bodies]
+	ob_impact_body *body, *before; // [bodies]
+	ob_impact_point *point;
+} ob_impacts;
+
+// A kinematic or running surface (solver/surfaces.h).
+typedef struct ob_surface {
+	uint32_t row, pair, contact; // own row; index into the island's pairs; into its contacts
+	ob_motion motion;
+	ob_vec3 running; // m/s, frame of the body: as ob_passport.surface_velocity
+	ob_state begin, end; // states at the ends of the running partial substep
+	ob_vec3 now; // m/s, world: the running surface at the contact
+} ob_surface;
+
+// Memory grown as needed, never shrunk.
+typedef struct ob_surfaces {
+	uint32_t count, max;
+	ob_surface *surface; // ascending by pair
+} ob_surfaces;
+
+// Scratch memory of an island's solve, grown as needed, never shrunk.
+typedef struct ob_island_work {
+	ob_units unit; // the run's units, for thresholds
+	double tolerance, run_coarseness; // m, of the run, or the default; ob_run_settings_coarseness()
+	double coarseness; // for the island's step: less with more substeps, else its error would not fall
+	uint32_t rows, rows_max; // bodies + fixed bodies + row 0
+	uint32_t bodies; // rows 1 .. bodies
+	uint32_t first_ghost; // first row of the ghosts
+	ob_body_row *history; // velocities after the last iterations, for ghosts
+	uint32_t history_max;
+	ob_body *body; // [rows]
+	ob_body_row *v, *dv, *u, *d, *delta;
+	ob_body_row
+		*drift; // change of velocity in the partial substep as impacts use it: dv without the echo of an impact
+	uint32_t contacts, contacts_max;
+	ob_contact *contact;
+	uint32_t *contact_lane; // [contacts]: copy of each contact's lane, contiguous for readers of nothing else
+	uint64_t *contact_key; // keys of solver/contact_order.c
+	uint32_t *contact_order; // indices of the island's pairs, in the order of loading
+	uint32_t *adjacency; // contacts of each body, touching or not
+	uint32_t batches, batches_max;
+	ob_batch *batch;
+	uint32_t *batch_colour; // [batches]
+	uint32_t open_batch[OB_COLOURS][OB_KINDS]; // tops of the stacks of batches with a free lane; UINT32_MAX = none
+	uint32_t *next_open_batch; // [batches]: next in the stack of its colour
+	uint32_t *batch_due; // [batches]: last iteration in which it is to be solved
+	uint32_t *batch_order; // [batches]: sorted by colour
+	bool order_stale, counts_stale;
+	bool elastic, plastic; // hits with restitution, and without, are solved at their instants (solver/impacts.h)
+	uint32_t iteration; // number of the running iteration, ever growing
+	double mass; // kg, sum of all bodies
+	double max_acceleration; // m/s^2, the largest external acceleration of a body
+	ob_vec3 frame; // m/s^2: acceleration of the frame of reference in which the island is solved
+	bool in_field; // bodies that fall together feel external acceleration: a solution in a frame that falls with
+		       // them missed the tolerance
+	bool torques; // a body has an external torque
+	uint32_t substeps; // of this step
+	double error, new_error; // m (solver/error_control.h): of the step; caused by the step itself
+	double substep; // s, length of a whole substep
+	double time; // s, from the step's start to the running partial substep's
+	double h, h_min; // s (solver/adaptive_substep.h): length of the running partial substep; the least one, but for
+			 // the last of a substep
+	double unpaced; // s: time not yet counted in the contacts' paths
+	double last_impact; // s into the partial substep: instant of its last impact
+	double residual,
+		last_residual; // m/s: largest change of a velocity in a first iteration, in this step so far; in the
+			       // last one
+	bool projected; // position projection was applied in this step
+	double recovered; // J, energy that position projection has added in this step
+	uint32_t *row_of, row_of_max; // [object of the input]: its row; 0: none yet
+	ob_direct_solver direct;
+	ob_conjugate conjugate;
+	ob_impacts impacts;
+	ob_surfaces surfaces;
+} ob_island_work;
+
+// Raises a threshold in a coarse run: `usual` times the coarseness, at most `bound`, which follows from the tolerance,
+// and at least `usual`. At the default tolerance and below it is `usual`.
+static inline double ob_coarser(const ob_island_work *w, double usual, double bound)
+{
+	return ob_max(usual, ob_min(w->coarseness * usual, bound));
+}
+
+// Returns the s that stand for one second of the default: a coarse run's unit of time is longer, its steps are not.
+static inline double ob_coarse_time(const ob_island_work *w)
+{
+	return w->unit.time / w->run_coarseness;
+}
+
+static inline ob_vec3 ob_row_linear(const double *row)
+{
+	return ob_v3(row[0], row[1], row[2]);
+}
+
+static inline ob_vec3 ob_row_angular(const double *row)
+{
+	return ob_v3(row[3], row[4], row[5]);
+}
+
+// Angular acceleration, rad/s^2, by a torque (N m, world).
+static inline ob_vec3 ob_body_turned_by(const ob_body *body, ob_vec3 torque)
+{
+	const double *i = body->inv_inertia; // xx xy xz yy yz zz
+	return ob_v3(i[0] * torque.x + i[1] * torque.y + i[2] * torque.z,
+		     i[1] * torque.x + i[3] * torque.y + i[4] * torque.z,
+		     i[2] * torque.x + i[4] * torque.y + i[5] * torque.z);
+}
+
+// True if a body of the contact was hit in the running partial substep.
+static inline bool ob_contact_was_hit(const ob_island_work *w, const ob_contact *c)
+{
+	return w->body[c->a].hit > 0 || w->body[c->b].hit > 0;
+}
+
+#endif

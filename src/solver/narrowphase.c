@@ -1,0 +1,259 @@
+#include "solver/narrowphase.h"
+
+#include "base/cpu.h"
+#include "solver/budget.h"
+#include "solver/contact_solver.h"
+
+static const double swept_travel =
+	.4; // share of the smaller thickness: faster pairs are followed through the partial substep
+static const double swept_gap = 1e-3; // m: a smaller gap counts as touching
+
+// ---- axis-aligned boxes of shapes
+
+// Returns half the width of the shape along the world's axis i (m).
+static double half_width(const ob_placed *x, int i)
+{
+	const double *m = x->r.m[i];
+	switch (x->shape) {
+	case OB_SHAPE_SPHERE:
+		return x->size.x;
+	case OB_SHAPE_BOX:
+		return fabs(m[0]) * x->size.x + fabs(m[1]) * x->size.y + fabs(m[2]) * x->size.z;
+	case OB_SHAPE_CAPSULE:
+		return x->size.x + fabs(m[2]) * x->size.y;
+	case OB_SHAPE_CYLINDER:
+		return x->size.x * sqrt(m[0] * m[0] + m[1] * m[1]) + fabs(m[2]) * x->size.y;
+	default:
+		return 0;
+	}
+}
+
+// Finds centre and half widths of the box; a hull's box is not about the hull's centre.
+static void find_extent(const ob_placed *x, ob_vec3 *middle, ob_vec3 *half)
+{
+	ob_vec3 low = { INFINITY, INFINITY, INFINITY }, high = { -INFINITY, -INFINITY, -INFINITY };
+	for (uint32_t k = 0; k < x->hull->corners; k++) {
+		const ob_vec3 c = ob_rotate(&x->r, x->hull->corner[k]);
+		low = ob_v3(ob_min(low.x, c.x), ob_min(low.y, c.y), ob_min(low.z, c.z));
+		high = ob_v3(ob_max(high.x, c.x), ob_max(high.y, c.y), ob_max(high.z, c.z));
+	}
+	*middle = ob_madd(x->p, .5, ob_add(low, high));
+	*half = ob_scale(ob_sub(high, low), .5);
+}
+
+static ob_placed box_around(const ob_placed *x)
+{
+	if (x->shape == OB_SHAPE_PLANE)
+		return *x;
+	if (x->shape == OB_SHAPE_HULL) {
+		ob_placed box = { .shape = OB_SHAPE_BOX,
+				  .r = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
+				  .v = x->v,
+				  .rest_depth = x->rest_depth,
+				  .far_future = x->far_future };
+		find_extent(x, &box.p, &box.size);
+		return box;
+	}
+	return (ob_placed){ .shape = OB_SHAPE_BOX,
+			    .size = ob_v3(half_width(x, 0), half_width(x, 1), half_width(x, 2)),
+			    .p = x->p,
+			    .r = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
+			    .v = x->v,
+			    .rest_depth = x->rest_depth,
+			    .far_future = x->far_future };
+}
+
+void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	ob_placed box_a = box_around(a), box_b = box_around(b);
+	ob_manifold_find(&box_a, &box_b, margin, out);
+}
+
+// ---- the collision test of the run
+
+static uint64_t corners_of(const ob_placed *x)
+{
+	enum { OF_A_BOX = 8 };
+	return x->shape == OB_SHAPE_BOX ? OF_A_BOX : x->hull ? x->hull->corners : 0;
+}
+
+static bool is_round(const ob_placed *x)
+{
+	return x->shape == OB_SHAPE_CYLINDER || x->shape == OB_SHAPE_CAPSULE;
+}
+
+// Returns the work of a test, with that of finding the points of a touching pair: a cylinder's rim is compared with all
+// features of the other shape.
+static uint64_t work_of_test(const ob_placed *a, const ob_placed *b)
+{
+	enum { LEAST = 8 };
+	return LEAST + (a->hull || b->hull ? corners_of(a) + corners_of(b) : 0);
+}
+
+static uint64_t work_of_points(const ob_placed *a, const ob_placed *b)
+{
+	enum { OF_A_CORNER = 100, OF_TWO_ROUND = 256 };
+	if (a->shape != OB_SHAPE_CYLINDER && b->shape != OB_SHAPE_CYLINDER)
+		return 0;
+	return is_round(a) && is_round(b) ? OF_TWO_ROUND : OF_A_CORNER * (corners_of(a) + corners_of(b));
+}
+
+// Runs a collision test. Once the budget is spent all shapes are far apart, so that loops over many pairs, and searches
+// in time, end soon.
+static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	const double far = 1e30; // m: beyond all that moves within a run
+	ob_solver *s = with;
+	const ob_run_settings *run = s->settings;
+	ob_budget_note(s, work_of_test(a, b));
+	out->disc_radius = 0;
+	out->valid_path = INFINITY;
+	if (ob_budget_spent(s)) {
+		out->points = 0;
+		out->separation = far;
+		return;
+	}
+	if (run->narrow_phase == OB_NARROW_AABB) {
+		s->counters.box_tests++;
+		ob_synthetic_load(run->load);
+		ob_manifold_aabb(a, b, margin, out);
+	} else {
+		ob_manifold_find(a, b, margin, out);
+		ob_budget_note(s, out->points ? work_of_points(a, b) : 0);
+	}
+}
+
+ob_manifold_finder ob_narrowphase_finder(ob_solver *s)
+{
+	return (ob_manifold_finder){ find_manifold, s, s->settings->narrow_phase == OB_NARROW_AABB };
+}
+
+// Tests two shapes at an instant of a search. The search places both by their rotation and looks for a direction along
+// which they stay apart, which costs several tests.
+static void find_on_the_way(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	enum { WORK_OF_ADVANCE = 16 };
+	ob_budget_note(with, WORK_OF_ADVANCE);
+	find_manifold(with, a, b, margin, out);
+}
+
+ob_manifold_finder ob_narrowphase_follower(ob_solver *s)
+{
+	return (ob_manifold_finder){ find_on_the_way, s, s->settings->narrow_phase == OB_NARROW_AABB };
+}
+
+double ob_narrowphase_rest_depth(const ob_solver *s, double thickness, bool pressed)
+{
+	const double of_slop = pressed ? 2 : .01, of_thickness = .02;
+	return ob_min(of_slop * ob_solver_slop(s), of_thickness * thickness);
+}
+
+double ob_narrowphase_far_future(const ob_solver *s)
+{
+	const double far_future = 10;
+	return far_future * s->island.unit.time;
+}
+
+void ob_narrowphase_place(const ob_solver *s, uint32_t row, ob_vec3 p, const ob_mat3 *r, ob_vec3 v, ob_vec3 w,
+			  ob_placed *out)
+{
+	const ob_body *body = &s->island.body[row];
+	out->shape = body->shape;
+	out->size = body->size;
+	out->p = p;
+	out->r = *r;
+	out->v = v;
+	out->w = w;
+	out->inertia = body->inertia;
+	out->a = body->acceleration;
+	out->rest_depth = body->rest_depth;
+	out->far_future = ob_narrowphase_far_future(s);
+	out->hull = body->hull;
+}
+
+// Fills in the body in its present state.
+static void place(const ob_solver *s, uint32_t row, ob_placed *out)
+{
+	const ob_body *body = &s->island.body[row];
+	const double *v = s->island.v[row];
+	ob_narrowphase_place(s, row, body->p, &body->r, ob_v3(v[0], v[1], v[2]), ob_v3(v[3], v[4], v[5]), out);
+}
+
+double ob_narrowphase_distance(ob_solver *s, uint32_t a, uint32_t b, double margin)
+{
+	ob_placed pa, pb;
+	ob_manifold m;
+	s->counters.narrowphase_tests++;
+	place(s, a, &pa);
+	place(s, b, &pb);
+	find_manifold(s, &pa, &pb, margin, &m);
+	return m.separation;
+}
+
+// Bounds the speed at which any two points of the pair may approach (m/s), with external acceleration.
+static double closing_speed(const ob_solver *s, const ob_contact *contact)
+{
+	const ob_island_work *w = &s->island;
+	const double *va = w->v[contact->a], *vb = w->v[contact->b];
+	ob_vec3 rel = ob_v3(va[0] - vb[0], va[1] - vb[1], va[2] - vb[2]);
+	const double speed = ob_norm(rel) + w->body[contact->a].turning + w->body[contact->b].turning;
+	return speed + w->max_acceleration * w->h;
+}
+
+// Extrapolates the gaps of points found at the time of impact t back to now: points that close at t have a gap that
+// closes then. Nothing touches before t, so a point that opens at t does not penetrate now.
+static void extrapolate_gaps_back(const ob_placed *a, const ob_placed *b, double t, ob_manifold *m)
+{
+	ob_vec3 rel = ob_sub(a->v, b->v);
+	ob_vec3 pa = ob_madd(a->p, t, a->v), pb = ob_madd(b->p, t, b->v);
+	for (int j = 0; j < m->points; j++) {
+		ob_vec3 spin = ob_sub(ob_cross(a->w, ob_sub(m->at[j], pa)), ob_cross(b->w, ob_sub(m->at[j], pb)));
+		m->gap[j] = ob_max(m->gap[j] - t * ob_dot(m->normal, ob_add(rel, spin)), ob_min(m->gap[j], 0));
+	}
+}
+
+static double smaller_thickness(const ob_island_work *w, const ob_contact *contact)
+{
+	return ob_min(w->body[contact->a].thickness, w->body[contact->b].thickness);
+}
+
+// Returns the time of impact (s), and the points up to "reach" (m) at that time.
+static double time_of_impact(ob_solver *s, const ob_contact *contact, double horizon, double reach, ob_manifold *m)
+{
+	const ob_island_work *w = &s->island;
+	ob_placed a, b;
+	place(s, contact->a, &a);
+	place(s, contact->b, &b);
+	double near = ob_min(swept_gap * w->unit.length, .25 * smaller_thickness(w, contact));
+	s->counters.swept_tests++;
+	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, near, reach, ob_narrowphase_follower(s),
+				 m);
+}
+
+double ob_narrowphase_time_of_impact(ob_solver *s, const ob_contact *contact, double horizon)
+{
+	ob_manifold m;
+	return time_of_impact(s, contact, horizon,
+			      ob_min(swept_gap * s->island.unit.length, .25 * smaller_thickness(&s->island, contact)),
+			      &m);
+}
+
+void ob_narrowphase_find(ob_solver *s, const ob_contact *contact, double tolerance, ob_manifold *m, double *when)
+{
+	const ob_island_work *w = &s->island;
+	ob_placed a, b;
+	place(s, contact->a, &a);
+	place(s, contact->b, &b);
+	double thin = smaller_thickness(w, contact), travel = closing_speed(s, contact) * w->h;
+	*when = 0;
+	if (travel < swept_travel * thin) {
+		find_manifold(s, &a, &b, ob_min(tolerance + 1.5 * travel, ob_max(.5 * thin, tolerance + travel)), m);
+		return;
+	}
+	double impact =
+		time_of_impact(s, contact, w->h, ob_min(w->body[contact->a].radius, w->body[contact->b].radius), m);
+	if (isinf(impact))
+		return;
+	*when = impact;
+	extrapolate_gaps_back(&a, &b, *when, m);
+}

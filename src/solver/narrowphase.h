@@ -1,0 +1,37 @@
+// The narrow phase: finds where the two bodies of a pair touch, now or within the coming partial substep.
+#ifndef OB_SOLVER_NARROWPHASE_H
+#define OB_SOLVER_NARROWPHASE_H
+
+#include "contact/manifold.h"
+#include "solver/solver.h"
+
+// Fills m with the pair's points and their present gaps. Fast pairs are followed through the partial substep: *when is
+// the time into it at which the points were found (s; 0 otherwise), and their arms run from the centres at that time.
+// tolerance: m, gaps up to it are always found. Both bodies' poses must be up to date (ob_body_update_pose).
+void ob_narrowphase_find(ob_solver *s, const ob_contact *t, double tolerance, ob_manifold *m, double *when);
+
+// Lower bound, m, of the distance of two rows of the island; beyond the margin, a value somewhat larger than it.
+double ob_narrowphase_distance(ob_solver *s, uint32_t a, uint32_t b, double margin);
+
+// Depth (m) to which a shape of this thickness (m) may rest in others, and the time (s) that counts as far future: see
+// ob_placed. pressed: something presses the bodies together; without it, hits leave nothing at rest in another body.
+double ob_narrowphase_rest_depth(const ob_solver *s, double thickness, bool pressed);
+double ob_narrowphase_far_future(const ob_solver *s);
+
+// Fills in a body of the island for collision tests, in this pose and at these rates.
+void ob_narrowphase_place(const ob_solver *s, uint32_t row, ob_vec3 p, const ob_mat3 *r, ob_vec3 v, ob_vec3 w,
+			  ob_placed *out);
+
+// Returns the collision test that the run's settings ask for; it takes any two shapes.
+ob_manifold_finder ob_narrowphase_finder(ob_solver *s);
+// The same for searches in time (contact/manifold.h): notes the work of an advance, too.
+ob_manifold_finder ob_narrowphase_follower(ob_solver *s);
+
+// Time of impact (s from now) of the two, if they go on as they do; infinity: not before "horizon".
+double ob_narrowphase_time_of_impact(ob_solver *s, const ob_contact *t, double horizon);
+
+// Narrow phase of axis-aligned boxes: ob_manifold_find for the boxes of the two shapes, which grow and shrink as the
+// shapes turn. A plane's box would be all of space: it stays a plane. Pure function.
+void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+
+#endif
