@@ -1,5 +1,5 @@
 // The whole test framework: CHECK counts checks; a failed one prints its place and expression. main ends with
-// CHECK_END.
+// return check_end().
 #ifndef OB_TESTS_CHECK_H
 #define OB_TESTS_CHECK_H
 

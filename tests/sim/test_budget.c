@@ -102,19 +102,19 @@ static void test_collision_tests(void)
 	ob_placed box = sphere, cylinder = sphere;
 	box.shape = OB_SHAPE_BOX, box.size = ob_v3(.5, .5, .5), box.p = ob_v3(.3, .2, .1);
 	cylinder.shape = OB_SHAPE_CYLINDER, cylinder.size = ob_v3(.5, .5, 0);
-	const ob_manifold_finder finder = ob_narrowphase_finder(l.sim);
+	const ob_manifold_finder finder = ob_narrowphase_finder(&l.sim->solver);
 	ob_manifold m;
 	uint64_t noted[2];
 	ob_budget_begin_share(l.sim, 0);
 	for (int i = 0; i < 2; i++) {
-		const uint64_t before = l.sim->budget.noted;
+		const uint64_t before = l.sim->solver.budget.noted;
 		finder.find(finder.with, i ? &cylinder : &sphere, &box, .1, &m);
-		noted[i] = l.sim->budget.noted - before;
+		noted[i] = l.sim->solver.budget.noted - before;
 		CHECK(m.points > 0);
 	}
 	CHECK(noted[0] > 0 && noted[1] > 20 * noted[0]);
 	ob_step_work_add(l.u, UINT64_C(1) << 40);
-	ob_budget_note(l.sim, 1 << 20);
+	ob_budget_note(&l.sim->solver, 1 << 20);
 	finder.find(finder.with, &sphere, &box, .1, &m);
 	CHECK(m.points == 0 && m.separation > 0);
 	little_close(&l);
