@@ -10,11 +10,11 @@ enum { CUBES = 10, PLANE = CUBES, STEPS = 60 };
 
 static const double side = 1, mass = 2, step_length = 1. / 60;
 
-// What a caller keeps of an island from step to step.
+// State of an island that its caller keeps from step to step.
 typedef struct tower {
 	ob_passport passport[CUBES + 1];
 	ob_motion motion[CUBES + 1];
-	ob_found_contact contact[CUBES]; // of cube k and what is below it
+	ob_found_contact contact[CUBES]; // cube k against what is below it
 	ob_solver solver;
 	uint32_t reported; // motions of the step
 } tower;
