@@ -102,7 +102,7 @@ void ob_island_scratch_finish(ob_sim *s)
 	free(s->scratch.pair);
 }
 
-// ---- what the solver asks and reports
+// ---- requests and reports of the solver
 
 static void enter_section(void *sim, ob_profile_section section)
 {

@@ -1,5 +1,5 @@
-// Account of the solver's work: what it does is noted, and told to the caller (ob_island_calls.spend) from time to time, who
-// ends work beyond a limit. Counted, never timed, so every run ends at the same point.
+// Account of the solver's work. The solver notes it, and from time to time reports it to the caller
+// (ob_island_calls.spend), which ends work beyond a limit. Counted, never timed, so every run ends at the same point.
 #ifndef OB_SOLVER_BUDGET_H
 #define OB_SOLVER_BUDGET_H
 

@@ -6,7 +6,7 @@
 #include "ode/ode_body.h"
 
 typedef struct ob_ode_bodies {
-	ob_ode_stepper *stepper; // of all of them
+	ob_ode_stepper *stepper; // shared by all bodies
 	uint32_t slots;
 	struct ob_ode_slot *slot; // [slots], by id: a later one takes an earlier one's place
 } ob_ode_bodies;

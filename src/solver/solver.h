@@ -36,7 +36,7 @@ typedef struct ob_island_pair {
 	uint32_t fixed; // index of the one that is no member; OB_NO_FIXED: both are members
 	double limit; // m, as ob_pair_key.limit
 	bool kept; // its state has been kept, so it is to be reported from now on
-	bool newest; // that state is the step before's
+	bool newest; // its state was written in the step before
 	const ob_pair_state *before; // state at the step's start; NULL: they have never touched
 	const double *impulse_b; // impulses on b where each side is solved apart; read only if the solver uses ghosts
 } ob_island_pair;
@@ -60,7 +60,7 @@ typedef struct ob_found_contact {
 	double impulse_b[OB_PAIR_ROWS];
 } ob_found_contact;
 
-// What the solver reports, or asks, while it works.
+// Reports and requests of the solver while it works.
 typedef struct ob_island_calls {
 	void *with;
 	// Counts work (solver/budget.h). Returns true if no more may be done.
@@ -89,7 +89,7 @@ typedef struct ob_solver {
 	} budget;
 	ob_counters counters;
 	ob_ode_bodies ode_bodies;
-	const ob_island_input *in; // of the island being solved
+	const ob_island_input *in; // input of the running call
 	ob_island_work island; // scratch
 } ob_solver;
 

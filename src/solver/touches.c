@@ -25,7 +25,7 @@ void ob_touches_note_solved(ob_solver *s)
 	}
 }
 
-// Where a body is hit in several places at once, each is told the change of its momentum in its own direction.
+// A body hit in several places at once gets for each the change of its momentum in that direction.
 void ob_touches_note_impact(ob_solver *s, const ob_impact_instant *i)
 {
 	const ob_island_work *w = &s->island;
