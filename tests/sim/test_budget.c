@@ -180,11 +180,11 @@ static void test_searches(void)
 				     slenderness = (double[]){ 1, 100, 1e4 }[i / 3 % 3];
 			const double fastest = ob_min(1e4, 1e5 / size),
 				     spin = fastest * (double[]){ 0, .01, 1 }[i / 9 % 3];
-			const uint64_t before = l.sim->budget.noted;
+			const uint64_t before = l.sim->solver.budget.noted;
 			if (spent)
-				ob_budget_note(l.sim, 1 << 20);
+				ob_budget_note(&l.sim->solver, 1 << 20);
 			const uint64_t n = search(l.sim, shapes[i / 27 % 3], size, slenderness, spin, i / 81);
-			CHECK(l.sim->budget.noted - before >= LEAST * n);
+			CHECK(l.sim->solver.budget.noted - before >= LEAST * n);
 			most = n > most ? n : most;
 		}
 		CHECK(spent ? most == 1 : most > 100);
