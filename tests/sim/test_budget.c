@@ -141,7 +141,7 @@ static uint64_t search(ob_sim *s, ob_shape shape, double size, double slendernes
 	const double thin = size / slenderness, speed = 2 * spin * size + 1;
 	ob_placed x[2];
 	ob_manifold m = { .valid_path = INFINITY };
-	counted c = { .finder = ob_narrowphase_follower(s) };
+	counted c = { .finder = ob_narrowphase_follower(&s->solver) };
 	double apart;
 	for (int i = 0; i < 2; i++)
 		x[i] = (ob_placed){ .shape = shape,
