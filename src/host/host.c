@@ -383,7 +383,9 @@ void ob_host_get_times(ob_host *h, ob_host_times *out)
 		.simulated_s = tells_of_tasks(h->u) ? 1e-9 * (double)ob_simulated_path(h->u) : NAN,
 	};
 	get_memory(h, out);
+	pthread_mutex_lock(&h->failure_lock); // the supervisor may just be counting a death
 	out->deaths = h->restart.deaths;
+	pthread_mutex_unlock(&h->failure_lock);
 	out->frozen = h->restart.frozen;
 	if (!h->cpu_counted)
 		return;
