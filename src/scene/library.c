@@ -19,6 +19,7 @@
 #define BYTES_READ 8. // per instruction, by functions that look at each byte
 #define BYTES_MADE 4. // per instruction, as in the allocator (sandbox.c)
 #define NUMBER_TEXT 12. // instructions to write a number as text
+#define ITERATION 2 // instructions, for the next of ipairs and pairs
 #define PRINT_COST 1000 // instructions that writing a line is worth
 
 static const char *const withheld[] = {
@@ -274,7 +275,6 @@ static bool string_less(lua_State *L)
 
 static int key_less(lua_State *L)
 {
-	ob_sandbox_spend(L, 6 + (unsigned)(fmin(string_bytes(L, 1), string_bytes(L, 2)) / 256));
 	int a = rank(L, 1), b = rank(L, 2);
 	bool before = a < b;
 	if (a == b && a == 0)
@@ -291,6 +291,7 @@ static int key_less(lua_State *L)
 static int next_pair(lua_State *L)
 {
 	lua_Integer i = lua_tointeger(L, lua_upvalueindex(3));
+	ob_sandbox_spend(L, ITERATION);
 	do {
 		i++;
 		lua_settop(L, 0);
@@ -301,6 +302,20 @@ static int next_pair(lua_State *L)
 	lua_pushinteger(L, i);
 	lua_replace(L, lua_upvalueindex(3));
 	return 2;
+}
+
+// Charges the order of n keys, the list at index 2, by n log n comparisons. How many there are depends on Lua's own
+// order, which differs from run to run.
+static void spend_order(lua_State *L, lua_Integer n)
+{
+	unsigned levels = 0;
+	while (((lua_Integer)1 << levels) < n)
+		levels++;
+	for (lua_Integer i = 1; i <= n; i++) {
+		lua_rawgeti(L, 2, i);
+		ob_sandbox_spend(L, levels * (8 + (unsigned)string_bytes(L, -1) / 256));
+		lua_pop(L, 1);
+	}
 }
 
 // Upvalue 1: table.sort
@@ -322,6 +337,7 @@ static int sorted_pairs(lua_State *L)
 		lua_pushvalue(L, -1);
 		lua_rawseti(L, 2, ++n);
 	}
+	spend_order(L, n);
 	lua_pushvalue(L, lua_upvalueindex(1));
 	lua_pushvalue(L, 2);
 	lua_pushcfunction(L, key_less);
@@ -335,6 +351,7 @@ static int sorted_pairs(lua_State *L)
 static int next_of_list(lua_State *L)
 {
 	luaL_checktype(L, 2, LUA_TNUMBER);
+	ob_sandbox_spend(L, ITERATION);
 	const lua_Integer i = luaL_checkinteger(L, 2) + 1;
 	lua_pushinteger(L, i);
 	return lua_geti(L, 1, i) == LUA_TNIL ? 1 : 2;

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <lauxlib.h>
 
@@ -23,7 +24,9 @@
 #define SEARCHED_BYTES 1024 // bytes of a table, empty or not, per instruction of a walk through it
 #define TABLE_BYTES 64 // bytes of a new table per instruction
 #define BITS_DIVIDED 32 // between two numbers, that count as an instruction of their remainder
-#define DIGITS 12 // instructions, to write a number as text
+#define DIGITS 16 // instructions, to write a number as text
+#define VALUES_MOST 255 // of "..." in a function of a script: each instruction may copy all
+#define VALUES_COPIED 16 // per instruction
 #define LARGE ((size_t)64 << 10) // bytes: filling such a block takes long enough to look at the clock
 
 typedef struct ob_sandbox_sizes {
@@ -130,13 +133,40 @@ const char *ob_sandbox_out_of_string(lua_State *L)
 	return sandbox_of(L)->limit.out_of_string;
 }
 
+// True if the function that is called has so many values in "...".
+static bool has_values(lua_State *L, const lua_Debug *d, int n)
+{
+	if (!lua_getlocal(L, d, -n))
+		return false;
+	lua_pop(L, 1);
+	return true;
+}
+
+// Counts values that a call passes on as "...", or returns.
+static void count_values(lua_State *L, lua_Debug *d)
+{
+	int n = 0;
+	if (d->event == LUA_HOOKRET)
+		n = lua_getinfo(L, "r", d) ? d->ntransfer : 0;
+	else
+		while (n <= VALUES_MOST && has_values(L, d, n + VALUES_COPIED))
+			n += VALUES_COPIED;
+	if (n > VALUES_MOST && d->event != LUA_HOOKRET)
+		ob_sandbox_fail(L, "a function got more than %d values as ...", VALUES_MOST);
+	if (n >= VALUES_COPIED)
+		ob_sandbox_spend(L, (unsigned)n / VALUES_COPIED);
+}
+
 // Any instruction may compare two strings of the same length, which nothing announces: each counts as if it did, with
 // the longest that there may be two of. A clock does as well where there is one.
 static void hook(lua_State *L, lua_Debug *d)
 {
 	const ob_sandbox *s = sandbox_of(L);
 	const size_t compared = s->deadline < INFINITY ? 0 : s->made.longest[1] / BYTES_COMPARED;
-	ob_sandbox_spend(L, HOOK_EVERY * (1 + (unsigned)compared));
+	if (d->event == LUA_HOOKCOUNT)
+		ob_sandbox_spend(L, HOOK_EVERY * (1 + (unsigned)compared));
+	else
+		count_values(L, d);
 }
 
 // Lua's order of strings, piece by piece between zero bytes: by bytes in any locale, and counted.
@@ -147,15 +177,51 @@ __attribute__((visibility("default"))) int strcoll(const char *a, const char *b)
 	return strcmp(a, b);
 }
 
-// Begins the text of each number with a fraction, in Lua: "a" .. 1.5 is one instruction, with no other call in it.
-__attribute__((visibility("default"))) size_t strspn(const char *text, const char *accepted)
+// Writes numbers as text in Lua: "a" .. 1 is one instruction, with no other call in it.
+static int print_counted(char *out, size_t size, const char *format, va_list args)
 {
-	size_t n = 0;
-	if (running)
+	if (running && (strcmp(format, LUA_INTEGER_FMT) == 0 || strcmp(format, LUA_NUMBER_FMT) == 0))
 		spend_silently(running, DIGITS);
-	while (text[n] && strchr(accepted, text[n]))
-		n++;
+	return vsnprintf(out, size, format, args);
+}
+
+__attribute__((visibility("default"))) int snprintf(char *out, size_t size, const char *format, ...)
+{
+	va_list args;
+	va_start(args, format);
+	const int n = print_counted(out, size, format, args);
+	va_end(args);
 	return n;
+}
+
+// The same as libraries call it that were built with checks of buffers.
+int __snprintf_chk(char *out, size_t size, int flag, size_t room, const char *format, ...);
+__attribute__((visibility("default"))) int __snprintf_chk(char *out, size_t size, int flag, size_t room,
+							  const char *format, ...)
+{
+	if (size > room)
+		abort();
+	va_list args;
+	va_start(args, format);
+	const int n = print_counted(out, size, format, args);
+	va_end(args);
+	return n;
+}
+
+// Clocks by which table.sort chooses some pivots: in Lua, the order of equal values and the count depend on none.
+__attribute__((visibility("default"))) clock_t clock(void)
+{
+	return running ? 0 : (clock_t)(ob_clock_process_cpu() * CLOCKS_PER_SEC);
+}
+
+__attribute__((visibility("default"))) time_t time(time_t *out)
+{
+	struct timespec t = { 0 };
+	if (!running)
+		clock_gettime(CLOCK_REALTIME, &t);
+	if (out)
+		*out = t.tv_sec;
+	return t.tv_sec;
 }
 
 // The remainder in Lua, a % b: long work where one is huge and the other tiny. It is exact with any precision.
@@ -239,6 +305,8 @@ static void *allocate(void *user, void *block, size_t old, size_t size)
 		s->memory += size - had;
 	else if (size > had)
 		return refuse(s, "no memory left on this machine");
+	if (!block && (old == LUA_TTABLE || old == LUA_TFUNCTION || old == LUA_TUSERDATA))
+		spend_silently(s, 1); // and its collection
 	if (string)
 		count_string(s, size);
 	else if (!block)
@@ -350,7 +418,8 @@ static int call_counted(ob_sandbox *s, int arguments, int handler)
 {
 	ob_sandbox *const before = running;
 	running = s;
-	lua_sethook(s->L, hook, LUA_MASKCOUNT, HOOK_EVERY); // which begins to count anew
+	const int calls = s->deadline < INFINITY ? 0 : LUA_MASKCALL | LUA_MASKRET;
+	lua_sethook(s->L, hook, calls | LUA_MASKCOUNT, HOOK_EVERY); // which begins to count anew
 	const int status = lua_pcall(s->L, arguments, 0, handler);
 	lua_sethook(s->L, NULL, 0, 0);
 	running = before;

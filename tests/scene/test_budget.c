@@ -217,8 +217,79 @@ static void try_function(found *all, int f)
 	CHECK(false);
 }
 
+// Runs a text in a new sandbox, with so many instructions; returns how many it has taken. e: its error, or nothing.
+static uint64_t count(const char *text, uint64_t instructions, ob_error *e)
+{
+	const ob_sandbox_limits limits = {
+		.memory = 4 << 20,
+		.string = 64 << 10,
+		.instructions = instructions,
+		.seconds = INFINITY,
+		.out_of_memory = "memory",
+		.out_of_string = "string",
+		.out_of_instructions = "spent",
+	};
+	*e = (ob_error){ "" };
+	ob_sandbox *s = ob_sandbox_create_limited("budget", &limits, ob_library_open, NULL, e);
+	CHECK(s);
+	const double start = cpu();
+	ob_sandbox_run(s, text, strlen(text), e);
+	const uint64_t n = ob_sandbox_instructions(s);
+	printf("%8.1f ms  %.90s\n", 1e9 * (cpu() - start) / fmax(1e5, (double)n), text);
+	ob_sandbox_destroy(s);
+	return n;
+}
+
+// Lua's own order of keys differs from sandbox to sandbox, and table.sort looks at clocks: the count does neither.
+static void check_same_count(void)
+{
+	static const char *const texts[] = {
+		"local t = {} for i = 1, 3000 do t['key ' .. i] = i end for i = 1, 9 do for k in pairs(t) do end end",
+		"local t = {} for i = 1, 300 do t[('x'):rep(i * 9 % 2000) .. i] = i end for k in pairs(t) do end",
+		"for j = 1, 9 do local t = {} for i = 1, 9000 do t[i] = 9 + i * 7919 % 9001 end "
+		"t[1], t[4500], t[9000] = 1, 2, 3 table.sort(t) end",
+	};
+	for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+		ob_error e;
+		const uint64_t first = count(texts[i], UINT64_MAX / 2, &e);
+		CHECK(!*e.text);
+		for (int again = 0; again < 8; again++)
+			CHECK(count(texts[i], UINT64_MAX / 2, &e) == first);
+	}
+}
+
+// What the machine does in one instruction counts: each of these is more than a million.
+static void check_machine(void)
+{
+	static const char *const texts[] = {
+		"local n for i = 1, 40000 do n = i .. i end",
+		"local n for i = 1, 40000 do n = math.mininteger .. '' n = i .. '' end",
+		"local n, x = 1, 1.2345678901234e300 for i = 1, 40000 do n = x .. x end",
+		"local function r(n) if n > 0 then return 1, r(n - 1) end end for i = 1, 4 do r(3000) end",
+		"local t = {} for i = 1, 200 do t[i] = i end local function f(n, ...) if n > 0 then return f(n - 1, "
+		"...) "
+		"end end f(70000, table.unpack(t))",
+		"local n for i = 1, 100000 do n = { 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12 } end",
+	};
+	static const char *const refused[] = {
+		"local t = {} for i = 1, 300 do t[i] = i end local function f(...) end f(table.unpack(t))",
+		"local function f(n, ...) if n > 0 then return f(n - 1, 1, 2, 3, 4, 5, 6, 7, 8, 9, ...) end end f(99)",
+	};
+	ob_error e;
+	for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+		count(texts[i], 1000000, &e);
+		CHECK(strstr(e.text, "spent"));
+	}
+	for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
+		count(refused[i], 1000000, &e);
+		CHECK(strstr(e.text, "a function got more than 255 values as ..."));
+	}
+}
+
 int main(void)
 {
+	check_same_count();
+	check_machine();
 	static found all;
 	ob_log_set_notes(0);
 	ob_sandbox *s = open_sandbox("a", false);
