@@ -11,7 +11,6 @@
 
 #define OB_SCENE_OBJECTS_MAX 1000000
 #define OB_SCENE_OBJECT_INSTRUCTIONS 100 // Lua instructions, in addition, for each object that a file adds
-#define OB_SCENE_OBJECT_SECONDS 20e-6 // s
 #define OB_SCENE_MESH_NAME_MAX 256 // bytes, with the final 0
 #define OB_SCENE_MATERIALS_MAX 256
 #define OB_SCENE_CAMERAS_MAX 64

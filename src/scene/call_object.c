@@ -259,7 +259,7 @@ ob_object_def *ob_builder_add(lua_State *L, ob_builder *b, const char *kind, con
 	else
 		snprintf(o->passport.name, sizeof o->passport.name, "%s#%u", kind, (unsigned)s->objects);
 	s->objects++;
-	ob_sandbox_extend(L, OB_SCENE_OBJECT_INSTRUCTIONS, OB_SCENE_OBJECT_SECONDS);
+	ob_sandbox_extend(L, OB_SCENE_OBJECT_INSTRUCTIONS);
 	return o;
 }
 

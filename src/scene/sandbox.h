@@ -18,7 +18,7 @@
 #define OB_SANDBOX_MEMORY ((size_t)64 << 20) // bytes, all that Lua holds
 #define OB_SANDBOX_STRING ((size_t)1 << 20) // bytes, one string
 #define OB_SANDBOX_INSTRUCTIONS 50000000 // instructions of the Lua machine
-#define OB_SANDBOX_SECONDS 10 // s, wall clock
+#define OB_SANDBOX_SECONDS 10 // s, CPU of its thread
 
 typedef struct ob_sandbox ob_sandbox;
 
@@ -27,7 +27,7 @@ typedef struct ob_sandbox_limits {
 	size_t memory; // bytes
 	size_t string; // bytes, one string
 	uint64_t instructions;
-	double seconds; // wall clock; INFINITY: the same on any machine
+	double seconds; // CPU of its thread; INFINITY: the same on any machine
 	const char *out_of_memory, *out_of_string, *out_of_instructions; // texts of the errors
 } ob_sandbox_limits;
 
@@ -63,8 +63,8 @@ void *ob_sandbox_user(lua_State *L);
 int ob_sandbox_line(lua_State *L);
 // Raises "path:line: ..." ; never returns.
 _Noreturn void ob_sandbox_fail(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
-// Raises both limits by so much, for useful work.
-void ob_sandbox_extend(lua_State *L, unsigned instructions, double seconds);
+// Raises the limit of instructions by so many, for useful work.
+void ob_sandbox_extend(lua_State *L, unsigned instructions);
 // Counts work done outside the Lua machine, in instructions; raises an error at a limit. One for each 20 ns or so.
 void ob_sandbox_spend(lua_State *L, unsigned instructions);
 // Counts a walk through the largest table that there may be: one that was emptied has its size still.
