@@ -2,45 +2,18 @@
 
 #include <limits.h>
 #include <mpi.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
 
-enum { JOIN_S = 60 }; // s, in which all ranks must have started MPI
-
 static int ranks;
 static int *counts, *offsets, *own_counts, *own_offsets;
-
-// Ends the process where MPI_Init waits for ever, as it does for a rank that runs another program: MPI has no time limit
-// of its own, and a thread inside it cannot be cancelled.
-static void *end_late_start(void *rank)
-{
-	nanosleep(&(struct timespec){ .tv_sec = JOIN_S }, NULL);
-	pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, NULL);
-	fprintf(stderr, "obsim: rank %s has waited %d s for the others: does each rank of the launcher start obsim run?\n",
-		(const char *)rank, JOIN_S);
-	_exit(1);
-}
-
-static bool start_mpi(void)
-{
-	const char *rank = getenv("OMPI_COMM_WORLD_RANK");
-	pthread_t watch;
-	const bool watched = pthread_create(&watch, NULL, end_late_start, (void *)(rank ? rank : "?")) == 0;
-	const bool started = MPI_Init(NULL, NULL) == MPI_SUCCESS;
-	if (watched) {
-		pthread_cancel(watch);
-		pthread_join(watch, NULL);
-	}
-	return started;
-}
 
 static bool open_mpi(uint32_t *rank, uint32_t *all)
 {
 	int own;
-	if (!start_mpi())
+	if (MPI_Init(NULL, NULL) != MPI_SUCCESS)
 		return false;
 	MPI_Comm_rank(MPI_COMM_WORLD, &own);
 	MPI_Comm_size(MPI_COMM_WORLD, &ranks);

@@ -1,9 +1,14 @@
 #include "ranks/ranks.h"
 
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "ranks/module.h"
+
+enum { JOIN_S = 60 }; // s, in which all ranks must have started MPI
 
 struct ob_wire {
 	const ob_wire_module *module;
@@ -74,6 +79,26 @@ static void destroy(ob_wire *w)
 	free(w);
 }
 
+static char late_line[160];
+
+static void end_late_start(int number)
+{
+	(void)number;
+	const ssize_t ignored = write(STDERR_FILENO, late_line, strlen(late_line));
+	(void)ignored;
+	_exit(1);
+}
+
+void ob_ranks_limit_start(unsigned seconds, uint32_t rank)
+{
+	const unsigned wait = seconds ? seconds + rank : 0;
+	snprintf(late_line, sizeof late_line,
+		 "obsim: rank %u has waited %u s for the others: does each rank of the launcher start obsim run?\n", rank,
+		 wait);
+	signal(SIGALRM, end_late_start);
+	alarm(wait);
+}
+
 static bool join(ob_wire *w, const ob_ranks *ranks, ob_error *e)
 {
 	uint32_t rank, all;
@@ -83,7 +108,10 @@ static bool join(ob_wire *w, const ob_ranks *ranks, ob_error *e)
 	w->module = ob_part_load("mpi", sizeof *w->module, true, "libopenmpi3", e);
 	if (!w->module)
 		return false;
-	if (!w->module->open(&rank, &all))
+	ob_ranks_limit_start(JOIN_S, ranks->rank);
+	const bool opened = w->module->open(&rank, &all);
+	ob_ranks_limit_start(0, ranks->rank);
+	if (!opened)
 		return ob_fail(e, "MPI does not start");
 	if (rank == ranks->rank && all == ranks->ranks)
 		return true;

@@ -26,6 +26,11 @@ ob_ranks ob_ranks_started(void);
 // Makes this process, and programs that it starts, a single rank.
 void ob_ranks_forget(void);
 
+// Limits the start of MPI, which waits for ever for a rank that runs another program: after "seconds", and one more for
+// each rank before this one, the process ends with a line, exit 1. So one rank writes it, and the launcher ends the
+// others. seconds = 0: all have started.
+void ob_ranks_limit_start(unsigned seconds, uint32_t rank);
+
 typedef struct ob_wire ob_wire;
 
 // Joins the others; returns when all have joined. The program must not have loaded MPI. Returns NULL and e if the

@@ -1,8 +1,11 @@
-// Rank of this process in the environment variables of Open MPI 4.1.4 and Slurm 22.05.
+// Rank of this process in the environment variables of Open MPI 4.1.4 and Slurm 22.05, and a start that is late.
 #include "check.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "ranks/ranks.h"
 
@@ -22,8 +25,35 @@ static bool is_started(const char *const said[WORDS], uint32_t rank, uint32_t ra
 	return found.rank == rank && found.ranks == ranks;
 }
 
+// A process that waits for other ranks ends with one line; ranks behind the first wait longer; one that has started
+// goes on.
+static void check_late(void)
+{
+	char line[400] = "";
+	int ends[2], status;
+	CHECK(pipe(ends) == 0);
+	const pid_t child = fork();
+	if (child == 0) {
+		dup2(ends[1], STDERR_FILENO);
+		ob_ranks_limit_start(1, 0);
+		for (;;)
+			pause();
+	}
+	close(ends[1]);
+	CHECK(waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 1);
+	CHECK(read(ends[0], line, sizeof line - 1) > 0 && strstr(line, "rank 0 has waited 1 s"));
+	CHECK(strchr(line, '\n') == line + strlen(line) - 1);
+	close(ends[0]);
+	ob_ranks_limit_start(1000, 500);
+	CHECK(alarm(0) > 1000);
+	ob_ranks_limit_start(1000, 500);
+	ob_ranks_limit_start(0, 500);
+	CHECK(alarm(0) == 0);
+}
+
 int main(void)
 {
+	check_late();
 	CHECK(is_started((const char *[WORDS]){ 0 }, 0, 1));
 	CHECK(is_started((const char *[WORDS]){ "2", "4", "2" }, 2, 4)); // mpirun
 	CHECK(is_started((const char *[WORDS]){ "0", "1", "0" }, 0, 1));
