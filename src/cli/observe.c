@@ -130,17 +130,16 @@ static bool measure_penetration(ob_observer *o, const ob_snapshot *s, const ob_h
 	return true;
 }
 
-// Warns of objects that begin inside each other, by more than what contacts explain.
-static void warn_of_overlap(const ob_observer *o, const ob_snapshot *s, const ob_host *host)
+void ob_warn_of_overlap(const ob_penetration *now, const ob_snapshot *s, const ob_host *host)
 {
 	static const double much = 10; // tolerances
 	const double tolerance = ob_universe_settings(ob_host_universe(host))->tolerance;
 	ob_quantity depth;
-	if (o->now.max_m > much * (tolerance > 0 ? tolerance : OB_DEFAULT_TOLERANCE))
+	if (now->max_m > much * (tolerance > 0 ? tolerance : OB_DEFAULT_TOLERANCE))
 		ob_log_warn("\"%s\" (object %" PRIu32 ") and \"%s\" (object %" PRIu32
 			    ") begin %s inside each other: move them apart",
-			    s->passport[o->now.worst_a].name, o->now.worst_a, s->passport[o->now.worst_b].name,
-			    o->now.worst_b, ob_quantity_text(&depth, o->now.max_m, "m"));
+			    s->passport[now->worst_a].name, now->worst_a, s->passport[now->worst_b].name, now->worst_b,
+			    ob_quantity_text(&depth, now->max_m, "m"));
 }
 
 bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *host, ob_error *e)
@@ -160,7 +159,7 @@ bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *ho
 	if (!measure_penetration(o, s, host, e))
 		return false;
 	if (begins)
-		warn_of_overlap(o, s, host);
+		ob_warn_of_overlap(&o->now, s, host);
 	if (o->now.max_m > o->worst) {
 		o->worst = o->now.max_m;
 		o->worst_time = s->time;

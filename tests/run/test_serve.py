@@ -108,6 +108,14 @@ class Serve(Case):
 		self.assertRegex(other.told["notice"], r"was killed by SIGKILL.*; frozen for it: 1$")
 		self.end(saying="was killed by SIGKILL")
 
+	def test_overlap(self):
+		"""Objects that begin deep inside each other are named, as by run."""
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("for i = 1, 2 do box { size = { 1, 1, 1 }, at = { 0, 0, i * .2 }, name = 'b' .. i } end\n")
+		self.serve_file(self.path("scene.lua"))
+		self.viewer()
+		self.end(saying='"b1" (object 0) and "b2" (object 1) begin 800 mm inside each other')
+
 	def test_clock(self):
 		self.serve("--paused")
 		v = self.viewer()
