@@ -8,7 +8,10 @@
 
 #include "ranks/module.h"
 
-enum { JOIN_S = 60 }; // s, in which all ranks must have started MPI
+enum {
+	JOIN_S = 60, // s, in which all ranks must have started MPI
+	BETWEEN_S = 5, // s, in which a launcher ends the other ranks
+};
 
 struct ob_wire {
 	const ob_wire_module *module;
@@ -91,7 +94,7 @@ static void end_late_start(int number)
 
 void ob_ranks_limit_start(unsigned seconds, uint32_t rank)
 {
-	const unsigned wait = seconds ? seconds + rank : 0;
+	const unsigned wait = seconds ? seconds + BETWEEN_S * rank : 0;
 	snprintf(late_line, sizeof late_line,
 		 "obsim: rank %u has waited %u s for the others: does each rank of the launcher start obsim run?\n", rank,
 		 wait);

@@ -26,7 +26,7 @@ ob_ranks ob_ranks_started(void);
 // Makes this process, and programs that it starts, a single rank.
 void ob_ranks_forget(void);
 
-// Limits the start of MPI, which waits for ever for a rank that runs another program: after "seconds", and one more for
+// Limits the start of MPI, which waits for ever for a rank that runs another program: after "seconds", and 5 more for
 // each rank before this one, the process ends with a line, exit 1. So one rank writes it, and the launcher ends the
 // others. seconds = 0: all have started.
 void ob_ranks_limit_start(unsigned seconds, uint32_t rank);
