@@ -24,8 +24,8 @@ static int check_done, check_failed;
 		check_done++; \
 		if (!(fabs(check_a - check_b) <= check_t)) { \
 			check_failed++; \
-			fprintf(stderr, "%s:%d: failed: %s = %.17g, expected %.17g within %g\n", __FILE__, __LINE__, #a, \
-				check_a, check_b, check_t); \
+			fprintf(stderr, "%s:%d: failed: %s = %.17g, expected %.17g within %g\n", __FILE__, __LINE__, \
+				#a, check_a, check_b, check_t); \
 		} \
 	} while (0)
 

@@ -17,7 +17,7 @@ enum { // limits for a polyhedron with so many corners (Euler)
 };
 
 typedef struct ob_hull_edge {
-	uint8_t from, to;    // corners
+	uint8_t from, to; // corners
 	uint8_t left, right; // faces: left has the edge as from -> to, counterclockwise seen from outside
 } ob_hull_edge;
 
@@ -26,16 +26,16 @@ typedef struct ob_hull_edge {
 typedef struct ob_hull {
 	uint32_t corners, faces, edges; // 4 .., 4 .., 6 ..
 	uint32_t zero;
-	double radius;    // m, of the smallest ball about the origin that contains it
-	double inner;     // m, of the largest ball about the origin inside it
+	double radius; // m, of the smallest ball about the origin that contains it
+	double inner; // m, of the largest ball about the origin inside it
 	double thickness; // m, least width
-	double volume;    // m^3
-	ob_vec3 inertia;  // m^2, principal moments per kilogram
-	ob_vec3 centre;   // m, the origin in the frame of the original points
-	ob_quat frame;    // body's frame to that of the original points
+	double volume; // m^3
+	ob_vec3 inertia; // m^2, principal moments per kilogram
+	ob_vec3 centre; // m, the origin in the frame of the original points
+	ob_quat frame; // body's frame to that of the original points
 	ob_vec3 corner[OB_HULL_CORNERS_MAX]; // m
-	ob_vec3 normal[OB_HULL_FACES_MAX];   // unit, outward
-	double offset[OB_HULL_FACES_MAX];    // m, distance of the face from the origin
+	ob_vec3 normal[OB_HULL_FACES_MAX]; // unit, outward
+	double offset[OB_HULL_FACES_MAX]; // m, distance of the face from the origin
 	uint16_t first[OB_HULL_FACES_MAX + 4]; // face f is loop[first[f]] .. loop[first[f + 1] - 1]
 	uint8_t loop[2 * OB_HULL_EDGES_MAX + 4]; // corners, counterclockwise seen from outside
 	ob_hull_edge edge[OB_HULL_EDGES_MAX];

@@ -24,10 +24,10 @@
 
 typedef enum ob_shape {
 	OB_SHAPE_NONE,
-	OB_SHAPE_SPHERE,   // size.x = radius
-	OB_SHAPE_BOX,      // size = half extents along the body axes
-	OB_SHAPE_PLANE,    // infinite; through the origin of its pose, solid below its +z axis; always static
-	OB_SHAPE_CAPSULE,  // size.x = radius, size.y = half length of the cylinder part; axis = body z
+	OB_SHAPE_SPHERE, // size.x = radius
+	OB_SHAPE_BOX, // size = half extents along the body axes
+	OB_SHAPE_PLANE, // infinite; through the origin of its pose, solid below its +z axis; always static
+	OB_SHAPE_CAPSULE, // size.x = radius, size.y = half length of the cylinder part; axis = body z
 	OB_SHAPE_CYLINDER, // size.x = radius, size.y = half length; axis = body z
 	// of points (ob/hull.h); size = radius of the bounding ball, half the least width, radius of the inscribed
 	// ball, both balls about the centre of mass
@@ -36,8 +36,8 @@ typedef enum ob_shape {
 
 enum { // ob_passport.flags
 	OB_OBJECT_PRESENT = 1 << 0, // exists now; a slot without it is free
-	OB_OBJECT_STATIC = 1 << 1,  // never moves; mass and inertia are 0
-	OB_OBJECT_FROZEN = 1 << 2,  // static since its simulator died
+	OB_OBJECT_STATIC = 1 << 1, // never moves; mass and inertia are 0
+	OB_OBJECT_FROZEN = 1 << 2, // static since its simulator died
 	OB_OBJECT_KINEMATIC = 1 << 3, // follows a prescribed motion, unaffected by contacts; mass and inertia are 0
 	OB_OBJECT_PRESCRIBED = OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC, // unaffected by forces
 	OB_OBJECT_MESH_COLOUR = 1 << 4, // shown with its mesh's colours, not its own
@@ -46,30 +46,30 @@ enum { // ob_passport.flags
 
 // Body properties of an object. 184 bytes.
 typedef struct ob_passport {
-	uint32_t id;          // index of the object in the table, from 0
-	uint32_t generation;  // grows each time the slot is reused for another object
-	uint32_t flags;       // OB_OBJECT_*
-	uint8_t shape;        // ob_shape: collision shape; also drawn unless it has a mesh
+	uint32_t id; // index of the object in the table, from 0
+	uint32_t generation; // grows each time the slot is reused for another object
+	uint32_t flags; // OB_OBJECT_*
+	uint8_t shape; // ob_shape: collision shape; also drawn unless it has a mesh
 	// 1 + the number of the scene's mesh that is drawn instead; 0 = none. Viewers load the meshes
 	uint8_t mesh;
-	uint16_t hull;        // OB_SHAPE_HULL: number of the universe's hull (ob_universe_get_hull)
-	ob_vec3 size;         // m, see ob_shape
-	double mass;          // kg; 0 = static
-	ob_vec3 inertia;      // kg m^2, principal moments in the body frame; 0 = static
-	double friction;      // Coulomb coefficient; a pair uses sqrt(mu_a mu_b)
-	double restitution;   // 0..1; a pair uses the larger of the two
-	float colour[4];      // linear RGB, alpha
+	uint16_t hull; // OB_SHAPE_HULL: number of the universe's hull (ob_universe_get_hull)
+	ob_vec3 size; // m, see ob_shape
+	double mass; // kg; 0 = static
+	ob_vec3 inertia; // kg m^2, principal moments in the body frame; 0 = static
+	double friction; // Coulomb coefficient; a pair uses sqrt(mu_a mu_b)
+	double restitution; // 0..1; a pair uses the larger of the two
+	float colour[4]; // linear RGB, alpha
 	char name[OB_NAME_MAX];
 	union {
-		ob_vec3 force;            // N, world frame: constant, acts at the centre
+		ob_vec3 force; // N, world frame: constant, acts at the centre
 		ob_vec3 surface_velocity; // m/s, body frame, prescribed objects: speed of the surface, as of a belt
 	};
-	float roughness;      // 0..1, of its surface when drawn: 0 = polished, 1 = matt
-	float metal;          // 0..1: 1 = reflects as metals do, in its own colour
+	float roughness; // 0..1, of its surface when drawn: 0 = polished, 1 = matt
+	float metal; // 0..1: 1 = reflects as metals do, in its own colour
 } ob_passport;
 
 enum { // ob_motion.flags
-	OB_MOTION_FREE = 1 << 0,   // in free flight: up to t0, the previous motion holds exactly
+	OB_MOTION_FREE = 1 << 0, // in free flight: up to t0, the previous motion holds exactly
 	OB_MOTION_ASLEEP = 1 << 1, // asleep: all bodies of its island have been slow for long enough
 	// held by its contacts; the solver changed nothing about it at the end of the last step
 	OB_MOTION_STEADY = 1 << 2,
@@ -81,16 +81,16 @@ enum { // ob_motion.flags
 
 // Motion of an object from t0 on, unless a contact changes it. 176 bytes: the payload of one slot version.
 typedef struct ob_motion {
-	double t0;          // s, the instant of the state below; start of a flight
+	double t0; // s, the instant of the state below; start of a flight
 	double valid_until; // s, end of validity of the closed form, unless another object interferes
-	ob_vec3 p;          // m, centre of mass
-	ob_quat q;          // body to world
-	ob_vec3 v;          // m/s
-	ob_vec3 w;          // rad/s, world frame
-	ob_vec3 a;          // m/s^2, constant while the motion holds, unless it swings (gravity in flight, 0 when supported)
-	double path;        // m, length of path of the fastest surface point since the run began
-	uint32_t step;      // the step that published this
-	uint32_t flags;     // OB_MOTION_*
+	ob_vec3 p; // m, centre of mass
+	ob_quat q; // body to world
+	ob_vec3 v; // m/s
+	ob_vec3 w; // rad/s, world frame
+	ob_vec3 a; // m/s^2, constant while the motion holds, unless it swings (gravity in flight, 0 when supported)
+	double path; // m, length of path of the fastest surface point since the run began
+	uint32_t step; // the step that published this
+	uint32_t flags; // OB_MOTION_*
 	union {
 		struct {
 			float rest_time; // s, rest timer: time below the sleeping threshold
@@ -98,8 +98,8 @@ typedef struct ob_motion {
 		};
 		double frequency; // rad/s, if it swings: then a is the acceleration at t0
 	};
-	float reach;        // m, most that each step adds to that path, until the next publication
-	uint32_t substeps;  // requested by its island for the next step, if a tolerance chooses; 0 = none yet
+	float reach; // m, most that each step adds to that path, until the next publication
+	uint32_t substeps; // requested by its island for the next step, if a tolerance chooses; 0 = none yet
 } ob_motion;
 
 typedef enum ob_universe_state {
@@ -107,46 +107,46 @@ typedef enum ob_universe_state {
 	OB_UNIVERSE_RUNNING,
 	OB_UNIVERSE_FINISHED, // ended as planned: no step follows
 	OB_UNIVERSE_FAILED,
-	OB_UNIVERSE_LOST,     // another program has truncated its memory: nothing of it can be read any more
+	OB_UNIVERSE_LOST, // another program has truncated its memory: nothing of it can be read any more
 } ob_universe_state;
 
 // Facts of a run that are constant once it has started, and its clock.
 typedef struct ob_universe_info {
 	char name[OB_NAME_MAX];
-	char isolation[16];   // "thread" or "process"
-	char arch[16];        // "obs" or "monolith"
+	char isolation[16]; // "thread" or "process"
+	char arch[16]; // "obs" or "monolith"
 	int32_t host_pid;
-	uint32_t capacity;    // slots: ids are 0 .. capacity-1
-	uint32_t objects;     // present objects, static ones included
-	uint32_t workers;     // the last of a hardened run only schedules
-	ob_vec3 gravity;      // m/s^2
-	double step_length;   // s
-	uint64_t step;        // steps completed
-	double time;          // s, simulated
+	uint32_t capacity; // slots: ids are 0 .. capacity-1
+	uint32_t objects; // present objects, static ones included
+	uint32_t workers; // the last of a hardened run only schedules
+	ob_vec3 gravity; // m/s^2
+	double step_length; // s
+	uint64_t step; // steps completed
+	double time; // s, simulated
 	ob_universe_state state;
-	uint32_t awake;       // dynamic objects that are not asleep
-	uint32_t pairs;       // pairs whose bounds overlap
-	uint32_t islands;     // groups solved together in the last step
-	uint32_t deaths;      // times that simulators died or stalled
-	uint32_t frozen;      // objects frozen by them (OB_OBJECT_FROZEN)
+	uint32_t awake; // dynamic objects that are not asleep
+	uint32_t pairs; // pairs whose bounds overlap
+	uint32_t islands; // groups solved together in the last step
+	uint32_t deaths; // times that simulators died or stalled
+	uint32_t frozen; // objects frozen by them (OB_OBJECT_FROZEN)
 	char last_death[OB_DEATH_MAX]; // the simulator and its cause of death; "" = none
-	uint32_t hulls;       // hulls are numbered 0 .. hulls-1; more may come
-	uint64_t created;     // ns since 1970: no other universe has the same name and instant
+	uint32_t hulls; // hulls are numbered 0 .. hulls-1; more may come
+	uint64_t created; // ns since 1970: no other universe has the same name and instant
 } ob_universe_info;
 
 typedef struct ob_worker_info {
 	int32_t pid, tid;
-	int32_t cpu;         // pinned to; -1 = not pinned
-	uint32_t objects;    // objects that it ran in the last step
-	uint64_t cpu_ns;     // CPU time used so far, refreshed by the host about twice a second
+	int32_t cpu; // pinned to; -1 = not pinned
+	uint32_t objects; // objects that it ran in the last step
+	uint64_t cpu_ns; // CPU time used so far, refreshed by the host about twice a second
 } ob_worker_info;
 
 // Contact point of two objects, for overlays.
 typedef struct ob_contact_point {
-	uint32_t a, b;       // ids, a < b
-	ob_vec3 position;    // m, world
-	ob_vec3 normal;      // unit, from b towards a
-	double impulse;      // N s, normal, of the last substep
+	uint32_t a, b; // ids, a < b
+	ob_vec3 position; // m, world
+	ob_vec3 normal; // unit, from b towards a
+	double impulse; // N s, normal, of the last substep
 } ob_contact_point;
 
 typedef struct ob_universe ob_universe;

@@ -33,25 +33,52 @@ typedef struct ob_mat3 {
 	double m[3][3];
 } ob_mat3;
 
-static inline ob_vec3 ob_v3(double x, double y, double z) { return (ob_vec3){ x, y, z }; }
-static inline ob_vec3 ob_add(ob_vec3 a, ob_vec3 b) { return ob_v3(a.x + b.x, a.y + b.y, a.z + b.z); }
-static inline ob_vec3 ob_sub(ob_vec3 a, ob_vec3 b) { return ob_v3(a.x - b.x, a.y - b.y, a.z - b.z); }
-static inline ob_vec3 ob_scale(ob_vec3 a, double s) { return ob_v3(a.x * s, a.y * s, a.z * s); }
+static inline ob_vec3 ob_v3(double x, double y, double z)
+{
+	return (ob_vec3){ x, y, z };
+}
+static inline ob_vec3 ob_add(ob_vec3 a, ob_vec3 b)
+{
+	return ob_v3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+static inline ob_vec3 ob_sub(ob_vec3 a, ob_vec3 b)
+{
+	return ob_v3(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+static inline ob_vec3 ob_scale(ob_vec3 a, double s)
+{
+	return ob_v3(a.x * s, a.y * s, a.z * s);
+}
 // a + s b
 static inline ob_vec3 ob_madd(ob_vec3 a, double s, ob_vec3 b)
 {
 	return ob_v3(a.x + s * b.x, a.y + s * b.y, a.z + s * b.z);
 }
-static inline double ob_dot(ob_vec3 a, ob_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline double ob_dot(ob_vec3 a, ob_vec3 b)
+{
+	return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 static inline ob_vec3 ob_cross(ob_vec3 a, ob_vec3 b)
 {
 	return ob_v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
-static inline double ob_norm2(ob_vec3 a) { return ob_dot(a, a); }
-static inline bool ob_equal(ob_vec3 a, ob_vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
-static inline double ob_norm(ob_vec3 a) { return sqrt(ob_dot(a, a)); }
+static inline double ob_norm2(ob_vec3 a)
+{
+	return ob_dot(a, a);
+}
+static inline bool ob_equal(ob_vec3 a, ob_vec3 b)
+{
+	return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+static inline double ob_norm(ob_vec3 a)
+{
+	return sqrt(ob_dot(a, a));
+}
 
-static inline ob_quat ob_quat_identity(void) { return (ob_quat){ 1, 0, 0, 0 }; }
+static inline ob_quat ob_quat_identity(void)
+{
+	return (ob_quat){ 1, 0, 0, 0 };
+}
 static inline ob_quat ob_quat_mul(ob_quat a, ob_quat b)
 {
 	return (ob_quat){
@@ -90,7 +117,10 @@ static inline ob_vec3 ob_rotate_back(const ob_mat3 *r, ob_vec3 v)
 		     r->m[0][2] * v.x + r->m[1][2] * v.y + r->m[2][2] * v.z);
 }
 // Column i: the body's axis i in world coordinates.
-static inline ob_vec3 ob_column(const ob_mat3 *r, int i) { return ob_v3(r->m[0][i], r->m[1][i], r->m[2][i]); }
+static inline ob_vec3 ob_column(const ob_mat3 *r, int i)
+{
+	return ob_v3(r->m[0][i], r->m[1][i], r->m[2][i]);
+}
 
 #pragma GCC visibility push(default) // libobsim exports the declarations of its installed headers alone
 

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-int ob_cpu_count(void);          // >= 1, by the affinity mask
+int ob_cpu_count(void); // >= 1, by the affinity mask
 // Pins the calling thread to the (index mod count)-th allowed core; returns the core, -1 on failure.
 int ob_cpu_pin(unsigned index);
 

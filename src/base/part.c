@@ -19,7 +19,8 @@ static void *open_library(const char *name, bool global, const char *package, ob
 	char path[PATH_MAX], file[NAME_MAX];
 	snprintf(file, sizeof file, "obsim-%s.so", name);
 	if (!ob_own_file_find(path, OB_PARTS_FROM_PROGRAM, ".", file)) {
-		ob_fail(e, "obsim-%s.so is missing: this obsim was built or installed without it; it needs %s", name, package);
+		ob_fail(e, "obsim-%s.so is missing: this obsim was built or installed without it; it needs %s", name,
+			package);
 		return NULL;
 	}
 	void *library = dlopen(path, RTLD_NOW | (global ? RTLD_GLOBAL : RTLD_LOCAL));

@@ -9,7 +9,7 @@
 typedef struct ob_spelling {
 	const char *word; // as written
 	const char *best; // the nearest so far; NULL: none is near enough
-	int distance;     // edits from word to best
+	int distance; // edits from word to best
 } ob_spelling;
 
 ob_spelling ob_spelling_start(const char *word);

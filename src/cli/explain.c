@@ -105,8 +105,7 @@ static void explain_contact(const ob_explained *x, const traits *t, FILE *f)
 		     c->impacts, c->impact_iterations);
 	line(f, "recovery", "%.3g J of potential energy, from pushing penetrations apart", c->recovered);
 	if (x->settings->tolerance > 0)
-		line(f, "tolerance",
-		     "%" PRIu64 " islands were solved, %" PRIu64 " solutions rejected as too coarse",
+		line(f, "tolerance", "%" PRIu64 " islands were solved, %" PRIu64 " solutions rejected as too coarse",
 		     c->island_steps, c->islands_redone);
 	else
 		line(f, "tolerance", "none: every island takes %" PRIu32 " substeps", x->settings->substeps);

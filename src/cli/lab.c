@@ -142,7 +142,8 @@ static bool read_request(request *r, const ob_arguments *a, ob_error *e)
 		    ob_number_real("limit", a->value[OB_OPTION_LIMIT], 0, 1e6, &r->limit, e);
 	r->plan.repeats = (uint32_t)repeats;
 	return fine && check(r, a, e) &&
-	       (r->list || (check_engines(&r->plan.engines, engines && strcmp(engines, "all") != 0, e) && ob_plot_check(e)));
+	       (r->list ||
+		(check_engines(&r->plan.engines, engines && strcmp(engines, "all") != 0, e) && ob_plot_check(e)));
 }
 
 static bool is_asked(const ob_lab_plan *p, const ob_result *r)

@@ -14,10 +14,10 @@ static const struct {
 	ob_command_bit bit;
 	int (*main)(const ob_arguments *);
 } commands[] = {
-	{ "run", OB_COMMAND_RUN, ob_command_run },       { "compare", OB_COMMAND_COMPARE, ob_command_compare },
-	{ "top", OB_COMMAND_TOP, ob_command_top },       { "lab", OB_COMMAND_LAB, ob_command_lab },
-	{ "paper", OB_COMMAND_PAPER, ob_command_paper }, { "inspect", OB_COMMAND_INSPECT, ob_command_inspect },
-	{ "serve", OB_COMMAND_SERVE, ob_command_serve }, { "send", OB_COMMAND_SEND, ob_command_send },
+	{ "run", OB_COMMAND_RUN, ob_command_run },          { "compare", OB_COMMAND_COMPARE, ob_command_compare },
+	{ "top", OB_COMMAND_TOP, ob_command_top },          { "lab", OB_COMMAND_LAB, ob_command_lab },
+	{ "paper", OB_COMMAND_PAPER, ob_command_paper },    { "inspect", OB_COMMAND_INSPECT, ob_command_inspect },
+	{ "serve", OB_COMMAND_SERVE, ob_command_serve },    { "send", OB_COMMAND_SEND, ob_command_send },
 	{ "export", OB_COMMAND_EXPORT, ob_command_export },
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };

@@ -381,7 +381,8 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		      "obsim send NAME remove OBJECT                                        by its name or number\n"
 		      "obsim send NAME colour OBJECT '#rrggbb'\n"
 		      "obsim send NAME message OBJECT VALUE ...                             for its on_message\n"
-		      "obsim send NAME move OBJECT WORKER                                   its simulator, to another worker\n",
+		      "obsim send NAME move OBJECT WORKER                                   its simulator, to another "
+		      "worker\n",
 		      f);
 	if (command == OB_COMMAND_SERVE)
 		fputs("\nobsim serve --replay FILE.h5 [--listen ADDR:PORT] shows what was recorded, to each viewer at "
@@ -393,11 +394,11 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		      "without one, all.\nThe same command goes on where it was interrupted.\n",
 		      f);
 	fprintf(f, "\nDefaults stand in brackets. Exit: 0 done, 1 failed or interrupted, 2 wrong usage%s.\n",
-		command == OB_COMMAND_LAB       ? ", 3 a target missed"
+		command == OB_COMMAND_LAB                                  ? ", 3 a target missed"
 		: command == OB_COMMAND_RUN || command == OB_COMMAND_SERVE ? " or scene, 4 --check found a fault"
-		: command == OB_COMMAND_INSPECT ? ", or no whole checkpoint"
-		: command == OB_COMMAND_EXPORT  ? ", or no whole record"
-						: " or scene");
+		: command == OB_COMMAND_INSPECT                            ? ", or no whole checkpoint"
+		: command == OB_COMMAND_EXPORT                             ? ", or no whole record"
+									   : " or scene");
 }
 
 void ob_options_overview(FILE *f)

@@ -273,8 +273,8 @@ static void print_cost(const ob_report *r, FILE *f)
 		ob_quantity_text(&b, r->wall_s / simulated, "s"));
 	if (r->wall_s > 0)
 		fprintf(f, " (%.3g x real time)", simulated / r->wall_s);
-	fprintf(f, "\n  CPU          %s of the simulators, %s per simulated second", ob_quantity_text(&a, r->cpu_s, "s"),
-		ob_quantity_text(&b, r->cpu_s / simulated, "s"));
+	fprintf(f, "\n  CPU          %s of the simulators, %s per simulated second",
+		ob_quantity_text(&a, r->cpu_s, "s"), ob_quantity_text(&b, r->cpu_s / simulated, "s"));
 	if (isfinite(r->body_step_cpu_us))
 		fprintf(f, ", %s per body and step", ob_quantity_text(&c, 1e-6 * r->body_step_cpu_us, "s"));
 	if (r->frames > 0)
@@ -325,8 +325,8 @@ void ob_report_print(const ob_report *r, FILE *f)
 	if (own_time(r) > 0)
 		print_cost(r, f);
 	if (r->faults > 0 || r->faults_overwritten > 0)
-		fprintf(f, "  faults       %s%" PRIu64 " injected%s%s%s\n", r->faults_overwritten ? "at least " : "", r->faults,
-			*r->fault_kinds ? ": " : "", r->fault_kinds,
+		fprintf(f, "  faults       %s%" PRIu64 " injected%s%s%s\n", r->faults_overwritten ? "at least " : "",
+			r->faults, *r->fault_kinds ? ": " : "", r->fault_kinds,
 			r->faults_overwritten ? "; simulators have written over other counters of them" : "");
 	if (r->scripts_stopped + r->scripts_warned > 0)
 		fprintf(f, "  scripts      %" PRIu64 " stopped by an error, %" PRIu64 " with something in vain\n",

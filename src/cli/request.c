@@ -391,10 +391,9 @@ static bool read_fault(ob_run_request *r, const char *text, ob_error *e)
 		return ob_fail(e, "--fault: expected the probability of a fault at each chance, as in kill:p=.001");
 	const uint32_t anywhere = 1u << OB_FAULT_SLOW | 1u << OB_FAULT_NOSPACE | 1u << OB_FAULT_NOPAGES;
 	if (f.kinds & ~anywhere && r->isolation != OB_ISOLATION_PROCESS)
-		return ob_fail(
-			e,
-			"--fault: only slow, nospace and nopages can happen to a thread; give the simulators processes of their "
-			"own: --isolation process");
+		return ob_fail(e, "--fault: only slow, nospace and nopages can happen to a thread; give the simulators "
+				  "processes of their "
+				  "own: --isolation process");
 	if (f.kinds & 1u << OB_FAULT_NOSPACE && !r->checkpoint)
 		return ob_fail(e, "--fault nospace is for --checkpoint");
 	r->fault = f;
@@ -473,9 +472,9 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && real(a, OB_OPTION_PATIENCE, 1e9, &r->patience, e) &&
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
 	       read_pace(r, a, e) && read_settings(r, a, e) && read_workers(r, a, e) && read_harden(r, a, e) &&
-	       read_deaths(r, a, e) &&
-	       (!r->record || ob_record_check(e)) && check_name(r->name, e) && read_frames(&r->frames, a, e) && check_outputs(a, e) &&
-	       read_checkpoint(r, a, e) && read_fault(r, a->value[OB_OPTION_FAULT], e);
+	       read_deaths(r, a, e) && (!r->record || ob_record_check(e)) && check_name(r->name, e) &&
+	       read_frames(&r->frames, a, e) && check_outputs(a, e) && read_checkpoint(r, a, e) &&
+	       read_fault(r, a->value[OB_OPTION_FAULT], e);
 }
 
 bool ob_request_check_replay(const ob_arguments *a, const ob_option_id *allowed, size_t count, ob_error *e)

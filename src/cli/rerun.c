@@ -56,8 +56,8 @@ static bool compare_states(ob_host *h, const ob_logged_requests *l, ob_error *e)
 			return ob_fail(e, "step %" PRIu64 ": state %016" PRIx64 ", the log has %016" PRIx64,
 				       l->state[i].step, hash, l->state[i].hash);
 	}
-	printf("%u requests carried out again, %u objects frozen; %u states equal those of the log, the last %016" PRIx64
-	       " after step %" PRIu64 "\n",
+	printf("%u requests carried out again, %u objects frozen; %u states equal those of the log, the last "
+	       "%016" PRIx64 " after step %" PRIu64 "\n",
 	       l->requests, l->freezes, l->states, hash, l->states ? l->state[l->states - 1].step : 0);
 	return true;
 }

@@ -498,9 +498,8 @@ static bool share(run *r, ob_ranks ranks, ob_error *e)
 			       "on several ranks a universe has object simulators in a pool: leave --arch monolith and "
 			       "--workers objects away");
 	if (q->harden >> OB_HARDEN_PRIVILEGES)
-		return ob_fail(e,
-			       "--harden: several ranks always take outbox,checksum,pages, and no more, as they "
-			       "communicate over the network");
+		return ob_fail(e, "--harden: several ranks always take outbox,checksum,pages, and no more, as they "
+				  "communicate over the network");
 	q->isolation = OB_ISOLATION_PROCESS;
 	q->harden |= 1 << OB_HARDEN_OUTBOX | 1 << OB_HARDEN_CHECKSUM | 1 << OB_HARDEN_PAGES;
 	q->on_death = OB_ON_DEATH_ABORT;

@@ -75,12 +75,11 @@ typedef struct ob_batch {
 	lanes impulse[7], impulse_start[7]; // now; when the substep began
 	lanes bias[4]; // m/s: speed at which each gap may close
 	lanes turn[7]; // m/s, rad/s: change of each row by the rest of the substep, in lanes whose geometry turns
-	double changed,
-		residual; // (m/s)^2: square of the largest change of a velocity in the last iteration, in all lanes and
-			  // in those not solved
+	// (m/s)^2: square of the largest change of a velocity in the last iteration, in all lanes and in those not solved
+	double changed, residual;
 	lanes diag[7], inv_diag[7]; // diagonal of A; the inverse is 0 for an unused row
-	lanes coupling[7][7]; // [i][j] = A_ij / A_jj: the amount of impulse j that changes row j as a unit of impulse i
-			      // does
+	// [i][j] = A_ij / A_jj: the amount of impulse j that changes row j as a unit of impulse i does
+	lanes coupling[7][7];
 } ob_batch;
 
 // Parameters of an iteration of the contact solver, the same for all batches.

@@ -44,7 +44,7 @@ static const double nearby = .05; // fraction of the thickness: boxes farther ap
 static const double parallel_edges = 1e-10; // sin^2 of the edges' angle
 static const double same_axis = .99; // cosine: axes that count as one
 static const double same_depth = 1e-4; // relative to the reference box's least half extent: points that count as
-				       // equally deep
+	// equally deep
 
 static inline lanes lanes_of_three(double x, double y, double z)
 {

@@ -582,8 +582,8 @@ typedef struct lone_impulses {
 // before this round; to, by: impulses after the last round, and its change. Updates to and by.
 static inline void lone_hasten(lone *p, const lone_impulses *from, lone_impulses *to, lone_impulses *by)
 {
-	const double slow = .03, most = 4; // ratio of a round's change to the one before; limit of the added part,
-					   // relative to a change
+	// ratio of a round's change to the one before; limit of the added part, relative to a change
+	const double slow = .03, most = 4;
 	const double twist = p->diag_f[2] * p->radius;
 	// Weights that do not depend on the tangents
 	const lanes weight_x = p->diag * p->diag, weight_y = { p->slide_rate2, p->slide_rate2, twist * twist, 0 };

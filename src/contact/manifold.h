@@ -17,8 +17,9 @@ typedef struct ob_placed {
 	ob_vec3 w; // rad/s
 	ob_vec3 inertia; // kg m^2, principal; all 0: w stays constant (motion/drift.h)
 	double rest_depth; // m: penetration permitted between bodies that rest or slide on each other
-	double far_future; // s: a gap that closes later counts as open until the next check. Much longer than a step,
-			   // so that rounding does not count as closing; 0: any closing counts
+	// s: a gap that closes later counts as open until the next check. Much longer than a step, so that rounding
+	// does not count as closing; 0: any closing counts
+	double far_future;
 	ob_vec3 a; // m/s^2, external acceleration: a standing cylinder has a point where it presses most on the rim
 	const ob_hull *hull; // OB_SHAPE_HULL
 } ob_placed;
@@ -32,8 +33,9 @@ typedef struct ob_manifold {
 	// points' convex hull. A finder receives 0, and sets it for a disc only.
 	double disc_radius;
 	double separation; // m, lower bound of the distance if positive; otherwise minus the depth
-	double valid_path; // m, path of both bodies together after which the manifold is found again; infinity, unless
-			   // a finder knows that it changes sooner
+	// m, path of both bodies together after which the manifold is found again; infinity, unless a finder knows that
+	// it changes sooner
+	double valid_path;
 } ob_manifold;
 
 // Finds points with a gap up to margin (m). The caller sets out->disc_radius to 0 and out->valid_path to infinity.

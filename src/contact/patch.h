@@ -417,8 +417,8 @@ static inline lane_mask patch_project(ob_patch_model *m, const lanes *pressure, 
 				      lane_mask outside, patch_search *search, lanes *hold)
 {
 	enum { MOST = 8 };
-	const double turned = 1 - 4e-4, close = 1e-9; // cos^2 of some .02 rad; relative to the bound, before the last
-						      // step
+	// cos^2 of some .02 rad; relative to the bound, before the last step
+	const double turned = 1 - 4e-4, close = 1e-9;
 	lanes stay[3], load[3], y[3], against = lanes_of(0), b2 = bound * bound,
 				      ib = 1 / lanes_max(bound, lanes_of(1e-300));
 	for (int c = 0; c < 3; c++) {

@@ -5,7 +5,7 @@ static const double converged = 1e-14; // relative to the shapes' size: gradient
 static const double rounding = 1e-14; // relative to the shapes' size
 static const double flattest = 1e-9; // relative to the shapes' size: least curvature by which a step is scaled
 static const double beside_jump = 1e-13; // relative distance (tangent) from a jump at which the slope is that of its
-					 // side
+	// side
 static const double widest = 1e4; // tangent of the largest turn of a climb
 
 static ob_vec3 unit(ob_vec3 v)

@@ -310,6 +310,5 @@ static void get(const ob_engine *p, ob_state *state)
 	}
 }
 
-OB_PART(ob_engine_part) = {
-	OB_PART_HEAD(ob_engine_part), .create = create, .step = step, .get = get, .destroy = destroy
-};
+OB_PART(ob_engine_part) = { OB_PART_HEAD(ob_engine_part), .create = create, .step = step, .get = get,
+			    .destroy = destroy };

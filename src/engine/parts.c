@@ -12,7 +12,8 @@ struct ob_engine {
 	ob_engine *inner; // of the part
 };
 
-static ob_engine *create(const char *name, const char *package, const ob_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create(const char *name, const char *package, const ob_world *w, const ob_run_settings *s,
+			 ob_error *e)
 {
 	const ob_engine_part *part = ob_part_load(name, sizeof *part, false, package, e);
 	if (!part)

@@ -53,8 +53,9 @@ bool ob_asked_listen(ob_asked *a, const char *universe, ob_error *e)
 	const int error = errno;
 	ob_asked_close(a);
 	return ob_fail(e, "obsim send cannot reach universe \"%s\": %s", universe,
-		       error == EADDRINUSE ? "another process has taken its address; end that one, or choose another --name"
-					   : strerror(error));
+		       error == EADDRINUSE
+			       ? "another process has taken its address; end that one, or choose another --name"
+			       : strerror(error));
 }
 
 void ob_asked_close(ob_asked *a)
@@ -90,8 +91,8 @@ static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
 			   shape == OB_SHAPE_CYLINDER || shape == OB_SHAPE_HULL;
 	ob_hull hull;
 	if (!known || r->def.script || r->def.state_bytes)
-		return ob_fail(e,
-			       "only boxes, spheres, capsules, cylinders and hulls without a script can be created by requests");
+		return ob_fail(e, "only boxes, spheres, capsules, cylinders and hulls without a script can be created "
+				  "by requests");
 	if (!ob_population_find_look(h->population, &r->def, e))
 		return false;
 	if (shape != OB_SHAPE_HULL)
@@ -235,7 +236,8 @@ static bool is_host(int fd, const ob_universe *u, ob_error *e)
 	if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &n) == 0 && (who.uid == geteuid() || geteuid() == 0) &&
 	    (who.pid == info.host_pid || who.pid == 0)) // 0: in a PID namespace that is not visible here
 		return true;
-	return ob_fail(e, "universe \"%s\" gets no request: process %d of user %u listens at its address, not its host %d",
+	return ob_fail(e,
+		       "universe \"%s\" gets no request: process %d of user %u listens at its address, not its host %d",
 		       ob_universe_name(u), (int)who.pid, (unsigned)who.uid, (int)info.host_pid);
 }
 

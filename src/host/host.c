@@ -111,8 +111,8 @@ static uint32_t pool_workers(const ob_host_config *c, uint32_t capacity)
 	if (c->workers <= most)
 		return c->workers * ranks;
 	if (c->ranks.rank == 0)
-		ob_log_note("%u workers for at most %u objects: %u are started, more would have nothing to do", c->workers,
-			    capacity, most);
+		ob_log_note("%u workers for at most %u objects: %u are started, more would have nothing to do",
+			    c->workers, capacity, most);
 	return most * ranks;
 }
 
@@ -128,7 +128,9 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 	ob_universe_setup setup = {
 		.name = c->name,
 		.capacity = capacity,
-		.workers = one_per_object ? capacity : c->run.monolith ? 1 : pool_workers(c, capacity),
+		.workers = one_per_object    ? capacity
+			   : c->run.monolith ? 1
+					     : pool_workers(c, capacity),
 		.rank = c->ranks.rank,
 		.ranks = c->ranks.ranks,
 		.shares_contacts = c->shares_contacts,

@@ -135,8 +135,7 @@ static bool check_name(const ob_passport *p, ob_error *e)
 bool ob_object_check(const ob_object_def *def, ob_error *e)
 {
 	ob_error why;
-	return check_name(&def->passport, e) &&
-	       (ob_object_def_check(def, &why) || name_fault(&def->passport, &why, e));
+	return check_name(&def->passport, e) && (ob_object_def_check(def, &why) || name_fault(&def->passport, &why, e));
 }
 
 bool ob_population_find_look(const ob_population *p, ob_object_def *def, ob_error *e)

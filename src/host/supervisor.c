@@ -56,8 +56,8 @@ static void request_restart(ob_host *h, const ob_worker_end *end, const char *wo
 		snprintf(d.text, sizeof d.text, "%s was killed by SIG%s (%s) after step %llu", worker,
 			 sigabbrev_np(end->signal), strsignal(end->signal), step);
 	else
-		snprintf(d.text, sizeof d.text, "%s left with exit code %d after step %llu, before the run was over", worker,
-			 end->code, step);
+		snprintf(d.text, sizeof d.text, "%s left with exit code %d after step %llu, before the run was over",
+			 worker, end->code, step);
 	ob_restart_request(h, &d);
 }
 
@@ -79,8 +79,8 @@ static void on_end(ob_host *h, const ob_worker_end *end)
 				    "processes (ulimit -u, or pids.max of the container)",
 				    end->worker + 1, h->workers, strerror(end->error));
 	else if (end->signal == SIGBUS && ob_universe_lost(h->u))
-		ob_host_set_failure(h, "%s ended after step %llu: the memory of universe \"%s\" is not all there: %s", worker,
-				    step, ob_universe_name(h->u), ob_universe_lost(h->u));
+		ob_host_set_failure(h, "%s ended after step %llu: the memory of universe \"%s\" is not all there: %s",
+				    worker, step, ob_universe_name(h->u), ob_universe_lost(h->u));
 	else if (end->code == OB_WORKER_NO_MEMORY)
 		ob_host_set_failure(
 			h,
@@ -128,11 +128,9 @@ static void *supervise(void *argument)
 {
 	ob_host *h = argument;
 	struct pollfd fds[5] = {
-		{ .fd = h->wake_fd, .events = POLLIN },
-		{ .fd = h->spawn->fd(h->group), .events = POLLIN },
+		{ .fd = h->wake_fd, .events = POLLIN },      { .fd = h->spawn->fd(h->group), .events = POLLIN },
 		{ .fd = ob_fork_server_fd(h->fork_server) }, // only POLLHUP
-		{ .fd = h->interrupt_fd, .events = POLLIN },
-		{ .fd = h->asked.events, .events = POLLIN },
+		{ .fd = h->interrupt_fd, .events = POLLIN }, { .fd = h->asked.events, .events = POLLIN },
 	};
 	double refreshed = 0;
 	pthread_setname_np(pthread_self(), "supervisor");

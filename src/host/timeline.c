@@ -257,8 +257,9 @@ bool ob_timeline_finish(ob_timeline *t, const ob_death *deaths, uint32_t n, ob_t
 	for (uint32_t i = 0; i < n; i++) {
 		ob_error line;
 		ob_death_print(&deaths[i], line.text, sizeof line.text);
-		ob_trace_file_put_death(t->file, deaths[i].worker < ob_universe_workers(t->u) ? deaths[i].worker
-									      : ob_trace_supervisor(t->u),
+		ob_trace_file_put_death(t->file,
+					deaths[i].worker < ob_universe_workers(t->u) ? deaths[i].worker
+										     : ob_trace_supervisor(t->u),
 					line.text, deaths[i].step, deaths[i].when);
 	}
 	*sums = (ob_timeline_sums){ t->events, t->lost };

@@ -41,8 +41,8 @@ static void write_text(ob_trace_file *f, size_t events)
 {
 	for (size_t done = 0; done < f->used && !f->error;) {
 		const char *from = f->text + done;
-		ssize_t n = f->streamed ? write(f->fd, from, f->used - done) :
-					  pwrite(f->fd, from, f->used - done, f->end + (off_t)done);
+		ssize_t n = f->streamed ? write(f->fd, from, f->used - done)
+					: pwrite(f->fd, from, f->used - done, f->end + (off_t)done);
 		if (n > 0)
 			done += (size_t)n;
 		else if (errno != EINTR)
@@ -211,7 +211,7 @@ static const char *name_of(const ob_trace_file *f, const ob_trace_event *e)
 {
 	static const char *const names[OB_TRACE_KINDS] = {
 		[OB_TRACE_WAIT] = "gate",         [OB_TRACE_SOLVE] = "solve",     [OB_TRACE_OBJECTS] = "objects",
-		[OB_TRACE_SCHEDULE] = "schedule",  [OB_TRACE_CHUNK] = "chunk",     [OB_TRACE_ISLAND] = "island",
+		[OB_TRACE_SCHEDULE] = "schedule", [OB_TRACE_CHUNK] = "chunk",     [OB_TRACE_ISLAND] = "island",
 		[OB_TRACE_SNAPSHOT] = "snapshot", [OB_TRACE_MEASURE] = "measure", [OB_TRACE_RECORD] = "record",
 		[OB_TRACE_DRAW] = "draw",         [OB_TRACE_ENCODE] = "encode",
 	};

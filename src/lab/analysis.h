@@ -18,7 +18,8 @@ ob_lab_analysis ob_lab_analyse(const ob_results *r);
 
 bool ob_lab_analysis_is_obsim(const ob_engine_kind *k); // true for obsim and its variants, false for other engines
 size_t ob_lab_analysis_count_others(const ob_lab_analysis *d); // engines in the results other than obsim
-int ob_lab_analysis_style(const ob_lab_analysis *d, const ob_engine_kind *k); // style of its curves, the same in every report
+int ob_lab_analysis_style(const ob_lab_analysis *d,
+			  const ob_engine_kind *k); // style of its curves, the same in every report
 
 // Result at an engine's usual settings; NULL: not run.
 const ob_result *ob_lab_analysis_usual(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k);

@@ -15,8 +15,7 @@ typedef struct ob_figure_def {
 	const char *name; // "worst penetration"
 	const char *unit; // "mm", "1" for a ratio, "J", "rad"; as printed
 	double target; // upper bound, in that unit, at 60 Hz; NAN = shown, but not promised
-	const char *
-		reference; // basis of comparison, and its source: "parabola", "Coulomb 1785: a = g (sin - mu cos)"
+	const char *reference; // basis of comparison, and its source: "parabola", "Coulomb 1785: a = g (sin - mu cos)"
 } ob_figure_def;
 
 // State of one run of a case with one engine.
@@ -66,6 +65,7 @@ typedef struct ob_case_result {
 	double body_seconds; // dynamic bodies times simulated time
 	char failed[96]; // reason; "" = success
 } ob_case_result;
-bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_case_result *out, ob_error *e);
+bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_case_result *out,
+		 ob_error *e);
 
 #endif

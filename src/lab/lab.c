@@ -259,8 +259,8 @@ static ob_case_result outcome_of(const ob_case *c, const ob_record *r)
 {
 	bool measured = r->failure <= OB_FAILURE_OUTCOME;
 	ob_case_result o = { .cpu_s = measured ? r->metric[OB_LAB_CPU] : r->took_cpu_s,
-			 .wall_s = measured ? r->metric[OB_LAB_WALL] : r->took_s,
-			 .body_seconds = r->metric[OB_LAB_BODY_SECONDS] };
+			     .wall_s = measured ? r->metric[OB_LAB_WALL] : r->took_s,
+			     .body_seconds = r->metric[OB_LAB_BODY_SECONDS] };
 	for (uint32_t i = 0; i < c->figures; i++)
 		o.figure[i] = measured ? r->metric[OB_LAB_FIGURE + i] : INFINITY;
 	for (int i = 0; i < OB_CONSERVED; i++)

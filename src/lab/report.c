@@ -127,10 +127,11 @@ static void write_audit(ob_page *p, const void *with)
 	ob_table *t = ob_lab_table_audit(with);
 	if (!t)
 		return;
-	ob_page_markup(p, "<h2 id=\"audit\">Does the error fall?</h2>\n<p>obsim\u2019s errors over their targets, the worst "
-			  "of each case, as its tolerance shrinks and as its substeps grow, and the order at which they "
-			  "fall with the length of a substep. RISES: an error that is above its target is larger at a "
-			  "finer setting; <code>audit.md</code> says which.</p>\n");
+	ob_page_markup(
+		p, "<h2 id=\"audit\">Does the error fall?</h2>\n<p>obsim\u2019s errors over their targets, the worst "
+		   "of each case, as its tolerance shrinks and as its substeps grow, and the order at which they "
+		   "fall with the length of a substep. RISES: an error that is above its target is larger at a "
+		   "finer setting; <code>audit.md</code> says which.</p>\n");
 	write_table(p, t);
 }
 
@@ -346,20 +347,13 @@ static bool write_charts(const ob_lab_analysis *d, const char *dir, ob_error *e)
 
 static void write_page(FILE *f, const void *with)
 {
-	static const ob_page_slot slots[] = { { "style", write_style },
-					      { "cards", write_cards },
-					      { "verdict", write_verdict },
-					      { "promises", write_promises },
-					      { "equal", write_equal },
-					      { "rows", write_rows },
-					      { "conserved", write_conserved },
-					      { "audit", write_audit },
-					      { "convergence", write_convergence },
-					      { "ghost", write_ghost },
-					      { "lag", write_lag },
-					      { "index", write_index },
-					      { "cases", write_all_cases },
-					      { "setting", write_setting } };
+	static const ob_page_slot slots[] = {
+		{ "style", write_style },         { "cards", write_cards },    { "verdict", write_verdict },
+		{ "promises", write_promises },   { "equal", write_equal },    { "rows", write_rows },
+		{ "conserved", write_conserved }, { "audit", write_audit },    { "convergence", write_convergence },
+		{ "ghost", write_ghost },         { "lag", write_lag },        { "index", write_index },
+		{ "cases", write_all_cases },     { "setting", write_setting }
+	};
 	ob_page page = { .out = f };
 	ob_page_fill(&page, text_page_html, slots, sizeof slots / sizeof *slots, with);
 }

@@ -23,5 +23,4 @@ bool ob_sweep_parse(ob_sweep *s, const char *text, ob_error *e);
 size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_kind *k,
 			 ob_run_settings to[OB_SWEEP_SETTINGS]);
 
-
 #endif

@@ -11,7 +11,7 @@
 // Copy of all motions at one step boundary.
 typedef struct ob_snapshot {
 	uint64_t step;
-	double time;          // s
+	double time; // s
 	// ids 0 .. count-1; passport[i].flags marks present objects, all else is 0 for absent ones
 	uint32_t count;
 	ob_passport *passport;
@@ -20,9 +20,9 @@ typedef struct ob_snapshot {
 	ob_contact_point *contact;
 	uint32_t count_max;
 	size_t contacts_max;
-	uint64_t created;     // instant of creation of the hulls' universe
+	uint64_t created; // instant of creation of the hulls' universe
 	uint32_t hulls;
-	ob_hull **hull;       // [hulls], those used by objects so far; others NULL
+	ob_hull **hull; // [hulls], those used by objects so far; others NULL
 } ob_snapshot;
 
 // Copies the universe into s, growing its memory. s starts zeroed. The snapshot is of one step only if the universe
@@ -39,8 +39,8 @@ ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id);
 // Energy (J) of dynamic objects: kinetic, potential, and minus the work that their constant forces have done since they
 // were at the origin. So a driving force adds no energy, and contacts can only reduce it.
 double ob_measure_energy(const ob_snapshot *s, ob_vec3 gravity);
-ob_vec3 ob_measure_momentum(const ob_snapshot *s);                // kg m/s
-ob_vec3 ob_measure_angular_momentum(const ob_snapshot *s);        // kg m^2/s about the origin
+ob_vec3 ob_measure_momentum(const ob_snapshot *s); // kg m/s
+ob_vec3 ob_measure_angular_momentum(const ob_snapshot *s); // kg m^2/s about the origin
 // 64-bit FNV-1a over (id, p, q, v, w) of all present objects at the snapshot's time.
 uint64_t ob_measure_hash(const ob_snapshot *s);
 
@@ -56,8 +56,8 @@ typedef struct ob_penetration {
 void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out);
 // Same, but returns false and e, with the object that overlaps most others, if those are NaN. Also stops when
 // stop(context), called every few milliseconds, returns true. stop: NULL = never.
-bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bool (*stop)(void *context), void *context,
-				   ob_error *e);
+bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bool (*stop)(void *context),
+				   void *context, ob_error *e);
 
 typedef struct ob_separation {
 	double max_m, mean_m; // over contacts with an impulse; 0 if they touch or penetrate

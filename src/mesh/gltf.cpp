@@ -63,7 +63,8 @@ void look_through(const char *json, size_t size)
 			if (++depth > DEPTH_MAX)
 				fail("its JSON is nested too deeply");
 			if (++objects > JSON_OBJECTS_MAX)
-				fail("its JSON has more than " + std::to_string(JSON_OBJECTS_MAX) + " objects and lists");
+				fail("its JSON has more than " + std::to_string(JSON_OBJECTS_MAX) +
+				     " objects and lists");
 			buffers += depth == 3 && c == '{' && key == "buffers";
 		} else if ((c == '}' || c == ']') && depth > 0) {
 			depth--;
@@ -394,7 +395,8 @@ uint8_t picture_of(builder &b, const tinygltf::Model &model, int index, bool sur
 	b.pictures.reserve(b.pictures.size() + 1); // so that a picture has an owner as soon as it is read
 	if (!ob_image_read(&read, data.data() + view.byteOffset, view.byteLength, OB_MESH_PIXELS_MAX - b.pixels, &e))
 		fail(e.text);
-	b.pictures.push_back({ view.byteOffset, view.byteLength, surface, read.width, read.height, std::unique_ptr<uint8_t, release>(read.rgba) });
+	b.pictures.push_back({ view.byteOffset, view.byteLength, surface, read.width, read.height,
+			       std::unique_ptr<uint8_t, release>(read.rgba) });
 	b.pixels += static_cast<size_t>(read.width) * read.height;
 	return static_cast<uint8_t>(b.pictures.size());
 }

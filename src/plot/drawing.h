@@ -52,7 +52,7 @@ typedef struct ob_item {
 	double radius; // disc, px
 	ob_type type; // text
 	size_t text, super; // text: offsets into chars; super = a raised exponent behind the text
-		ob_rect box; // text: upper bound of its extent
+	ob_rect box; // text: upper bound of its extent
 	size_t hint; // tooltip in a browser: offset into chars
 } ob_item;
 

@@ -89,8 +89,8 @@ static void paint(cairo_t *c, const ob_drawing *d)
 
 static bool draw(const ob_drawing *d, const char *path, double zoom, ob_error *e)
 {
-	cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(d->width * zoom),
-							      (int)ceil(d->height * zoom));
+	cairo_surface_t *surface =
+		cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(d->width * zoom), (int)ceil(d->height * zoom));
 	cairo_t *c = cairo_create(surface);
 	cairo_scale(c, zoom, zoom);
 	paint(c, d);

@@ -134,6 +134,7 @@ static void close_mpi(void)
 _Static_assert(sizeof(ob_wire_first) % 8 == 0, "it goes over the wire in words");
 
 OB_PART(ob_wire_module) = {
-	OB_PART_HEAD(ob_wire_module), .open = open_mpi,	  .first = gather_first, .rest = gather_rest, .deal_first = deal_first,
-	.deal_rest = deal_rest,	      .send = send_bytes, .probe = probe,	 .receive = receive_bytes, .close = close_mpi,
+	OB_PART_HEAD(ob_wire_module), .open = open_mpi,       .first = gather_first, .rest = gather_rest,
+	.deal_first = deal_first,     .deal_rest = deal_rest, .send = send_bytes,    .probe = probe,
+	.receive = receive_bytes,     .close = close_mpi,
 };

@@ -96,8 +96,8 @@ void ob_ranks_limit_start(unsigned seconds, uint32_t rank)
 {
 	const unsigned wait = seconds ? seconds + BETWEEN_S * rank : 0;
 	snprintf(late_line, sizeof late_line,
-		 "obsim: rank %u has waited %u s for the others: does each rank of the launcher start obsim run?\n", rank,
-		 wait);
+		 "obsim: rank %u has waited %u s for the others: does each rank of the launcher start obsim run?\n",
+		 rank, wait);
 	signal(SIGALRM, end_late_start);
 	alarm(wait);
 }

@@ -571,8 +571,7 @@ static bool append_events(ob_recorder *r, const ob_snapshot *s)
 		bool same = now && is_same_object(known, now), was = known->flags & OB_OBJECT_PRESENT;
 		if (was && !same) {
 			note_event(r, s, OB_RECORD_REMOVED, known, &events);
-			known->flags &=
-				~(uint32_t)OB_OBJECT_PRESENT; // the old passport stays: its past is in the file
+			known->flags &= ~(uint32_t)OB_OBJECT_PRESENT; // the old passport stays: its past is in the file
 		}
 		if (now && !same)
 			memset(&r->known[id], 0, sizeof r->known[id]);
@@ -712,7 +711,8 @@ static uint64_t row_bytes(const ob_recorder *r)
 	uint64_t bytes = 0;
 	for (int i = 0; i < COLUMNS; i++) {
 		const uint64_t width = (uint64_t)columns[i].width, ids = width ? r->chunk_ids : 1;
-		const uint64_t all = width ? chunks(r->count, ids) : 1, before = width ? chunks(r->written_count, ids) : 1;
+		const uint64_t all = width ? chunks(r->count, ids) : 1,
+			       before = width ? chunks(r->written_count, ids) : 1;
 		const uint64_t begun = r->rows % r->chunk_rows[i] == 0 ? all : all - before;
 		bytes += begun * r->chunk_rows[i] * ids * (width ? width : 1) * H5Tget_size(column_type(i));
 	}

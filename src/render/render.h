@@ -16,8 +16,8 @@ typedef struct ob_render_setup {
 	int width, height;
 	ob_quality quality;
 	int samples; // draft: multisampling, 1 = none; fine: number of averaged pictures
-	const char *device; // NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0",
-			    // "1", ..
+	// NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0", "1", ..
+	const char *device;
 	bool overlay_aabb, overlay_contacts;
 	// [meshes], the scene's, which must outlive the renderer; objects refer to them by the number in their body
 	// properties. One with a number beyond these is drawn as its collision shape

@@ -126,7 +126,7 @@ static bool draw_share(ob_renderer *r, const ob_camera_def *c, double t, const o
 }
 
 static bool draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
-		      uint8_t *rgba, ob_error *e)
+		 uint8_t *rgba, ob_error *e)
 {
 	ob_frame f = { 0 };
 	ob_camera_def camera;

@@ -17,7 +17,8 @@
 // ---- material "wood" { friction = .5, density = 600 }
 
 static const ob_field material_fields[] = {
-	OB_FIELD(ob_material, friction, .name = "friction", .kind = OB_FIELD_NUMBER, .low = 0, .high = OB_FRICTION_MOST),
+	OB_FIELD(ob_material, friction, .name = "friction", .kind = OB_FIELD_NUMBER, .low = 0,
+		 .high = OB_FRICTION_MOST),
 	OB_FIELD(ob_material, restitution, .name = "restitution", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
 	OB_FIELD(ob_material, density, .name = "density", .kind = OB_FIELD_NUMBER, .low = 0, .above = true,
 		 .high = 1e9),
@@ -136,13 +137,11 @@ typedef struct body {
 #define SURFACE \
 	F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
 		F(friction, .kind = OB_FIELD_NUMBER, .low = 0, .high = OB_FRICTION_MOST), \
-		WITHIN(surface_velocity, OB_SPEED_MOST), \
-		F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), F(colour, .kind = OB_FIELD_COLOUR), \
-		F(roughness, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
+		WITHIN(surface_velocity, OB_SPEED_MOST), F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
+		F(colour, .kind = OB_FIELD_COLOUR), F(roughness, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
 		F(metal, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1)
 #define PLACE \
-	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
-		WITHIN(at, OB_PLACE_MOST), \
+	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), WITHIN(at, OB_PLACE_MOST), \
 		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
 		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
 		F(script, .kind = OB_FIELD_SOURCE, .high = OB_SCENE_SCRIPT_BYTES), F(state, .kind = OB_FIELD_FLAT)
@@ -150,9 +149,7 @@ typedef struct body {
 	F(mass, .kind = OB_FIELD_NUMBER, .low = OB_MASS_LEAST, .high = OB_MASS_MOST), \
 		F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
 		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
-		WITHIN(velocity, OB_SPEED_MOST), \
-		WITHIN(spin, OB_SPIN_MOST), \
-		WITHIN(force, OB_FORCE_MOST), \
+		WITHIN(velocity, OB_SPEED_MOST), WITHIN(spin, OB_SPIN_MOST), WITHIN(force, OB_FORCE_MOST), \
 		F(kind, .kind = OB_FIELD_CHOICE, .choices = "dynamic|static|kinematic"), \
 		F(path, .kind = OB_FIELD_TABLE), F(varying_force, .kind = OB_FIELD_TABLE), \
 		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)

@@ -26,8 +26,8 @@ static const ob_field own_fields[] = {
 #undef F
 
 // The command line alone chooses architecture, narrow phase and load.
-static const ob_setting_id settings[] = { OB_SETTING_STEP,       OB_SETTING_TOLERANCE,  OB_SETTING_SUBSTEPS,
-					  OB_SETTING_ITERATIONS, OB_SETTING_SOLVER,     OB_SETTING_LAG,
+static const ob_setting_id settings[] = { OB_SETTING_STEP,       OB_SETTING_TOLERANCE, OB_SETTING_SUBSTEPS,
+					  OB_SETTING_ITERATIONS, OB_SETTING_SOLVER,    OB_SETTING_LAG,
 					  OB_SETTING_INTEGRATOR, OB_SETTING_SLEEPING };
 
 enum {

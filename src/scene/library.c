@@ -493,9 +493,9 @@ static const offered table_offered[] = {
 };
 // Arithmetic with text, which is read as a number.
 static const offered text_arithmetic[] = {
-	{ "__add", charge_digits },    { "__sub", charge_digits }, { "__mul", charge_digits },
-	{ "__mod", charge_digits }, { "__pow", charge_digits }, { "__div", charge_digits },
-	{ "__idiv", charge_digits },   { "__unm", charge_digits }, { NULL, NULL },
+	{ "__add", charge_digits },  { "__sub", charge_digits }, { "__mul", charge_digits },
+	{ "__mod", charge_digits },  { "__pow", charge_digits }, { "__div", charge_digits },
+	{ "__idiv", charge_digits }, { "__unm", charge_digits }, { NULL, NULL },
 };
 
 // Concepts of other simulators that obsim lacks, and what comes nearest.

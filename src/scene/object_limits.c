@@ -103,7 +103,8 @@ static bool check_path(const ob_path *path, const ob_state *start, ob_error *e)
 		    !within("path", " rad/s", 0, OB_SPIN_MOST, ob_norm(turn) / t, e))
 			return false;
 	}
-	return path->points > 0 || within("path", " m/s", 0, OB_SPEED_MOST, ob_norm(ob_v3(ob_norm(start->v), swing, 0)), e);
+	return path->points > 0 ||
+	       within("path", " m/s", 0, OB_SPEED_MOST, ob_norm(ob_v3(ob_norm(start->v), swing, 0)), e);
 }
 
 // The largest force in its course, beside the constant one.

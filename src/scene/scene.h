@@ -13,30 +13,31 @@
 enum { OB_SCENE_HULLS_MAX = 4096 }; // different ones, including those added during the run
 
 typedef struct ob_object_def {
-	ob_passport passport; // id, name, flags, shape, size, mass, friction, restitution, colour; inertia is filled by the host
-	ob_state state;       // at its first instant
+	ob_passport
+		passport; // id, name, flags, shape, size, mass, friction, restitution, colour; inertia is filled by the host
+	ob_state state; // at its first instant
 	uint64_t look; // for an object added during the run: key of its mesh (ob_mesh.key); 0: none
 	uint32_t script; // 1 + its number; 0: none
 	uint32_t state_at, state_bytes; // its script's initial state (scene/flat.h), in ob_scene.states
-	ob_path *path;        // motion of a kinematic one; NULL: its initial motion continues. Owned by the scene
-	ob_force *force;      // time-dependent force, beside the passport's; NULL: none. Owned like path
-	double born, dies;    // s; born = 0 and dies = infinity: always present
+	ob_path *path; // motion of a kinematic one; NULL: its initial motion continues. Owned by the scene
+	ob_force *force; // time-dependent force, beside the passport's; NULL: none. Owned like path
+	double born, dies; // s; born = 0 and dies = infinity: always present
 } ob_object_def;
 
 typedef struct ob_camera_def {
 	char name[OB_NAME_MAX];
-	ob_vec3 eye, target;  // m, look-at
-	ob_vec3 velocity;     // m/s, the eye and target travel (translate)
-	double pan, tilt;     // rad/s, turning about the vertical and about the right-hand axis (pan-tilt)
-	double fov;           // rad, vertical
-	bool automatic;       // eye and target are initial; the camera follows moving objects
+	ob_vec3 eye, target; // m, look-at
+	ob_vec3 velocity; // m/s, the eye and target travel (translate)
+	double pan, tilt; // rad/s, turning about the vertical and about the right-hand axis (pan-tilt)
+	double fov; // rad, vertical
+	bool automatic; // eye and target are initial; the camera follows moving objects
 } ob_camera_def;
 
 typedef struct ob_look_def {
 	float sky_top[3], sky_horizon[3]; // linear RGB, as all colours here
 	float ground_colour[3];
-	bool grid;            // lines on the ground each metre, stronger each ten
-	ob_vec3 sun;          // direction towards the sun
+	bool grid; // lines on the ground each metre, stronger each ten
+	ob_vec3 sun; // direction towards the sun
 } ob_look_def;
 
 // A script of objects: its own file, or part of the scene.
@@ -51,20 +52,20 @@ enum { OB_SCENE_MESHES_MAX = 255 }; // limit of passports
 
 typedef struct ob_scene {
 	char title[128];
-	ob_run_settings run;        // before the command line's settings (ob_run_settings_resolve)
-	double duration;            // s
+	ob_run_settings run; // before the command line's settings (ob_run_settings_resolve)
+	double duration; // s
 	uint64_t seed;
 	uint32_t objects;
-	ob_object_def *object;      // [objects]; ids are their index
+	ob_object_def *object; // [objects]; ids are their index
 	uint32_t hulls;
-	ob_hull *hull;              // [hulls], by the number in passports
+	ob_hull *hull; // [hulls], by the number in passports
 	ob_hull_corners *hull_corners; // [hulls], in the scene's frame
 	uint32_t meshes;
-	ob_mesh *mesh;              // [meshes], by the number in passports, less 1; in the frame of the bodies
+	ob_mesh *mesh; // [meshes], by the number in passports, less 1; in the frame of the bodies
 	uint32_t cameras;
-	ob_camera_def *camera;      // at least one
+	ob_camera_def *camera; // at least one
 	ob_look_def look;
-	uint32_t record_every;      // steps between recorded states; default 1
+	uint32_t record_every; // steps between recorded states; default 1
 	uint32_t scripts;
 	ob_script_def *script; // [scripts]
 	unsigned char *states; // initial states of all objects' scripts
@@ -78,8 +79,8 @@ typedef struct ob_scene_options {
 	const char *const *defines; // "name=value" of -D
 	uint32_t define_count;
 	bool has_seed;
-	uint64_t seed;              // replaces the scene's
-	bool joining;               // its objects are for a running universe: their meshes are named (look), not read
+	uint64_t seed; // replaces the scene's
+	bool joining; // its objects are for a running universe: their meshes are named (look), not read
 } ob_scene_options;
 
 // Reads, runs and checks a scene file; o may be NULL. NULL and e on error, in one line: "file:line: where.field:

@@ -28,8 +28,7 @@ static size_t recorded_list(const void *of, ob_roster_entry *out, size_t max)
 		if (!(s->passport[id].flags & OB_OBJECT_PRESENT))
 			continue;
 		if (n < max)
-			out[n] = (ob_roster_entry){ .id = id,
-						    .generation = s->passport[id].generation };
+			out[n] = (ob_roster_entry){ .id = id, .generation = s->passport[id].generation };
 		n++;
 	}
 	return n;

@@ -178,8 +178,8 @@ static void create(ob_server *s, ob_client *c, const ob_object_def *def)
 		tell_error(c, "too many objects in a second: try again");
 	else if (ob_roster_copy(ob_host_roster(s->host), NULL, 0) >= ob_universe_capacity(ob_host_universe(s->host)))
 		tell_error(c, "the universe is full: remove an object first");
-	else if (!ob_host_request(s->host,
-				  &(ob_request){ .kind = OB_REQUEST_ADD, .origin = c->number, .def = *def }, &e))
+	else if (!ob_host_request(s->host, &(ob_request){ .kind = OB_REQUEST_ADD, .origin = c->number, .def = *def },
+				  &e))
 		tell_error(c, e.text);
 }
 
@@ -497,8 +497,8 @@ static bool may_open(uint32_t connections, uint32_t viewers, ob_error *e)
 		return true;
 	r.rlim_cur = needed < r.rlim_max ? needed : r.rlim_max;
 	return (r.rlim_cur == needed && setrlimit(RLIMIT_NOFILE, &r) == 0) ||
-	       ob_fail(e, "--viewers %u: they need %u open files, and this process may have %u: raise ulimit -n", viewers,
-		       (unsigned)needed, (unsigned)r.rlim_max);
+	       ob_fail(e, "--viewers %u: they need %u open files, and this process may have %u: raise ulimit -n",
+		       viewers, (unsigned)needed, (unsigned)r.rlim_max);
 }
 
 static bool open_context(ob_server *s, ob_error *e)

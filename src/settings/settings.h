@@ -15,18 +15,18 @@
 
 typedef enum ob_solver_kind {
 	OB_SOLVER_COLOURED, // contact after contact, each on the state that the one before published
-	OB_SOLVER_JACOBI,   // all contacts on the same state, masses split between the contacts of a body
-	OB_SOLVER_GHOST,    // each treats its neighbours as infinitely heavy: wrong by design, for demonstration
-	OB_SOLVER_LAGGED,   // each computes the contact's impulse for itself, on a delayed state of its partner
+	OB_SOLVER_JACOBI, // all contacts on the same state, masses split between the contacts of a body
+	OB_SOLVER_GHOST, // each treats its neighbours as infinitely heavy: wrong by design, for demonstration
+	OB_SOLVER_LAGGED, // each computes the contact's impulse for itself, on a delayed state of its partner
 } ob_solver_kind;
 
 typedef enum ob_integrator {
 	OB_INTEGRATOR_EXACT, // free motion in closed form
-	OB_INTEGRATOR_ODE,   // by ODE's stepper
+	OB_INTEGRATOR_ODE, // by ODE's stepper
 } ob_integrator;
 
 typedef enum ob_narrow_phase {
-	OB_NARROW_OBB,  // objects touch if their shapes do, in any attitude
+	OB_NARROW_OBB, // objects touch if their shapes do, in any attitude
 	OB_NARROW_AABB, // objects touch if their axis-aligned bounding boxes overlap
 } ob_narrow_phase;
 
@@ -86,21 +86,22 @@ bool ob_harden_read(uint32_t *measures, const char *list, ob_error *e);
 
 // Settings, fixed for a run. They lie in the table, so that every process reads the same: a fixed size, no pointers.
 typedef struct ob_run_settings {
-	ob_vec3 gravity;         // m/s^2
-	double step_length;      // s
-	double tolerance;        // m; > 0: each island chooses its substeps so that its error stays below
-	uint32_t substeps;       // per step, >= 1; with a tolerance: the minimum
-	uint32_t iterations;     // contact solver iterations per substep, at most; of a monolith: QuickStep's, 0 = exact solver
-	uint32_t solver;         // ob_solver_kind
-	uint32_t lag;            // OB_SOLVER_LAGGED: delay of a partner's state in iterations
-	uint32_t integrator;     // ob_integrator
-	uint32_t narrow_phase;   // ob_narrow_phase
-	uint32_t sleeping;       // 1 = islands may fall asleep
-	uint32_t monolith;       // 1 = one ODE world holds all objects
+	ob_vec3 gravity; // m/s^2
+	double step_length; // s
+	double tolerance; // m; > 0: each island chooses its substeps so that its error stays below
+	uint32_t substeps; // per step, >= 1; with a tolerance: the minimum
+	uint32_t
+		iterations; // contact solver iterations per substep, at most; of a monolith: QuickStep's, 0 = exact solver
+	uint32_t solver; // ob_solver_kind
+	uint32_t lag; // OB_SOLVER_LAGGED: delay of a partner's state in iterations
+	uint32_t integrator; // ob_integrator
+	uint32_t narrow_phase; // ob_narrow_phase
+	uint32_t sleeping; // 1 = islands may fall asleep
+	uint32_t monolith; // 1 = one ODE world holds all objects
 	uint32_t one_per_object; // 1 = worker i runs object i and nothing else; set by the host
-	uint32_t timed;          // 1 = counters measure each section of the step
-	uint32_t load;           // > 0: each test of two axis-aligned boxes adds up 1 + 2 + .. + load
-	uint32_t freezes;        // 1 = unsolvable bodies are frozen: budgets are per island; set by the host
+	uint32_t timed; // 1 = counters measure each section of the step
+	uint32_t load; // > 0: each test of two axis-aligned boxes adds up 1 + 2 + .. + load
+	uint32_t freezes; // 1 = unsolvable bodies are frozen: budgets are per island; set by the host
 	ob_fault_plan fault;
 } ob_run_settings;
 
@@ -152,20 +153,20 @@ typedef enum ob_setting_id {
 } ob_setting_id;
 
 typedef enum ob_setting_kind {
-	OB_SETTING_REAL,   // double, in its unit
-	OB_SETTING_COUNT,  // uint32_t
+	OB_SETTING_REAL, // double, in its unit
+	OB_SETTING_COUNT, // uint32_t
 	OB_SETTING_CHOICE, // uint32_t, a number among names
 	OB_SETTING_SWITCH, // uint32_t, 0 or 1; in a scene true or false
 } ob_setting_kind;
 
 typedef struct ob_setting {
-	const char *name;   // name of the option, the scene's field and the report's key
+	const char *name; // name of the option, the scene's field and the report's key
 	ob_setting_kind kind;
-	size_t offset;      // in ob_run_settings
+	size_t offset; // in ob_run_settings
 	double least, most; // of numbers
-	bool above;         // least itself is too small
-	const char *unit;   // "" = none
-	const char *names;  // CHOICE, SWITCH: "a|b|c"
+	bool above; // least itself is too small
+	const char *unit; // "" = none
+	const char *names; // CHOICE, SWITCH: "a|b|c"
 } ob_setting;
 
 extern const ob_setting ob_setting_table[OB_SETTINGS];

@@ -28,7 +28,8 @@ static ob_placed placed_of(ob_sim *s, const ob_course *c, ob_vec3 v)
 			    .v = v,
 			    .w = now.w,
 			    .inertia = p->inertia,
-			    .rest_depth = ob_narrowphase_rest_depth(&s->solver, ob_shape_thickness(p->shape, p->size), false),
+			    .rest_depth =
+				    ob_narrowphase_rest_depth(&s->solver, ob_shape_thickness(p->shape, p->size), false),
 			    .far_future = ob_narrowphase_far_future(&s->solver),
 			    .hull = ob_hull_of(s->u, p) };
 }

@@ -292,7 +292,9 @@ static ob_state state_by_ode(ob_sim *s, uint32_t id)
 	enum { WORK_OF_SUBSTEP = 32 };
 	for (uint32_t i = 0; i < run->substeps && done && !ob_budget_spent(&s->solver); i++) {
 		ob_budget_note(&s->solver, WORK_OF_SUBSTEP);
-		done = ob_ode_body_step(ob_ode_bodies_get(&s->solver.ode_bodies, run->gravity, id, ob_passport_of(s->u, id)), &now, force, ob_v3(0, 0, 0), h);
+		done = ob_ode_body_step(
+			ob_ode_bodies_get(&s->solver.ode_bodies, run->gravity, id, ob_passport_of(s->u, id)), &now,
+			force, ob_v3(0, 0, 0), h);
 	}
 	if (!done)
 		ob_step_fail(s->u, OB_STEP_ENGINE, id);

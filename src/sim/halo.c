@@ -18,8 +18,8 @@ enum { MOTION = 1, BEFORE };
 struct ob_halo {
 	uint32_t rank, ranks;
 	bool partial; // some rank may lack the motion of some body
-	uint8_t *owed; // [object], own bodies: another rank may lack MOTION = the motion; BEFORE = the one before this
-		       // step
+	// [object], own bodies: another rank may lack MOTION = the motion; BEFORE = the one before this step
+	uint8_t *owed;
 	uint8_t *inland; // [object], own bodies: 1 = no neighbour was elsewhere when a simulator got it
 	uint64_t *told; // [object], own bodies: bit r = rank r has the motion, for the first 64 ranks
 	uint16_t *owner; // [object]: 1 + rank of its home; 0 = not a body

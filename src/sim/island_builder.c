@@ -23,8 +23,9 @@ typedef struct builder {
 	ob_universe *u;
 	ob_step_data *data;
 	uint32_t ids;
-	uint32_t *body; // [bodies], ascending when all are found; while several workers look for them,
-			// ob_object_involve alone counts them
+	// [bodies], ascending when all are found; while several workers look for them, ob_object_involve alone counts
+	// them
+	uint32_t *body;
 	uint32_t bodies;
 	uint32_t *place; // [id], when islands are merged: index in body[], valid where body[] has the id there
 	uint32_t *parent; // [id], for bodies (table/forest.h)

@@ -19,7 +19,7 @@
 static const double contact_gap = 2e-4; // m: a forecast takes bodies this near to be touching,
 static const double contact_gap_share = .05; // but no nearer than this share of the thinner one's thickness
 static const double tunnel_share = .4; // share of the thickness: bodies that move farther may have passed through each
-				       // other
+	// other
 
 // Common data for the checks of a batch of pairs.
 typedef struct pair_check {
@@ -90,7 +90,8 @@ static double time_of_contact(const pair_check *c, const moving_pair *p, double 
 	const ob_placed *a = &p->at[0], *b = &p->at[1];
 	double speed = relative_speed(a, b, h);
 	double gap = ob_min(contact_gap * c->s->solver.island.unit.length, contact_gap_share * p->thin);
-	return ob_time_of_nearing(a, b, ob_max(speed, 1e-9), h, p->h, gap, ob_narrowphase_follower(&c->s->solver), apart);
+	return ob_time_of_nearing(a, b, ob_max(speed, 1e-9), h, p->h, gap, ob_narrowphase_follower(&c->s->solver),
+				  apart);
 }
 
 // True if the two have passed through each other since the step began.
@@ -113,8 +114,8 @@ static bool touched_in_step(const pair_check *c, ob_pair_key *k, const moving_pa
 {
 	ob_manifold m;
 	ob_manifold_finder finder = ob_narrowphase_finder(&c->s->solver);
-	finder.find(finder.with, &end->at[0], &end->at[1], ob_max(contact_gap * c->s->solver.island.unit.length, end->reach),
-		    &m);
+	finder.find(finder.with, &end->at[0], &end->at[1],
+		    ob_max(contact_gap * c->s->solver.island.unit.length, end->reach), &m);
 	if (m.separation <= 0 || passed_through(c, k, end))
 		return true;
 	k->limit = end->path + m.separation;

@@ -30,8 +30,8 @@ typedef struct ob_peers_head {
 	uint64_t step; // set by ob_peers_exchange
 	uint64_t phase; // an ob_phase, or one of the next
 	uint64_t digest;
-	uint64_t damaged; // 1 + an object whose state does not fit its digest; 0: none is known; OB_PEERS_MOTION: its
-			  // motion
+	// 1 + an object whose state does not fit its digest; 0: none is known; OB_PEERS_MOTION: its motion
+	uint64_t damaged;
 	uint64_t differs; // 1 = it received motions whose start differs from the one here
 	uint64_t move; // of rank 0: move of a simulator, as table/home.h; set by ob_peers_exchange
 	uint64_t next_due; // first step with an object to solve, or a pair to check, on the rank; likewise

@@ -24,7 +24,8 @@ const ob_found_result *ob_committer_result_of(const ob_universe *u, const ob_mai
 	whole->id = steady->id, whole->state = steady->state, whole->due = steady->due, whole->reserved = 0;
 	memcpy(motion, steady->motion, OB_MOTION_ACCELERATION);
 	whole->motion.a = ob_newest_motion(u, steady->id)->a;
-	memcpy(motion + OB_MOTION_BEHIND_IT, steady->motion + OB_MOTION_ACCELERATION, sizeof whole->motion - OB_MOTION_BEHIND_IT);
+	memcpy(motion + OB_MOTION_BEHIND_IT, steady->motion + OB_MOTION_ACCELERATION,
+	       sizeof whole->motion - OB_MOTION_BEHIND_IT);
 	return whole;
 }
 

@@ -31,7 +31,10 @@ typedef struct ob_check_record {
 } ob_check_record;
 
 // Record of a result whose acceleration is unchanged, as it mostly is: the motion without it.
-enum { OB_MOTION_ACCELERATION = offsetof(ob_motion, a), OB_MOTION_BEHIND_IT = OB_MOTION_ACCELERATION + sizeof(ob_vec3) };
+enum {
+	OB_MOTION_ACCELERATION = offsetof(ob_motion, a),
+	OB_MOTION_BEHIND_IT = OB_MOTION_ACCELERATION + sizeof(ob_vec3)
+};
 typedef struct ob_steady_record {
 	uint32_t id, state, due, reserved; // as in ob_found_result
 	unsigned char motion[sizeof(ob_motion) - sizeof(ob_vec3)];

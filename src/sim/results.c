@@ -153,7 +153,8 @@ static void hand_over_result(ob_universe *u, const ob_found_result *r)
 		return;
 	}
 	memcpy(steady.motion, motion, OB_MOTION_ACCELERATION);
-	memcpy(steady.motion + OB_MOTION_ACCELERATION, motion + OB_MOTION_BEHIND_IT, sizeof r->motion - OB_MOTION_BEHIND_IT);
+	memcpy(steady.motion + OB_MOTION_ACCELERATION, motion + OB_MOTION_BEHIND_IT,
+	       sizeof r->motion - OB_MOTION_BEHIND_IT);
 	ob_outbox_put(u, OB_RECORD_RESULT, &steady, sizeof steady, NULL, 0);
 }
 
@@ -178,8 +179,9 @@ void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6])
 
 void ob_commit_effort(ob_sim *s, uint32_t island, uint32_t share)
 {
-	const ob_effort_record r = { island,
-				  share < OB_MOST_EFFORT ? share : OB_MOST_EFFORT }; // so that sums stay within bounds
+	const ob_effort_record r = { island, share < OB_MOST_EFFORT
+						     ? share
+						     : OB_MOST_EFFORT }; // so that sums stay within bounds
 	if (ob_universe_contained(s->u))
 		ob_outbox_put(s->u, OB_RECORD_EFFORT, &r, sizeof r, NULL, 0);
 	else
@@ -213,16 +215,16 @@ void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse
 void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, const ob_script_cell *c)
 {
 	ob_script_record r = { .cell = cell,
-			    .flags = turn->flags,
-			    .wake = turn->wake,
-			    .asks = c->asks,
-			    .state_bytes = c->state_bytes,
-			    .outbox_bytes = c->outbox_bytes,
-			    .failed_step = c->failed_step,
-			    .force = c->force,
-			    .next_torque = c->next_torque,
-			    .push = c->push,
-			    .twist = c->twist };
+			       .flags = turn->flags,
+			       .wake = turn->wake,
+			       .asks = c->asks,
+			       .state_bytes = c->state_bytes,
+			       .outbox_bytes = c->outbox_bytes,
+			       .failed_step = c->failed_step,
+			       .force = c->force,
+			       .next_torque = c->next_torque,
+			       .push = c->push,
+			       .twist = c->twist };
 	memcpy(r.random, c->random, sizeof r.random);
 	memcpy(r.colour, c->colour, sizeof r.colour);
 	memcpy(r.error, c->error, sizeof r.error);

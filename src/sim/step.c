@@ -253,7 +253,7 @@ static bool open_pairs(const scheduler *c, ob_phase phase)
 	const uint32_t last = all - 1;
 	while (first < last &&
 	       !ob_schedule_is_dynamic(&c->data->schedule[first])) // pairs are checked by a worker with a dynamic
-								   // object
+		// object
 		first++;
 	ob_gate_open(c->u, phase, &first, 1);
 	return true;
@@ -412,10 +412,10 @@ static void prefetch_islands(ob_sim *s, uint32_t first, uint32_t n)
 static void solve_islands(ob_sim *s)
 {
 	const ob_step_data *data = s->data;
-	const bool notes = !data->count->shared && !ob_universe_contains(s->u); // else they are noted when islands are
-										// dealt
-	const uint32_t most = s->settings->freezes ? 1 : OB_ISLANDS_ABREAST; // an object may fail there, with a budget
-									     // of its own
+	// else they are noted when islands are dealt
+	const bool notes = !data->count->shared && !ob_universe_contains(s->u);
+	// an object may fail there, with a budget of its own
+	const uint32_t most = s->settings->freezes ? 1 : OB_ISLANDS_ABREAST;
 	uint32_t chunk, chunks = 0, objects = 0;
 	if (s->settings->one_per_object) {
 		solve_abreast(s, data->result_island[s->worker], 1, true);

@@ -364,7 +364,9 @@ static void integrate_by_ode(ob_solver *s, uint32_t row)
 	ob_vec3 l = ob_rotate(&body->r, ob_v3(wl.x * body->inertia.x, wl.y * body->inertia.y, wl.z * body->inertia.z));
 	ob_state state = { { body->p, body->q }, ob_row_linear(w->v[row]), ob_row_angular(w->v[row]) };
 	ob_pose before = state.pose;
-	if (!ob_ode_body_step(ob_ode_bodies_get(&s->ode_bodies, s->settings->gravity, body->id, s->in->object[row - 1].passport), &state, j, l, w->h))
+	if (!ob_ode_body_step(
+		    ob_ode_bodies_get(&s->ode_bodies, s->settings->gravity, body->id, s->in->object[row - 1].passport),
+		    &state, j, l, w->h))
 		s->calls.fail(s->calls.with, body->id);
 	// The displacement row takes ODE's step, so that the gaps follow.
 	ob_quat turn = ob_quat_mul(state.pose.q, (ob_quat){ before.q.w, -before.q.x, -before.q.y, -before.q.z });

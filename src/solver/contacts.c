@@ -613,9 +613,11 @@ void ob_contacts_load(ob_solver *s, const ob_island_input *in)
 	for (uint32_t i = 0; i < in->pairs; i++) {
 		const ob_island_pair *pair = &in->pair[w->contact_order[i]];
 		ob_contact *t = &w->contact[w->contacts];
-		*t = (ob_contact){
-			.key = w->contact_order[i], .a = w->row_of[pair->a], .b = w->row_of[pair->b], .lane = OB_NO_LANE, .since = INFINITY
-		};
+		*t = (ob_contact){ .key = w->contact_order[i],
+				   .a = w->row_of[pair->a],
+				   .b = w->row_of[pair->b],
+				   .lane = OB_NO_LANE,
+				   .since = INFINITY };
 		const uint32_t own = w->surfaces.count ? ob_surface_row(w, w->contact_order[i]) : 0;
 		if (own)
 			*(pair->fixed == pair->a ? &t->a : &t->b) = own;

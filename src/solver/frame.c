@@ -157,7 +157,8 @@ static void find_what_holds(ob_solver *s, const ob_island_input *in)
 	for (uint32_t i = 0; i < in->pairs && !held; i++) {
 		const ob_island_pair *k = &in->pair[i];
 		const uint32_t row = holding_row(s, in, i);
-		const uint32_t other = row && w->body[row].id == in->object[k->a].id ? w->row_of[k->b] : w->row_of[k->a];
+		const uint32_t other =
+			row && w->body[row].id == in->object[k->a].id ? w->row_of[k->b] : w->row_of[k->a];
 		if (row && !w->body[row].holds)
 			w->body[row].holds = comes_near(s, row, other, energy);
 	}

@@ -176,7 +176,8 @@ static double rate_of(const ob_body_at *a, const ob_body_at *b, const ob_manifol
 	return ob_dot(m->normal, ob_sub(va, vb));
 }
 
-static void find_between(ob_solver *s, const ob_contact *contact, const ob_body_at *a, const ob_body_at *b, ob_manifold *m)
+static void find_between(ob_solver *s, const ob_contact *contact, const ob_body_at *a, const ob_body_at *b,
+			 ob_manifold *m)
 {
 	const ob_island_work *w = &s->island;
 	ob_placed pa, pb;

@@ -84,8 +84,8 @@ typedef struct ob_contact {
 	double slip, creep; // m: within this step; within the last second
 	uint32_t rebounds; // in the partial substep
 	bool left_to_solver; // its hits in the partial substep have too many points: the contact solver takes them
-	bool misses; // its bodies approach fast, but it does not close in the partial substep, as following them has
-		     // shown
+	// its bodies approach fast, but it does not close in the partial substep, as following them has shown
+	bool misses;
 	bool as_of_instant; // its geometry is that of an instant in the running partial substep
 	bool began; // its bodies did not touch at the step's start
 	bool mirror; // second contact of a pair that is solved for each side apart: its own body is b
@@ -209,20 +209,21 @@ typedef struct ob_island_work {
 	double mass; // kg, sum of all bodies
 	double max_acceleration; // m/s^2, the largest external acceleration of a body
 	ob_vec3 frame; // m/s^2: acceleration of the frame of reference in which the island is solved
-	bool in_field; // bodies that fall together feel external acceleration: a solution in a frame that falls with
-		       // them missed the tolerance
+	// bodies that fall together feel external acceleration: a solution in a frame that falls with them missed the
+	// tolerance
+	bool in_field;
 	bool torques; // a body has an external torque
 	uint32_t substeps; // of this step
 	double error, new_error; // m (solver/error_control.h): of the step; caused by the step itself
 	double substep; // s, length of a whole substep
 	double time; // s, from the step's start to the running partial substep's
-	double h, h_min; // s (solver/adaptive_substep.h): length of the running partial substep; the least one, but for
-			 // the last of a substep
+	// s (solver/adaptive_substep.h): length of the running partial substep; the least one, but for the last of a
+	// substep
+	double h, h_min;
 	double unpaced; // s: time not yet counted in the contacts' paths
 	double last_impact; // s into the partial substep: instant of its last impact
-	double residual,
-		last_residual; // m/s: largest change of a velocity in a first iteration, in this step so far; in the
-			       // last one
+	// m/s: largest change of a velocity in a first iteration, in this step so far; in the last one
+	double residual, last_residual;
 	bool projected; // position projection was applied in this step
 	double recovered; // J, energy that position projection has added in this step
 	uint32_t *row_of, row_of_max; // [object of the input]: its row; 0: none yet

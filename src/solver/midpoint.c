@@ -13,7 +13,7 @@
 static const double least_turning = 1e-6; // m/s^2: less change of a row by turning is ignored
 static const double least_face_turning = 5e-5; // the same with three held points, which leave no freedom to tilt
 static const double longest_way = .2; // share of the smaller thickness: longest path of halved bodies in a partial
-				      // substep
+	// substep
 static const double loose_gap = 1e-5; // m: a point farther off is not held at the surface
 
 // Returns the least change of velocity, m/s, in the partial substep that is noticed.

@@ -46,7 +46,8 @@ typedef struct ob_island_pair {
 typedef struct ob_island_input {
 	uint64_t step; // number of complete steps
 	uint32_t members, objects, pairs;
-	const ob_island_object *object; // [objects]: the members by ascending id, then the others as the pairs name them
+	const ob_island_object
+		*object; // [objects]: the members by ascending id, then the others as the pairs name them
 	const ob_island_pair *pair;
 	bool feels; // touches are to be reported
 } ob_island_input;

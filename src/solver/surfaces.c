@@ -41,10 +41,9 @@ void ob_surface_add(ob_solver *s, uint32_t row, uint32_t pair, const ob_island_o
 	}
 	ob_surface *surface = &x->surface[x->count++];
 	ob_body *body = &w->body[row];
-	*surface = (ob_surface){ .row = row,
-				 .pair = pair,
-				 .motion = *object->motion,
-				 .running = object->passport->surface_velocity };
+	*surface = (ob_surface){
+		.row = row, .pair = pair, .motion = *object->motion, .running = object->passport->surface_velocity
+	};
 	body->surface = x->count;
 	if (!goes(&surface->motion))
 		return;
@@ -314,8 +313,7 @@ void ob_surface_halve(ob_solver *s, uint32_t row)
 	body->start_q = body->q;
 	body->start_w = x->begin.w;
 	body->halved = true;
-	const ob_vec3 way =
-		ob_scale(x->begin.v, .5 * w->h); // as halved bodies move: at the velocity at the start
+	const ob_vec3 way = ob_scale(x->begin.v, .5 * w->h); // as halved bodies move: at the velocity at the start
 	set_row(body->first_half, way, ob_v3(0, 0, 0));
 	body->p = ob_add(body->p, way);
 }

@@ -21,7 +21,8 @@ void ob_touches_note_solved(ob_solver *s)
 			point = ob_madd(point, 1. / c->points, ob_add(w->body[c->a].p, c->arm_a[j]));
 		}
 		if (impulse > 0)
-			s->calls.touch(s->calls.with, w->body[c->a].id, w->body[c->b].id, impulse, in_world(w, point, 0));
+			s->calls.touch(s->calls.with, w->body[c->a].id, w->body[c->b].id, impulse,
+				       in_world(w, point, 0));
 	}
 }
 
@@ -39,5 +40,5 @@ void ob_touches_note_impact(ob_solver *s, const ob_impact_instant *i)
 	for (int j = 0; j < i->m.points; j++)
 		point = ob_madd(point, 1. / i->m.points, i->m.at[j]);
 	s->calls.touch(s->calls.with, w->body[c->a].id, w->body[c->b].id,
-			fabs(ob_dot(change, i->m.normal)) / w->body[row].inv_mass, in_world(w, point, i->time));
+		       fabs(ob_dot(change, i->m.normal)) / w->body[row].inv_mass, in_world(w, point, i->time));
 }

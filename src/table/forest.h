@@ -34,8 +34,8 @@ static inline void ob_forest_join(uint32_t *parent, uint32_t i, uint32_t j)
 		const uint32_t a = ob_forest_root(parent, i), b = ob_forest_root(parent, j);
 		const uint32_t low = a < b ? a : b, high = a < b ? b : a;
 		uint32_t seen = high;
-		if (low == high || __atomic_compare_exchange_n(&parent[high], &seen, low, false, __ATOMIC_RELAXED,
-							       __ATOMIC_RELAXED))
+		if (low == high ||
+		    __atomic_compare_exchange_n(&parent[high], &seen, low, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
 			return;
 		if (seen > high) // damage: no walk would ever lead on from there
 			return;

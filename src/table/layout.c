@@ -2,12 +2,7 @@
 
 #include <string.h>
 
-enum {
-	CAPACITY_LIMIT = 1 << 24,
-	WORKERS_LIMIT = 1 << 20,
-	HULLS_LIMIT = UINT16_MAX,
-	SCRIPT_BYTES_LIMIT = 1 << 28
-};
+enum { CAPACITY_LIMIT = 1 << 24, WORKERS_LIMIT = 1 << 20, HULLS_LIMIT = UINT16_MAX, SCRIPT_BYTES_LIMIT = 1 << 28 };
 
 static uint32_t power_of_two_from(uint32_t least)
 {
@@ -223,9 +218,8 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	    (s->script_cells > 0) != (s->script_bytes >= sizeof(ob_script_directory)))
 		return false;
 	ob_header expected;
-	ob_layout_plan(&expected,
-		       &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
-					     s->outbox_bytes > 0, s->script_cells, s->script_bytes });
+	ob_layout_plan(&expected, &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
+							s->outbox_bytes > 0, s->script_cells, s->script_bytes });
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       (h->harden & 1 << OB_HARDEN_OUTBOX) == (s->outbox_bytes ? 1 << OB_HARDEN_OUTBOX : 0) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&

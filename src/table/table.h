@@ -40,17 +40,17 @@ typedef enum ob_phase {
 } ob_phase;
 
 typedef struct ob_universe_setup {
-	const char *name;       // unique on this machine; NULL = "obsim-<pid>"
-	uint32_t capacity;      // object slots
-	uint32_t workers;       // >= 1
-	uint32_t hulls;         // maximum of hulls, of the scene and created
-	uint32_t rank, ranks;   // this rank, and their number (sim/peers.h); ranks 0 or 1: a single one
-	bool shares_contacts;   // of several ranks: as ob_universe_shares_contacts, the same on each
-	const char *isolation;  // "thread" | "process": shown by readers
+	const char *name; // unique on this machine; NULL = "obsim-<pid>"
+	uint32_t capacity; // object slots
+	uint32_t workers; // >= 1
+	uint32_t hulls; // maximum of hulls, of the scene and created
+	uint32_t rank, ranks; // this rank, and their number (sim/peers.h); ranks 0 or 1: a single one
+	bool shares_contacts; // of several ranks: as ob_universe_shares_contacts, the same on each
+	const char *isolation; // "thread" | "process": shown by readers
 	ob_run_settings run;
-	bool traced;            // with rings for a trace (trace.h)
+	bool traced; // with rings for a trace (trace.h)
 	bool checked; // shared data is checked after each step (sim/invariants.h)
-	uint32_t harden;        // bits, 1 << ob_harden_measure; with OUTBOX the last of the workers is the arranger (outbox.h)
+	uint32_t harden; // bits, 1 << ob_harden_measure; with OUTBOX the last of the workers is the arranger (outbox.h)
 	uint32_t script_cells; // objects that can have a script at the same time (script_data.h); 0: none
 	uint32_t script_bytes; // size of the scripts' texts: an ob_script_directory, and the data that it refers to
 	const void *script_text;

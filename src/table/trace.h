@@ -20,22 +20,22 @@
 // Times are from ob_clock_ns. Kinds of lower level enclose those of higher level on the same track.
 typedef enum ob_trace_kind {
 	OB_TRACE_NONE,
-	OB_TRACE_WAIT,     // at the gate
-	OB_TRACE_SOLVE,    // phase ISLANDS; a = islands, b = their bodies
-	OB_TRACE_OBJECTS,  // phases of neighbours, pairs and copies
-	OB_TRACE_SCHEDULE,  // the scheduler, between phases
-	OB_TRACE_CHUNK,    // islands claimed at once; a, b as above
-	OB_TRACE_ISLAND,   // a = lowest id, b = bodies
-	OB_TRACE_PROFILE,     // a = ob_profile_section
-	OB_TRACE_STATE,    // object a has been in a state until now; b = ob_trace_state before | state after << 8
-	OB_TRACE_BIRTH,    // of object a
-	OB_TRACE_DEATH,    // of object a
-	OB_TRACE_KILLED,   // worker a ended before STOP; b = its signal, 0 = it exited
+	OB_TRACE_WAIT, // at the gate
+	OB_TRACE_SOLVE, // phase ISLANDS; a = islands, b = their bodies
+	OB_TRACE_OBJECTS, // phases of neighbours, pairs and copies
+	OB_TRACE_SCHEDULE, // the scheduler, between phases
+	OB_TRACE_CHUNK, // islands claimed at once; a, b as above
+	OB_TRACE_ISLAND, // a = lowest id, b = bodies
+	OB_TRACE_PROFILE, // a = ob_profile_section
+	OB_TRACE_STATE, // object a has been in a state until now; b = ob_trace_state before | state after << 8
+	OB_TRACE_BIRTH, // of object a
+	OB_TRACE_DEATH, // of object a
+	OB_TRACE_KILLED, // worker a ended before STOP; b = its signal, 0 = it exited
 	OB_TRACE_SNAPSHOT, // the host copies all motions
-	OB_TRACE_MEASURE,  // energy, momentum, penetration
-	OB_TRACE_RECORD,   // writing to HDF5
-	OB_TRACE_DRAW,     // frame a
-	OB_TRACE_ENCODE,   // queueing frame a for encoding
+	OB_TRACE_MEASURE, // energy, momentum, penetration
+	OB_TRACE_RECORD, // writing to HDF5
+	OB_TRACE_DRAW, // frame a
+	OB_TRACE_ENCODE, // queueing frame a for encoding
 	OB_TRACE_KINDS
 } ob_trace_kind;
 
@@ -49,9 +49,9 @@ typedef enum ob_trace_motion {
 
 typedef struct ob_trace_event {
 	uint64_t begin, end; // ns
-	uint32_t kind;       // ob_trace_kind
-	uint32_t a, b;       // by kind
-	uint32_t step;       // step being computed
+	uint32_t kind; // ob_trace_kind
+	uint32_t a, b; // by kind
+	uint32_t step; // step being computed
 } ob_trace_event;
 
 bool ob_universe_traced(const ob_universe *u);

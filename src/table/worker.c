@@ -37,8 +37,8 @@ uint32_t ob_worker_object(const ob_universe *u, uint32_t worker)
 {
 	if (worker >= u->header.sizes.workers)
 		return OB_NO_OBJECT;
-	const uint32_t *from =
-		u->header.sizes.outbox_bytes ? &ob_outbox_page_of(u, worker)->working_on : &u->worker[worker].working_on;
+	const uint32_t *from = u->header.sizes.outbox_bytes ? &ob_outbox_page_of(u, worker)->working_on
+							    : &u->worker[worker].working_on;
 	const uint32_t object = __atomic_load_n(from, __ATOMIC_RELAXED) - 1;
 	return object < u->header.sizes.capacity ? object : OB_NO_OBJECT;
 }

@@ -25,7 +25,7 @@ typedef struct ob_world {
 	struct ob_world_path {
 		uint32_t id;
 		ob_path path;
-	} *path; // [paths]
+	} * path; // [paths]
 	uint32_t hulls;
 	ob_hull *hull; // [hulls], by the number in passports
 } ob_world;

@@ -50,7 +50,8 @@ int main(void)
 	refuse(in_folder("empty"), 4 << 20, "larger than 4 MiB");
 	CHECK(mkfifo(in_folder("pipe"), 0600) == 0);
 	refuse(in_folder("pipe"), 1 << 20, "no file, but a pipe or a device");
-	CHECK(chdir(folder) == 0 && symlink("pipe", "link") == 0 && symlink("nothing", "dangling") == 0 && symlink("round", "round") == 0);
+	CHECK(chdir(folder) == 0 && symlink("pipe", "link") == 0 && symlink("nothing", "dangling") == 0 &&
+	      symlink("round", "round") == 0);
 	refuse(in_folder("link"), 1 << 20, "no file, but a pipe or a device");
 	refuse(in_folder("dangling"), 1 << 20, "No such file");
 	refuse(in_folder("round"), 1 << 20, "Too many levels of symbolic links");

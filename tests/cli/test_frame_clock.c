@@ -9,7 +9,8 @@ static uint64_t count_frames(double duration, double fps, double step, uint64_t 
 	uint64_t now = 0, before = 0, shown = 0;
 	*seen_steps = 1;
 	for (;;) {
-		const uint64_t need = ob_frame_clock_need(&c, now); // before those of now are drawn, as the run loop asks
+		const uint64_t need =
+			ob_frame_clock_need(&c, now); // before those of now are drawn, as the run loop asks
 		bool between;
 		while (ob_frame_clock_step(&c, &between) <= now) {
 			double t = ob_frame_clock_time(&c), end = (double)now * step;

@@ -50,8 +50,7 @@ static void test_taken(void)
 	CHECK(strcmp(a.value[OB_OPTION_ARCH], "monolith") == 0);
 	CHECK(strcmp(a.value[OB_OPTION_DURATION], "2") == 0);
 	CHECK(strcmp(a.value[OB_OPTION_JSON], "-") == 0);
-	CHECK(strcmp(a.value[OB_OPTION_SEED], "-1") ==
-	      0); // a value; the request validates it
+	CHECK(strcmp(a.value[OB_OPTION_SEED], "-1") == 0); // a value; the request validates it
 	CHECK(!a.value[OB_OPTION_STEP] && !a.value[OB_OPTION_HELP]);
 	ob_options_finish(&a);
 	CHECK(parse(&a, OB_COMMAND_RUN, "--harden s.lua", copy, &e)); // its value stands behind a =, or not at all

@@ -83,8 +83,8 @@ static void test_tolerance_in_words(void)
 		ob_report_print(&a, f);
 		fclose(f);
 		CHECK(ob_report_missed_tolerance(&a) == missed);
-		CHECK(strstr(text, missed ? "1.00 mm MISSED, the largest error was 2.00 mm" :
-					    "1.00 mm kept, the largest error was 500 um"));
+		CHECK(strstr(text, missed ? "1.00 mm MISSED, the largest error was 2.00 mm"
+					  : "1.00 mm kept, the largest error was 500 um"));
 		CHECK(!missed == !strstr(text, "MISSED") && missed == !strstr(text, " kept"));
 		CHECK(!strstr(text, "reached"));
 		free(text);

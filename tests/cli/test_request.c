@@ -92,7 +92,8 @@ static void test_taken(void)
 	CHECK(r.workers == (uint32_t)ob_cpu_count() && r.measure == OB_MEASURE_STEPS && !r.frames.wanted &&
 	      !ob_setting_is_set(&r.asked, OB_SETTING_ARCHITECTURE));
 	CHECK(read_line("s --step 1/60 --duration .5 --workers objects --isolation process", &r, &e));
-	CHECK(r.asked.step_length == 1. / 60 && r.duration == .5 && r.workers == 0 && r.isolation == OB_ISOLATION_PROCESS);
+	CHECK(r.asked.step_length == 1. / 60 && r.duration == .5 && r.workers == 0 &&
+	      r.isolation == OB_ISOLATION_PROCESS);
 	CHECK(read_line("s --arch monolith --workers 1 --iterations 0", &r, &e));
 	CHECK(r.asked.monolith == 1 && r.workers == 1 && r.asked.iterations == 0);
 	CHECK(read_line("s --raw - --size 64x48 --overlay contacts,aabb --fps 1/3 --measure end", &r, &e));

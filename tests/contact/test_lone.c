@@ -10,10 +10,11 @@
 static void set_face(pair *p, uint64_t *seed)
 {
 	ob_vec3 t1, t2, middle = ob_madd(p->arm_a[0], within(seed, -.1, .1), p->normal);
-	const double length = within(seed, .05, .5), width = within(seed, .05, .5), lift = pow(10, within(seed, -7, -1)),
-		     angle = within(seed, 0, 7);
+	const double length = within(seed, .05, .5), width = within(seed, .05, .5),
+		     lift = pow(10, within(seed, -7, -1)), angle = within(seed, 0, 7);
 	ob_tangents(p->normal, &t1, &t2);
-	const ob_vec3 along = ob_add(ob_scale(t1, cos(angle)), ob_scale(t2, sin(angle))), across = ob_cross(p->normal, along);
+	const ob_vec3 along = ob_add(ob_scale(t1, cos(angle)), ob_scale(t2, sin(angle))),
+		      across = ob_cross(p->normal, along);
 	for (int j = 0; j < OB_POINTS; j++) {
 		const ob_vec3 at = ob_madd(ob_scale(along, j & 1 ? length : -length), j & 2 ? width : -width, across);
 		p->arm_a[j] = ob_add(middle, at);
@@ -100,7 +101,7 @@ static double apart(const scene *a, const scene *b, int l)
 // force, so that the sliding force does not follow the load as the ellipsoid alone would have it.
 static void test_force_at_its_limit(void)
 {
-	static const double inverse[6] = { .040403251748610529, -.0099510494517476584, 3.7450526271528756e-07,
+	static const double inverse[6] = { .040403251748610529, -.0099510494517476584,   3.7450526271528756e-07,
 					   .059997943849608472, -4.9727424251665827e-07, .040360129283318384 };
 	static const double arm[OB_POINTS][2] = { { -.069155428006979491, -.50636311227253827 },
 						  { -.40935018371465048, .30596921627284246 },
@@ -111,9 +112,9 @@ static void test_force_at_its_limit(void)
 	static const double load[OB_POINTS] = { 5.8832085935531122, 0, .31114343041718151, 0 };
 	static const ob_vec3 force = { -.58905568266977326, 3.0477553358114684, 0 };
 	static const double before[6] = { -.0013413487793549025, -.025207476025070785, .0044274026536828565,
-					  .12397240888733152, -.054239756445136116, .024775036797584912 };
-	static const double after[6] = { -.0034111718110554296, -.014498277600127967, .0057556081088360831,
-					 .033508857190590317, -.0053170923982743673, .0044743004770791892 };
+					  .12397240888733152,    -.054239756445136116, .024775036797584912 };
+	static const double after[6] = { -.0034111718110554296, -.014498277600127967,  .0057556081088360831,
+					 .033508857190590317,   -.0053170923982743673, .0044743004770791892 };
 	scene s = { 0 };
 	pair *p = &s.p[0];
 	*p = (pair){ .b = fixed_body(), .normal = { 0, 0, 1 }, .mu = .5, .points = OB_POINTS };

@@ -25,8 +25,7 @@ static ob_placed seen(const view *w, const ob_placed *s)
 	if (w->mirrored)
 		p.x = -p.x;
 	out.p = rigid_point(&w->moved, p);
-	for (int c = 0; c < 3;
-	     c++) { // a box's axis may be negated: the frame stays right-handed
+	for (int c = 0; c < 3; c++) { // a box's axis may be negated: the frame stays right-handed
 		ob_vec3 axis = seen_vector(w, ob_column(&s->r, c));
 		if (w->mirrored && c == 0)
 			axis = ob_scale(axis, -1);

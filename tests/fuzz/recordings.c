@@ -41,25 +41,53 @@ static void write_record(const char *to)
 	static uint8_t pixel[4] = { 1, 2, 3, 4 };
 	static ob_mesh_image image = { 1, 1, pixel };
 	static ob_mesh_part part = { .indices = 3, .colour = 1 };
-	static ob_mesh mesh = { .vertices = 3, .vertex = vertex, .indices = 3, .index = triangle, .parts = 1, .part = &part,
-				.images = 1, .image = &image };
+	static ob_mesh mesh = { .vertices = 3,
+				.vertex = vertex,
+				.indices = 3,
+				.index = triangle,
+				.parts = 1,
+				.part = &part,
+				.images = 1,
+				.image = &image };
 	static ob_camera_def camera = { .name = "main", .eye = { 1, 2, 3 }, .fov = .7 };
-	static ob_scene scene = { .title = "A title", .text = (char *)"box {}", .text_size = 6, .record_every = 1,
-				  .cameras = 1, .camera = &camera, .meshes = 1, .mesh = &mesh, .look = { .sun = { 0, 1, 2 } } };
+	static ob_scene scene = { .title = "A title",
+				  .text = (char *)"box {}",
+				  .text_size = 6,
+				  .record_every = 1,
+				  .cameras = 1,
+				  .camera = &camera,
+				  .meshes = 1,
+				  .mesh = &mesh,
+				  .look = { .sun = { 0, 1, 2 } } };
 	static const ob_scene_options options;
-	ob_passport passport = { .generation = 1, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_SPHERE, .size = { 1, 1, 1 },
-				 .mass = 1, .inertia = { 1, 1, 1 }, .mesh = 1 };
+	ob_passport passport = { .generation = 1,
+				 .flags = OB_OBJECT_PRESENT,
+				 .shape = OB_SHAPE_SPHERE,
+				 .size = { 1, 1, 1 },
+				 .mass = 1,
+				 .inertia = { 1, 1, 1 },
+				 .mesh = 1 };
 	ob_motion motion = { .valid_until = 1, .q = { 1, 0, 0, 0 } };
 	ob_run_settings settings = ob_run_settings_default();
 	ob_error e = { "" };
-	ob_record_facts facts = { .universe = { .name = "test", .arch = "obs", .isolation = "thread", .capacity = 1, .workers = 1,
+	ob_record_facts facts = { .universe = { .name = "test",
+						.arch = "obs",
+						.isolation = "thread",
+						.capacity = 1,
+						.workers = 1,
 						.step_length = .01 },
-				  .scene = &scene, .path = "scene.lua", .options = &options, .settings = &settings,
-				  .duration = 1, .commit = "abc" };
+				  .scene = &scene,
+				  .path = "scene.lua",
+				  .options = &options,
+				  .settings = &settings,
+				  .duration = 1,
+				  .commit = "abc" };
 	ob_recorder *r = ob_recorder_create(to, &facts, &e);
 	CHECK(r);
 	for (uint64_t i = 0; r && i < 3; i++) {
-		ob_snapshot s = { .step = i, .time = .01 * (double)i, .count = 1, .passport = &passport, .motion = &motion };
+		ob_snapshot s = {
+			.step = i, .time = .01 * (double)i, .count = 1, .passport = &passport, .motion = &motion
+		};
 		CHECK(ob_recorder_append(r, &s, &e));
 	}
 	CHECK(ob_recorder_close(r, &e));
@@ -172,8 +200,12 @@ static size_t pass(unsigned flags, size_t n, const unsigned *value, size_t bytes
 
 static void through_a_library(hid_t file, const char *name)
 {
-	const H5Z_class2_t filter = { .version = H5Z_CLASS_T_VERS, .id = 4321, .encoder_present = 1, .decoder_present = 1,
-				      .name = "none", .filter = pass };
+	const H5Z_class2_t filter = { .version = H5Z_CLASS_T_VERS,
+				      .id = 4321,
+				      .encoder_present = 1,
+				      .decoder_present = 1,
+				      .name = "none",
+				      .filter = pass };
 	hid_t how = H5Pcreate(H5P_DATASET_CREATE);
 	H5Zregister(&filter);
 	H5Pset_layout(how, H5D_CHUNKED);
@@ -191,7 +223,8 @@ static void packed(hid_t file, const char *name)
 }
 
 static void (*const ways[])(hid_t file, const char *name) = {
-	to_bait, to_bait_by_link, to_itself, to_another, stored_in_bait, made_of_bait, through_a_library, packed, remove_place,
+	to_bait,      to_bait_by_link,   to_itself, to_another,   stored_in_bait,
+	made_of_bait, through_a_library, packed,    remove_place,
 };
 enum { WAYS = sizeof ways / sizeof *ways };
 

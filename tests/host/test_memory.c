@@ -49,7 +49,8 @@ static size_t run_alone(uint32_t objects, ob_isolation isolation, uint32_t worke
 
 static void check(const char *what, ob_isolation isolation, uint32_t workers, uint32_t integrator, double most)
 {
-	size_t few = run_alone(FEW, isolation, workers, integrator), many = run_alone(MANY, isolation, workers, integrator);
+	size_t few = run_alone(FEW, isolation, workers, integrator),
+	       many = run_alone(MANY, isolation, workers, integrator);
 	double each = (double)(many - few) / (MANY - FEW);
 	printf("%s, %u workers: %.0f bytes each, %zu besides\n", what, workers, each, few);
 	fflush(stdout);

@@ -85,8 +85,9 @@ static ob_requests *queue;
 static void *push_on(void *argument)
 {
 	for (uint32_t i = 0; i < PUSHES; i++)
-		ob_requests_push(
-			queue, &(ob_request){ .id = i, .kind = OB_REQUEST_ADD, .def.passport.id = (uint32_t)(intptr_t)argument });
+		ob_requests_push(queue, &(ob_request){ .id = i,
+						       .kind = OB_REQUEST_ADD,
+						       .def.passport.id = (uint32_t)(intptr_t)argument });
 	return NULL;
 }
 

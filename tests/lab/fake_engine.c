@@ -75,14 +75,14 @@ CREATE(dying, in_use, 3)
 
 #define ENGINE(kind, step_function, get_function) \
 	const ob_engine_kind kind##_engine = { .name = #kind, \
-					     .title = #kind, \
-					     .version = "", \
-					     .drives = OB_WORLD_DRIVES_SURFACES, \
-					     .hulls = true, \
-					     .create = create_##kind, \
-					     .step = step_function, \
-					     .get = get_function, \
-					     .destroy = destroy }
+					       .title = #kind, \
+					       .version = "", \
+					       .drives = OB_WORLD_DRIVES_SURFACES, \
+					       .hulls = true, \
+					       .create = create_##kind, \
+					       .step = step_function, \
+					       .get = get_function, \
+					       .destroy = destroy }
 ENGINE(exact, step, get);
 ENGINE(frozen, step, get);
 ENGINE(blind, step, get);

@@ -91,7 +91,8 @@ static void test_print(void)
 	FILE *f = begin();
 	ob_lab_print_audit(f, &d, true);
 	fclose(f);
-	CHECK(strstr(text, "RISES") && strstr(text, "in 2 of 3 cases:\n") && strstr(text, "- `bounce`: bounces too many"));
+	CHECK(strstr(text, "RISES") && strstr(text, "in 2 of 3 cases:\n") &&
+	      strstr(text, "- `bounce`: bounces too many"));
 	CHECK(strstr(text, "- `stack-10`: worst penetration, at 16 substeps, where the coarser"));
 	CHECK(strstr(text, "- `bounce`: error of energy, at 64 substeps, 556 times"));
 	free(text);

@@ -96,7 +96,8 @@ static void test_records(void)
 	CHECK(late->settings.tolerance == 5e-5 && late->settings.substeps == 0 && late->settings.iterations == 64);
 	CHECK(isinf(late->outcome.figure[0]) && isnan(late->outcome.body_seconds) && late->outcome.cpu_s == 8);
 	CHECK(!strcmp(late->outcome.failed, "fell"));
-	CHECK(pile->repeats == 2 && pile->outcome.cpu_s == 1.5 && pile->outcome.figure[0] == 2 && !*pile->outcome.failed);
+	CHECK(pile->repeats == 2 && pile->outcome.cpu_s == 1.5 && pile->outcome.figure[0] == 2 &&
+	      !*pile->outcome.failed);
 	CHECK(pile->settings.step_length == pile->of->step && pile->settings.substeps == 8);
 	ob_results_finish(&r);
 	add_record(&from, "pillow", "obsim", 0, OB_FAILURE_NONE);

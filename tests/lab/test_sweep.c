@@ -42,8 +42,7 @@ static void test_settings(void)
 	CHECK(sweep("iterations=5,50", "pile", "ode-world") == 1); // it has none
 	CHECK(sweep("tolerance=5mm", "pile", "ode-quick") == 1);
 	n = sweep("tolerance=5mm,.5 mm,2e-6m,7um", "pile", "obsim");
-	CHECK(n == 5 && has(n, 0, 64, 5e-3) && has(n, 0, 64, 5e-4) &&
-	      has(n, 0, 64, 2e-6) && has(n, 0, 64, 7e-6));
+	CHECK(n == 5 && has(n, 0, 64, 5e-3) && has(n, 0, 64, 5e-4) && has(n, 0, 64, 2e-6) && has(n, 0, 64, 7e-6));
 }
 
 static void test_own(void)

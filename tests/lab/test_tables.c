@@ -68,8 +68,8 @@ static void test_tables(void)
 	ob_results_finish(&alone);
 	f = begin();
 	ob_lab_write_equal(f, &d);
-	expect_in(f, (const char *[]){ "case,error,", "\nstack-10,0.5,mm,1,obsim,",
-				       "\nstack-10,0.5,mm,1,ode-world,,\n", NULL });
+	expect_in(f, (const char *[]){ "case,error,", "\nstack-10,0.5,mm,1,obsim,", "\nstack-10,0.5,mm,1,ode-world,,\n",
+				       NULL });
 	ob_results_finish(&r);
 	d = ob_lab_analyse(&r);
 	f = begin();

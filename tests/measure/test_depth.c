@@ -8,7 +8,10 @@ static ob_solid solid(ob_shape shape, ob_vec3 size, ob_vec3 p, ob_quat q)
 	return (ob_solid){ shape, size, p, ob_quat_matrix(q), NULL };
 }
 
-static ob_quat about(ob_vec3 axis, double angle) { return ob_quat_turn(ob_quat_identity(), ob_scale(axis, angle)); }
+static ob_quat about(ob_vec3 axis, double angle)
+{
+	return ob_quat_turn(ob_quat_identity(), ob_scale(axis, angle));
+}
 
 static const ob_vec3 X = { 1, 0, 0 }, Y = { 0, 1, 0 }, Z = { 0, 0, 1 };
 
@@ -108,8 +111,7 @@ static void shallow(ob_shape other)
 		for (int k = 0; k < DIRECTIONS; k++) {
 			double z = (k + .5) / DIRECTIONS, r = sqrt(1 - z * z), angle = k * 2.399963229728653;
 			ob_vec3 n = ob_v3(r * cos(angle), r * sin(angle), z);
-			double x = ob_solid_extent(&a, n) + ob_solid_extent(&b, n) -
-				   fabs(ob_dot(n, ob_sub(b.p, a.p)));
+			double x = ob_solid_extent(&a, n) + ob_solid_extent(&b, n) - fabs(ob_dot(n, ob_sub(b.p, a.p)));
 			least = fmin(least, x);
 		}
 		CHECK(searched <= least);

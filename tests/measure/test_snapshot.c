@@ -10,8 +10,14 @@
 
 static void add(ob_universe *u, uint32_t id, double x)
 {
-	ob_passport p = { .id = id, .generation = 1, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_SPHERE,
-			  .size = { .5, 0, 0 }, .mass = 1, .inertia = { .1, .1, .1 }, .name = "ball" };
+	ob_passport p = { .id = id,
+			  .generation = 1,
+			  .flags = OB_OBJECT_PRESENT,
+			  .shape = OB_SHAPE_SPHERE,
+			  .size = { .5, 0, 0 },
+			  .mass = 1,
+			  .inertia = { .1, .1, .1 },
+			  .name = "ball" };
 	ob_motion m = { .p = { x, 0, 0 }, .q = ob_quat_identity(), .valid_until = 1 };
 	ob_publish_motion(u, id, &m);
 	ob_write_passport(u, id, &p);
@@ -21,7 +27,10 @@ int main(void)
 {
 	char name[32];
 	snprintf(name, sizeof name, "test-snapshot-%d", (int)getpid());
-	ob_universe_setup setup = { .name = name, .capacity = 8, .workers = 1, .isolation = "thread",
+	ob_universe_setup setup = { .name = name,
+				    .capacity = 8,
+				    .workers = 1,
+				    .isolation = "thread",
 				    .run = { .step_length = .5, .substeps = 1 } };
 	ob_error e = { "" };
 	ob_universe *u = ob_universe_create(&setup, &e);

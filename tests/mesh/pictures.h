@@ -123,8 +123,9 @@ static inline glb sharing_cube(const picture *p, int images, size_t longer)
 	memcpy(b.picture, p->bytes, p->size);
 #define EACH(...) \
 	for (int i = 0; i < images; i++) \
-		n += snprintf(text + n, (size_t)(ROOM - n), __VA_ARGS__)
-	n += snprintf(text, ROOM, "{\"nodes\":[{\"mesh\":0}],\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[");
+	n += snprintf(text + n, (size_t)(ROOM - n), __VA_ARGS__)
+	n += snprintf(text, ROOM,
+		      "{\"nodes\":[{\"mesh\":0}],\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[");
 	EACH("%s{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":%d}", i ? "," : "", i);
 	n += snprintf(text + n, (size_t)(ROOM - n), "]}],\"materials\":[");
 	EACH("%s{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":%d}}}", i ? "," : "", i);
@@ -132,12 +133,16 @@ static inline glb sharing_cube(const picture *p, int images, size_t longer)
 	EACH("%s{\"source\":%d}", i ? "," : "", i);
 	n += snprintf(text + n, (size_t)(ROOM - n), "],\"images\":[");
 	EACH("%s{\"bufferView\":%d,\"mimeType\":\"image/png\"}", i ? "," : "", 2 + i);
-	n += snprintf(text + n, (size_t)(ROOM - n), "],\"bufferViews\":[{\"buffer\":0,\"byteLength\":96},{\"buffer\":0,\"byteOffset\":96,\"byteLength\":72}");
+	n += snprintf(text + n, (size_t)(ROOM - n),
+		      "],\"bufferViews\":[{\"buffer\":0,\"byteLength\":96},{\"buffer\":0,\"byteOffset\":96,"
+		      "\"byteLength\":72}");
 	EACH(",{\"buffer\":0,\"byteOffset\":168,\"byteLength\":%zu}", p->size + (size_t)i * longer);
 #undef EACH
 	snprintf(text + n, (size_t)(ROOM - n),
-		 "],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":8,\"type\":\"VEC3\"},{\"bufferView\":1,"
-		 "\"componentType\":5123,\"count\":36,\"type\":\"SCALAR\"}],\"buffers\":[{\"byteLength\":%zu}]}", size);
+		 "],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":8,\"type\":\"VEC3\"},{"
+		 "\"bufferView\":1,"
+		 "\"componentType\":5123,\"count\":36,\"type\":\"SCALAR\"}],\"buffers\":[{\"byteLength\":%zu}]}",
+		 size);
 	glb g = glb_make(text, &b, size);
 	free(text);
 	return g;

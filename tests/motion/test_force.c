@@ -39,9 +39,10 @@ static void check_means(const ob_force *f, double h, uint64_t steps)
 
 int main(void)
 {
-	ob_path_point point[] = {
-		{ .t = 0, .p = { 1, 0, 0 } }, { .t = .31, .p = { 3, 0, 0 } }, { .t = .32, .p = { -2, 0, 0 } }, { .t = 1.2, .p = { 0, 0, 0 } }
-	};
+	ob_path_point point[] = { { .t = 0, .p = { 1, 0, 0 } },
+				  { .t = .31, .p = { 3, 0, 0 } },
+				  { .t = .32, .p = { -2, 0, 0 } },
+				  { .t = 1.2, .p = { 0, 0, 0 } } };
 	const ob_force sine = { .kind = OB_FORCE_SINE, .force = { 2, 0, 0 }, .frequency = 9, .phase = .4 };
 	const ob_force pulse = { .kind = OB_FORCE_PULSE, .force = { 2, 0, 0 }, .from = .503, .until = .71 };
 	const ob_force linear = { .kind = OB_FORCE_LINEAR, .points = 4, .point = point };

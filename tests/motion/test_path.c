@@ -134,7 +134,8 @@ static void test_turns(void)
 	const double h = 1. / 60;
 	const struct {
 		double t, degrees, rate;
-	} expected[] = { { 0, 0, 90 }, { .5, 45, 90 }, { 1, 90, 0 }, { 1.5, 90, -100 }, { 2.25, 15, -100 }, { 3, -60, 60 }, { 3.5, -30, 60 } };
+	} expected[] = { { 0, 0, 90 },       { .5, 45, 90 }, { 1, 90, 0 },    { 1.5, 90, -100 },
+			 { 2.25, 15, -100 }, { 3, -60, 60 }, { 3.5, -30, 60 } };
 	for (int loop = 0; loop < 2; loop++) {
 		const ob_path path = { .points = 5, .loop = loop, .turns = true, .point = door };
 		for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {

@@ -38,7 +38,10 @@ static ob_passport box(void)
 	return p;
 }
 
-static ob_state tumbling(void) { return (ob_state){ { { 0, 0, 10 }, { 1, 0, 0, 0 } }, { 1, 2, 3 }, { 3, 2, 1 } }; }
+static ob_state tumbling(void)
+{
+	return (ob_state){ { { 0, 0, 10 }, { 1, 0, 0, 0 } }, { 1, 2, 3 }, { 3, 2, 1 } };
+}
 
 static void test_step(void)
 {

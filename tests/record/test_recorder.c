@@ -21,8 +21,14 @@ static ob_camera_def camera[2] = {
 	{ .name = "main", .eye = { 1, 2, 3 }, .velocity = { .1, 0, 0 }, .fov = .7 },
 	{ .name = "other", .eye = { 3, 2, 1 }, .target = { 0, 0, 1 }, .pan = .2, .fov = .9 },
 };
-static ob_scene scene = { .title = "A title", .text = (char *)"box {}", .text_size = 6, .seed = 5, .record_every = 1,
-			  .cameras = 2, .camera = camera, .look = { .sky_top = { .1f, .2f, .3f }, .grid = true } };
+static ob_scene scene = { .title = "A title",
+			  .text = (char *)"box {}",
+			  .text_size = 6,
+			  .seed = 5,
+			  .record_every = 1,
+			  .cameras = 2,
+			  .camera = camera,
+			  .look = { .sky_top = { .1f, .2f, .3f }, .grid = true } };
 static const char *const defines[] = { "n=3" };
 static const ob_scene_options options = { .defines = defines, .define_count = 1 };
 static ob_run_settings settings;
@@ -30,19 +36,35 @@ static ob_run_settings settings;
 static ob_record_facts facts(uint32_t capacity)
 {
 	settings = ob_run_settings_default();
-	return (ob_record_facts){ .universe = { .name = "test", .arch = "obs", .isolation = "thread", .capacity = capacity,
-						.workers = 2, .gravity = { 0, 0, -9.81 }, .step_length = .01 },
-				  .scene = &scene, .path = "scene.lua", .options = &options, .settings = &settings,
-				  .duration = 10, .commit = "abc" };
+	return (ob_record_facts){ .universe = { .name = "test",
+						.arch = "obs",
+						.isolation = "thread",
+						.capacity = capacity,
+						.workers = 2,
+						.gravity = { 0, 0, -9.81 },
+						.step_length = .01 },
+				  .scene = &scene,
+				  .path = "scene.lua",
+				  .options = &options,
+				  .settings = &settings,
+				  .duration = 10,
+				  .commit = "abc" };
 }
 
 // Object 0 is a plane, 1 a box that moves, 2 comes at step 5.
 static ob_snapshot at(uint64_t step)
 {
-	passport[0] = (ob_passport){ .id = 0, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE,
-				     .name = "ground" };
-	passport[1] = (ob_passport){ .id = 1, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_BOX, .size = { .1, .2, .3 },
-				     .mass = 4, .inertia = { 5, 6, 7 }, .friction = .5, .name = "box" };
+	passport[0] = (ob_passport){
+		.id = 0, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE, .name = "ground"
+	};
+	passport[1] = (ob_passport){ .id = 1,
+				     .flags = OB_OBJECT_PRESENT,
+				     .shape = OB_SHAPE_BOX,
+				     .size = { .1, .2, .3 },
+				     .mass = 4,
+				     .inertia = { 5, 6, 7 },
+				     .friction = .5,
+				     .name = "box" };
 	passport[2] = passport[1];
 	passport[2].id = 2;
 	passport[2].flags = step >= 5 ? OB_OBJECT_PRESENT : 0;
@@ -52,8 +74,9 @@ static ob_snapshot at(uint64_t step)
 	motion[1].v = ob_v3(3, 4, 5);
 	motion[1].w = ob_v3(6, 7, 8);
 	motion[2].flags = OB_MOTION_ASLEEP;
-	return (ob_snapshot){ .step = step, .time = .01 * (double)step, .count = OBJECTS, .passport = passport,
-			      .motion = motion };
+	return (ob_snapshot){
+		.step = step, .time = .01 * (double)step, .count = OBJECTS, .passport = passport, .motion = motion
+	};
 }
 
 static bool record(uint64_t rows, bool close_it, ob_error *e)
@@ -236,7 +259,9 @@ static void test_growth(void)
 	ob_recorder *r = ob_recorder_create(path, &about, &e);
 	CHECK(r);
 	for (uint32_t i = 0; i < MANY; i++) {
-		all[i] = (ob_passport){ .id = i, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_SPHERE, .size = { 1, 0, 0 } };
+		all[i] = (ob_passport){
+			.id = i, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_SPHERE, .size = { 1, 0, 0 }
+		};
 		moves[i] = (ob_motion){ .q = { 1, 0, 0, 0 }, .p = { i, 0, 0 } };
 	}
 	ob_snapshot s = { .count = MANY, .passport = all, .motion = moves };

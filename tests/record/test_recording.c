@@ -22,7 +22,9 @@ static ob_hull tetrahedron, prism;
 
 static void build_hulls(void)
 {
-	static const ob_vec3 point[6] = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 2 }, { 1, 0, 2 }, { 0, 1, 2 } };
+	static const ob_vec3 point[6] = {
+		{ 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 2 }, { 1, 0, 2 }, { 0, 1, 2 }
+	};
 	ob_error e;
 	CHECK(ob_hull_build(point, 4, &tetrahedron, &e) && ob_hull_build(point, 6, &prism, &e));
 }
@@ -44,16 +46,26 @@ static ob_snapshot at(uint64_t state)
 			     (id == OBJECTS - 1 && state == STATES - 1);
 		if (!there)
 			continue;
-		passport[id] = (ob_passport){ .id = id, .generation = 1 + (id == 3 && state >= 80), .flags = OB_OBJECT_PRESENT,
-					      .shape = OB_SHAPE_BOX, .size = { .1, .2, .3 }, .mass = 2, .inertia = { 1, 2, 3 },
-					      .friction = .5, .colour = { .2f, state >= 40 ? .9f : .1f, .3f, 1 } };
+		passport[id] = (ob_passport){ .id = id,
+					      .generation = 1 + (id == 3 && state >= 80),
+					      .flags = OB_OBJECT_PRESENT,
+					      .shape = OB_SHAPE_BOX,
+					      .size = { .1, .2, .3 },
+					      .mass = 2,
+					      .inertia = { 1, 2, 3 },
+					      .friction = .5,
+					      .colour = { .2f, state >= 40 ? .9f : .1f, .3f, 1 } };
 		snprintf(passport[id].name, OB_NAME_MAX, "object %u", id);
-		motion[id] = (ob_motion){ .t0 = id == 1 ? .5 * step_length * EVERY * (double)(state / 50 * 50)
+		motion[id] = (ob_motion){ .t0 = id == 1   ? .5 * step_length * EVERY * (double)(state / 50 * 50)
 						: id == 2 ? t
 							  : 0,
-					  .valid_until = id == 1 ? INFINITY : t + 1, .q = { .5, -.5, .5, .5 },
-					  .p = { id, (double)(id == 2 ? state : 0), .1 }, .v = { 1, 0, 3 }, .w = { .1, .2, .3 },
-					  .a = { 0, 0, -9.81 }, .flags = id == 1 ? OB_MOTION_FREE : 0 };
+					  .valid_until = id == 1 ? INFINITY : t + 1,
+					  .q = { .5, -.5, .5, .5 },
+					  .p = { id, (double)(id == 2 ? state : 0), .1 },
+					  .v = { 1, 0, 3 },
+					  .w = { .1, .2, .3 },
+					  .a = { 0, 0, -9.81 },
+					  .flags = id == 1 ? OB_MOTION_FREE : 0 };
 		if (id != 1)
 			motion[id].valid_until = 1;
 	}
@@ -69,14 +81,23 @@ static ob_snapshot at(uint64_t state)
 	}
 	passport[0].shape = OB_SHAPE_PLANE;
 	passport[0].flags |= OB_OBJECT_STATIC;
-	return (ob_snapshot){ .step = EVERY * (state + 2), .time = step_length * (double)(EVERY * (state + 2)), .count = OBJECTS,
-			      .passport = passport, .motion = motion, .hulls = HULLS, .hull = hull };
+	return (ob_snapshot){ .step = EVERY * (state + 2),
+			      .time = step_length * (double)(EVERY * (state + 2)),
+			      .count = OBJECTS,
+			      .passport = passport,
+			      .motion = motion,
+			      .hulls = HULLS,
+			      .hull = hull };
 }
 
 // One of a single colour, and one whose two triangles have pictures of their own.
 static ob_mesh_vertex vertex[4] = {
 	{ .position = { 1, 0, 0 }, .normal = { 0, 0, 1 }, .colour = { -1, -1, -1 }, .surface = -1 },
-	{ .position = { 0, 1, 0 }, .normal = { 0, 0, 1 }, .colour = { .1f, .2f, .3f }, .surface = 15.5f, .texture = { 1, -.5f } },
+	{ .position = { 0, 1, 0 },
+	  .normal = { 0, 0, 1 },
+	  .colour = { .1f, .2f, .3f },
+	  .surface = 15.5f,
+	  .texture = { 1, -.5f } },
 	{ .position = { 0, 0, 0 }, .normal = { 0, 0, 1 }, .colour = { .1f, .2f, .3f }, .texture = { .25f, 3 } },
 	{ .position = { 1, 1, 0 }, .normal = { 0, 0, 1 }, .colour = { 1, 1, 1 } },
 };
@@ -89,19 +110,28 @@ static ob_mesh_part part[2] = {
 };
 static ob_mesh mesh[2] = {
 	{ .vertices = 3, .vertex = vertex, .indices = 3, .index = triangle },
-	{ .vertices = 4, .vertex = vertex, .indices = 6, .index = triangle, .parts = 2, .part = part, .images = 2, .image = image },
+	{ .vertices = 4,
+	  .vertex = vertex,
+	  .indices = 6,
+	  .index = triangle,
+	  .parts = 2,
+	  .part = part,
+	  .images = 2,
+	  .image = image },
 };
 
 static void check_mesh(const ob_mesh *was, const ob_mesh *now)
 {
-	CHECK(now->vertices == was->vertices && memcmp(now->vertex, was->vertex, was->vertices * sizeof *was->vertex) == 0);
+	CHECK(now->vertices == was->vertices &&
+	      memcmp(now->vertex, was->vertex, was->vertices * sizeof *was->vertex) == 0);
 	CHECK(now->indices == was->indices && memcmp(now->index, was->index, was->indices * sizeof *was->index) == 0);
 	CHECK(now->parts == was->parts && now->images == was->images);
 	for (uint32_t i = 0; i < was->parts && i < now->parts; i++)
 		CHECK(memcmp(&now->part[i], &was->part[i], sizeof *was->part) == 0);
 	for (uint32_t i = 0; i < was->images && i < now->images; i++)
 		CHECK(now->image[i].width == was->image[i].width && now->image[i].height == was->image[i].height &&
-		      memcmp(now->image[i].rgba, was->image[i].rgba, 4 * was->image[i].width * was->image[i].height) == 0);
+		      memcmp(now->image[i].rgba, was->image[i].rgba, 4 * was->image[i].width * was->image[i].height) ==
+			      0);
 }
 
 static void record(uint64_t states)
@@ -110,16 +140,32 @@ static void record(uint64_t states)
 		{ .name = "main", .eye = { 1, 2, 3 }, .velocity = { .1, 0, 0 }, .fov = .7 },
 		{ .name = "other", .eye = { 3, 2, 1 }, .target = { 0, 0, 1 }, .pan = .2, .tilt = -.1, .fov = .9 },
 	};
-	static ob_scene scene = { .title = "A title", .text = (char *)"box {}", .text_size = 6, .seed = 5, .record_every = EVERY,
-				  .cameras = 2, .camera = camera, .meshes = 2, .mesh = mesh,
+	static ob_scene scene = { .title = "A title",
+				  .text = (char *)"box {}",
+				  .text_size = 6,
+				  .seed = 5,
+				  .record_every = EVERY,
+				  .cameras = 2,
+				  .camera = camera,
+				  .meshes = 2,
+				  .mesh = mesh,
 				  .look = { .sky_top = { .1f, .2f, .3f }, .grid = true, .sun = { 0, 1, 2 } } };
 	static const ob_scene_options options;
 	ob_run_settings settings = ob_run_settings_default();
 	ob_error e = { "" };
-	ob_record_facts facts = { .universe = { .name = "test", .arch = "obs", .isolation = "thread", .capacity = 4, .workers = 2,
-						.gravity = { 0, 0, -9.81 }, .step_length = step_length },
-				  .scene = &scene, .path = "scene.lua", .options = &options, .settings = &settings,
-				  .duration = 10, .commit = "abc" };
+	ob_record_facts facts = { .universe = { .name = "test",
+						.arch = "obs",
+						.isolation = "thread",
+						.capacity = 4,
+						.workers = 2,
+						.gravity = { 0, 0, -9.81 },
+						.step_length = step_length },
+				  .scene = &scene,
+				  .path = "scene.lua",
+				  .options = &options,
+				  .settings = &settings,
+				  .duration = 10,
+				  .commit = "abc" };
 	ob_recorder *r = ob_recorder_create(path, &facts, &e);
 	CHECK(r);
 	for (uint64_t i = 0; r && i < states; i++) {
@@ -159,14 +205,15 @@ static void test_same_snapshots(void)
 			if (hull)
 				CHECK(memcmp(ob_snapshot_hull(now, id), hull, sizeof *hull) == 0);
 		}
-		CHECK(ob_recording_population(r) == 1u + (states >= 20) + (states >= 40) + (states >= 60) + (states >= 80) +
-							    (states == STATES - 1));
+		CHECK(ob_recording_population(r) ==
+		      1u + (states >= 20) + (states >= 40) + (states >= 60) + (states >= 80) + (states == STATES - 1));
 		states++;
 	}
 	CHECK(ended && states == STATES);
 	const ob_recording_info *i = r ? ob_recording_get_info(r) : NULL;
 	CHECK(i && i->states == STATES && i->first == 2 && i->interval == EVERY * step_length && i->workers == 2);
-	CHECK(i && strcmp(i->scene.title, "A title") == 0 && i->scene.cameras == 2 && i->scene.seed == 5 && i->scene.look.grid);
+	CHECK(i && strcmp(i->scene.title, "A title") == 0 && i->scene.cameras == 2 && i->scene.seed == 5 &&
+	      i->scene.look.grid);
 	CHECK(i && i->scene.camera[1].pan == .2 && i->scene.camera[0].velocity.x == .1 && i->scene.look.sun.z == 2);
 	CHECK(i && i->scene.meshes == 2);
 	for (uint32_t k = 0; i && k < i->scene.meshes; k++)
@@ -342,7 +389,8 @@ static void put_image(hid_t file, hsize_t height, hsize_t width, hsize_t depth)
 	uint8_t *bytes = calloc(height * width * depth, 1);
 	H5Ldelete(file, "meshes/2/images/1", H5P_DEFAULT);
 	hid_t space = H5Screate_simple(3, size, NULL);
-	hid_t set = H5Dcreate2(file, "meshes/2/images/1", H5T_NATIVE_UINT8, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+	hid_t set =
+		H5Dcreate2(file, "meshes/2/images/1", H5T_NATIVE_UINT8, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
 	CHECK(bytes && H5Dwrite(set, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes) >= 0);
 	H5Dclose(set);
 	H5Sclose(space);

@@ -286,7 +286,8 @@ static void test_shaken(void)
 			v += change;
 			if (k % 50000)
 				continue;
-			const ob_reference_shaken b = ob_reference_shaken_block(amplitude, f, mu[i], gravity, .2, h * k);
+			const ob_reference_shaken b =
+				ob_reference_shaken_block(amplitude, f, mu[i], gravity, .2, h * k);
 			CHECK_NEAR(b.x, x, 2e-5);
 			CHECK_NEAR(b.v, v, 2e-4);
 		}

@@ -36,7 +36,8 @@ int main(void)
 	CHECK(value(whole, "n=7") == 7 && value(whole, "n=1e3") == 1000 && value(whole, "n=0x10") == 16);
 	CHECK(value(real, "r=.25") == .25 && value(real, "r=3") == 3);
 	CHECK(value(real, "r=1/3") == 1. / 3 && value(real, "r=-(1 - 3)/4") == .5 && value(real, "r= 2^10") == 1024);
-	CHECK(value(real, "r=pi/6") == M_PI / 6 && value(real, "r=math.sqrt(2)") == sqrt(2) && value(real, "r=sqrt(4)") == 2);
+	CHECK(value(real, "r=pi/6") == M_PI / 6 && value(real, "r=math.sqrt(2)") == sqrt(2) &&
+	      value(real, "r=sqrt(4)") == 2);
 	CHECK(value(whole, "n=3*4") == 12 && value(whole, "n=6/2") == 3 && value(whole, "n=7//2") == 3);
 	CHECK(value(text, "t=1/3") == 3);
 	CHECK(value("sphere { radius = math.type(param('r', .5)) == 'float' and 1 or 2 }", "r=3") == 1);

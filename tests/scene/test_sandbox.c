@@ -68,10 +68,9 @@ static int wait_long(lua_State *L)
 // A wait of the thread is not its work: only CPU time is limited, and no object of the scene extends it.
 static void check_waiting(void)
 {
-	static const ob_sandbox_limits limits = { .memory = OB_SANDBOX_MEMORY,
-						  .string = OB_SANDBOX_STRING,
-						  .instructions = UINT64_MAX,
-						  .seconds = .5 };
+	static const ob_sandbox_limits limits = {
+		.memory = OB_SANDBOX_MEMORY, .string = OB_SANDBOX_STRING, .instructions = UINT64_MAX, .seconds = .5
+	};
 	ob_error e;
 	ob_sandbox *s = ob_sandbox_create_limited("scene.lua", &limits, ob_library_open, NULL, &e);
 	CHECK(s && ob_sandbox_offer(s, NULL, "wait", wait_long, &e));

@@ -40,7 +40,8 @@ static void check_settings(void)
 	CHECK(s);
 	if (!s)
 		return;
-	CHECK(strcmp(s->title, "T") == 0 && s->run.step_length == .01 && s->duration == 5 && s->run.substeps == 4 && s->run.iterations == 3);
+	CHECK(strcmp(s->title, "T") == 0 && s->run.step_length == .01 && s->duration == 5 && s->run.substeps == 4 &&
+	      s->run.iterations == 3);
 	check_vec(s->run.gravity, 1, 2, 3);
 	CHECK(s->run.solver == OB_SOLVER_JACOBI && s->run.integrator == OB_INTEGRATOR_ODE);
 	CHECK(!s->run.sleeping && s->seed == 12 && s->record_every == 7 && !s->look.grid);
@@ -57,7 +58,8 @@ static void check_settings(void)
 static void check_exactness(void)
 {
 	ob_scene *s = load_good("scene { tolerance = .0005, solver = 'lagged', lag = 0 }\nground {}");
-	CHECK(s && s->run.tolerance == .0005 && s->run.substeps == 8 && s->run.iterations == 64 && s->run.lag == 0 && s->run.solver == OB_SOLVER_LAGGED);
+	CHECK(s && s->run.tolerance == .0005 && s->run.substeps == 8 && s->run.iterations == 64 && s->run.lag == 0 &&
+	      s->run.solver == OB_SOLVER_LAGGED);
 	ob_scene_free(s);
 	s = load_good("scene { tolerance = .0005, iterations = 9 }\nground {}");
 	CHECK(s && s->run.iterations == 9 && s->run.lag == 1);

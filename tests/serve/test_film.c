@@ -21,29 +21,48 @@ static void record(void)
 	static ob_passport passport[OBJECTS];
 	static ob_motion motion[OBJECTS];
 	static ob_camera_def camera = { .name = "a \"camera\"", .eye = { 1, 2, 3 }, .fov = .7 };
-	static ob_scene scene = { .title = "</script><b>", .text = (char *)"", .record_every = 1, .cameras = 1, .camera = &camera,
+	static ob_scene scene = { .title = "</script><b>",
+				  .text = (char *)"",
+				  .record_every = 1,
+				  .cameras = 1,
+				  .camera = &camera,
 				  .duration = 10 };
 	static const ob_scene_options options;
 	ob_run_settings settings = ob_run_settings_default();
 	ob_error e = { "" };
-	ob_record_facts facts = { .universe = { .name = "test", .arch = "obs", .isolation = "thread", .step_length = step_length },
-				  .scene = &scene, .path = "x", .options = &options, .settings = &settings, .duration = 10,
-				  .commit = "abc" };
+	ob_record_facts facts = {
+		.universe = { .name = "test", .arch = "obs", .isolation = "thread", .step_length = step_length },
+		.scene = &scene,
+		.path = "x",
+		.options = &options,
+		.settings = &settings,
+		.duration = 10,
+		.commit = "abc"
+	};
 	ob_recorder *r = ob_recorder_create(path, &facts, &e);
 	CHECK(r);
 	for (uint32_t k = 0; r && k < STATES; k++) {
 		for (uint32_t id = 0; id < OBJECTS; id++) {
 			double t = k * step_length;
-			passport[id] = (ob_passport){ .id = id, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_BOX, .size = { .1, .1, .1 },
-						      .mass = 1, .inertia = { 1, 1, 1 }, .name = "a \"box\"" };
-			motion[id] = (ob_motion){ .t0 = id ? t : 0, .valid_until = t + step_length, .q = { 1, 0, 0, 0 },
+			passport[id] = (ob_passport){ .id = id,
+						      .flags = OB_OBJECT_PRESENT,
+						      .shape = OB_SHAPE_BOX,
+						      .size = { .1, .1, .1 },
+						      .mass = 1,
+						      .inertia = { 1, 1, 1 },
+						      .name = "a \"box\"" };
+			motion[id] = (ob_motion){ .t0 = id ? t : 0,
+						  .valid_until = t + step_length,
+						  .q = { 1, 0, 0, 0 },
 						  .p = { id ? cos(9 * t) : 0, id ? sin(9 * t) : 0, id },
 						  .v = { -9 * sin(9 * t), 9 * cos(9 * t), 0 } };
 		}
 		passport[0].flags |= OB_OBJECT_STATIC;
 		if (k < STATES / 2)
 			passport[OBJECTS - 1].flags = 0;
-		ob_snapshot s = { .step = k, .time = k * step_length, .count = OBJECTS, .passport = passport, .motion = motion };
+		ob_snapshot s = {
+			.step = k, .time = k * step_length, .count = OBJECTS, .passport = passport, .motion = motion
+		};
 		CHECK(ob_recorder_append(r, &s, &e));
 	}
 	CHECK(ob_recorder_close(r, &e));
@@ -123,10 +142,13 @@ static void test_film(void)
 		free(bytes);
 	}
 	ob_message *page = film ? ob_film_page_whole(film) : NULL, *served = ob_film_page_served();
-	CHECK(page && has(page->bytes, page->size, "id=\"shaders/body.frag\"") && has(page->bytes, page->size, "module_main = "));
-	CHECK(page && !has(page->bytes, page->size, "src=\"main.js\"") && !has(page->bytes, page->size, "href=\"style.css\""));
+	CHECK(page && has(page->bytes, page->size, "id=\"shaders/body.frag\"") &&
+	      has(page->bytes, page->size, "module_main = "));
+	CHECK(page && !has(page->bytes, page->size, "src=\"main.js\"") &&
+	      !has(page->bytes, page->size, "href=\"style.css\""));
 	CHECK(page && !has(page->bytes, page->size, "</script><b>"));
-	CHECK(served && has(served->bytes, served->size, "content=\"recording\"") && has(served->bytes, served->size, "src=\"main.js\""));
+	CHECK(served && has(served->bytes, served->size, "content=\"recording\"") &&
+	      has(served->bytes, served->size, "src=\"main.js\""));
 	ob_message_release(page);
 	ob_message_release(served);
 	ob_message_release(film);

@@ -17,7 +17,9 @@ little_scene *little_scene_new(void)
 	little_scene *s = calloc(1, sizeof *s);
 	if (!s)
 		give_up("scene", "no memory");
-	s->run = (ob_run_settings){ .gravity = { 0, 0, -9.81 }, .step_length = 1. / 60, .substeps = 8, .iterations = 16 };
+	s->run = (ob_run_settings){
+		.gravity = { 0, 0, -9.81 }, .step_length = 1. / 60, .substeps = 8, .iterations = 16
+	};
 	s->world = (ob_world){
 		.gravity = s->run.gravity, .objects_max = LITTLE_MOST, .passport = s->passport, .state = s->state
 	};
@@ -42,7 +44,14 @@ ob_universe *little_populate(const little_scene *s, uint32_t workers)
 	static int made;
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "test-sim-%d-%d", (int)getpid(), made++);
-	ob_universe_setup setup = { .name = name, .capacity = s->capacity ? s->capacity : s->world.objects, .workers = workers, .hulls = s->world.hulls, .isolation = "thread", .checked = s->checked, .harden = s->harden, .run = s->run };
+	ob_universe_setup setup = { .name = name,
+				    .capacity = s->capacity ? s->capacity : s->world.objects,
+				    .workers = workers,
+				    .hulls = s->world.hulls,
+				    .isolation = "thread",
+				    .checked = s->checked,
+				    .harden = s->harden,
+				    .run = s->run };
 	ob_error e;
 	ob_ode_init();
 	ob_universe *u = ob_universe_create(&setup, &e);

@@ -13,7 +13,8 @@ static void add_body(little_scene *s, uint64_t *seed, ob_vec3 p, double e)
 {
 	double mass = pow(10, within(seed, -1, 1)), x = within(seed, .1, .3), y = within(seed, .1, .3);
 	ob_vec3 half = ob_v3(x, y, within(seed, .1, .3));
-	ob_world_body o = uniform(seed) < .4 ? ob_world_sphere(&s->world, mass, x, p) : ob_world_box(&s->world, mass, half, p);
+	ob_world_body o =
+		uniform(seed) < .4 ? ob_world_sphere(&s->world, mass, x, p) : ob_world_box(&s->world, mass, half, p);
 	o.passport->friction = within(seed, 0, 1);
 	o.passport->restitution = e;
 	o.state->pose.q = random_attitude(seed);

@@ -111,7 +111,8 @@ static little_scene *pushed_box(ob_vec3 direction)
 	box.passport->friction = .8;
 	box.passport->force = ob_scale(direction, push);
 	for (int i = 0; i < BALLS; i++)
-		ob_world_sphere(&s->world, 1, .5, ob_v3(2 * (i / 5) - 4, 2 * (i % 5) - 4, 1.5 - 6e-5)).passport->friction = .8;
+		ob_world_sphere(&s->world, 1, .5, ob_v3(2 * (i / 5) - 4, 2 * (i % 5) - 4, 1.5 - 6e-5))
+			.passport->friction = .8;
 	return s;
 }
 

@@ -18,7 +18,8 @@ static outcome hit(uint32_t solver, uint32_t lag, bool boxes, double ratio, doub
 	for (int i = 0; i < 2; i++) {
 		ob_vec3 at = ob_v3(1.537 * i, 0, 0);
 		double mass = i ? ratio : 1;
-		ob_world_body o = boxes ? ob_world_box(&s->world, mass, ob_v3(.5, .5, .5), at) : ob_world_sphere(&s->world, mass, .5, at);
+		ob_world_body o = boxes ? ob_world_box(&s->world, mass, ob_v3(.5, .5, .5), at)
+					: ob_world_sphere(&s->world, mass, .5, at);
 		o.passport->restitution = e;
 	}
 	s->world.state[0].v = ob_v3(1, 0, 0);

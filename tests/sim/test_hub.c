@@ -17,7 +17,8 @@ static void stand(ob_solver_kind solver, double platform_mass, double limit)
 	ob_world_ground(&s->world);
 	ob_world_box(&s->world, platform_mass, ob_v3(6, 6, .5), ob_v3(0, 0, .5));
 	for (int i = 0; i < BOXES; i++)
-		ob_world_box(&s->world, 100, ob_v3(.4, .4, .4), ob_v3(i % SIDE - 4.5, i / SIDE - 4.5, 1.45 + .01 * (i % 7)));
+		ob_world_box(&s->world, 100, ob_v3(.4, .4, .4),
+			     ob_v3(i % SIDE - 4.5, i / SIDE - 4.5, 1.45 + .01 * (i % 7)));
 	little_universe l;
 	little_open(&l, s);
 	double deepest = 0;

@@ -74,8 +74,8 @@ static void test_clouds(void)
 		s->run.gravity = ob_v3(0, 0, 0);
 		for (int i = 0; i < 27; i++) {
 			ob_vec3 p = ob_v3(.5 * (i % 3) - .5, .5 * (i / 3 % 3) - .5, .5 * (i / 9) - .5);
-			ob_world_body o =
-				i % 2 ? ob_world_sphere(&s->world, 1, .12, p) : ob_world_box(&s->world, 1, ob_v3(.12, .1, .08), p);
+			ob_world_body o = i % 2 ? ob_world_sphere(&s->world, 1, .12, p)
+						: ob_world_box(&s->world, 1, ob_v3(.12, .1, .08), p);
 			o.state->v = ob_scale(ob_v3(-p.x, -p.y, -p.z), within(&random, 10, 40));
 			o.state->w = ob_v3(within(&random, -9, 9), within(&random, -9, 9), within(&random, -9, 9));
 			o.passport->friction = .3;

@@ -24,9 +24,7 @@ static bool spend(void *with, uint64_t work)
 	return false;
 }
 
-static void begin_attempt(void *with)
-{
-}
+static void begin_attempt(void *with) {}
 
 static void touch(void *with, uint32_t a, uint32_t b, double impulse, ob_vec3 point)
 {
@@ -70,10 +68,9 @@ static tower *create(double gravity)
 		t->motion[k] = (ob_motion){ .p = ob_v3(0, 0, side * (k + .5)), .q = { 1, 0, 0, 0 } };
 		t->contact[k].limit = -INFINITY;
 	}
-	t->passport[PLANE] = (ob_passport){ .id = PLANE,
-					    .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC,
-					    .shape = OB_SHAPE_PLANE,
-					    .friction = .5 };
+	t->passport[PLANE] = (ob_passport){
+		.id = PLANE, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE, .friction = .5
+	};
 	t->motion[PLANE] = (ob_motion){ .q = { 1, 0, 0, 0 } };
 	const ob_island_calls calls = { t, spend, NULL, begin_attempt, touch, fail, keep_contact, keep_motion };
 	if (!ob_solver_create(&t->solver, &run, &calls, CUBES))

@@ -58,10 +58,11 @@ static void solve(const tree *t, tree *solved, ob_link *link)
 	for (int k = 0; k < 2; k++)
 		ob_link_anchor(&link[anchored[k]], &solved->anchor[k]);
 	for (int k = BODIES - 1; k >= 0; k--)
-		ob_link_eliminate(&link[k], t->up[k] < 0 ? NULL : &solved->joint[k], t->up[k] < 0 ? NULL : &link[t->up[k]]);
+		ob_link_eliminate(&link[k], t->up[k] < 0 ? NULL : &solved->joint[k],
+				  t->up[k] < 0 ? NULL : &link[t->up[k]]);
 	for (int k = 0; k < BODIES; k++)
 		ob_link_substitute(&link[k], t->up[k] < 0 ? NULL : &solved->joint[k],
-			       t->up[k] < 0 ? NULL : &link[t->up[k]]);
+				   t->up[k] < 0 ? NULL : &link[t->up[k]]);
 	for (int k = 0; k < 2; k++)
 		ob_link_anchor_impulses(&link[anchored[k]], &solved->anchor[k]);
 }

@@ -8,10 +8,14 @@ enum { OB_STAND_WORST, OB_STAND_DRIFT, OB_STAND_FALLEN, OB_STAND_MEAN, OB_STAND_
 
 // Initialiser of the figures; targets in mm.
 #define OB_STAND_FIGURE(worst, drift) \
-	{ { "worst penetration", "mm", worst, "no penetration" }, \
-	  { "drift", "mm", drift, "it stays: farthest that a body gets aside" }, \
-	  { "bodies that fell", "1", 0, "none: the stack is stable" }, \
-	  { "mean penetration", "mm", NAN, "no penetration; over contacts and time" } }
+	{ \
+		{ "worst penetration", "mm", worst, "no penetration" }, \
+			{ "drift", "mm", drift, "it stays: farthest that a body gets aside" }, \
+			{ "bodies that fell", "1", 0, "none: the stack is stable" }, \
+		{ \
+			"mean penetration", "mm", NAN, "no penetration; over contacts and time" \
+		} \
+	}
 
 // The rest of such a case: 20 s, awake.
 #define OB_STAND_CASE \
