@@ -23,7 +23,6 @@ bool ob_journal_load(ob_journal *j, const ob_journal_entry *entry, size_t count)
 		return false;
 	memcpy(j->entry, entry, count * sizeof *entry);
 	j->count = j->room = count;
-	j->pauses = entry[count - 1].at.pause + 1;
 	return true;
 }
 
@@ -46,15 +45,13 @@ uint64_t ob_journal_next_step(const ob_journal *j)
 	return j->next < j->count ? j->entry[j->next].at.step : UINT64_MAX;
 }
 
-const ob_request *ob_journal_again(ob_journal *j, ob_journal_place *at)
+const ob_request *ob_journal_again(ob_journal *j, const ob_journal_place *at)
 {
 	if (j->next == j->count)
 		return NULL;
 	const ob_journal_entry *e = &j->entry[j->next];
-	if (e->at.step != at->step || e->at.after_scripts != at->after_scripts ||
-	    (at->pause != UINT32_MAX && e->at.pause != at->pause))
+	if (e->at.step != at->step || e->at.after_scripts != at->after_scripts)
 		return NULL;
-	at->pause = e->at.pause;
 	j->next++;
 	return &e->request;
 }

@@ -4,7 +4,8 @@
 //   requests ──(carried out)──> entry .. entry │           note: behind all others
 //                                 next ────────┘           restart: next = the first; again: each in its place
 //
-// A place is a pause: the step, whether that step's scripts have run, and which of several pauses there.
+// A place is a step, and whether that step's scripts have run. Workers run between two places, never between two pauses
+// in the same place, so that nothing depends on how many pauses there were.
 //
 // Thread-safety: the host's thread only.
 #ifndef OB_HOST_JOURNAL_H
@@ -15,7 +16,6 @@
 typedef struct ob_journal_place {
 	uint64_t step; // number of complete steps
 	uint32_t after_scripts; // 1 = scripts have run before the coming step, and the pause is theirs
-	uint32_t pause; // number of the pause among those that have carried out any
 } ob_journal_place;
 
 typedef struct ob_journal_entry {
@@ -26,7 +26,6 @@ typedef struct ob_journal_entry {
 typedef struct ob_journal {
 	ob_journal_entry *entry; // [count]
 	size_t count, room, next; // next: entries before it are carried out
-	uint32_t pauses; // pauses that have carried out any
 	bool lost; // there was no memory for an entry: no restart can repeat it
 } ob_journal;
 
@@ -41,9 +40,8 @@ void ob_journal_clear(ob_journal *j);
 void ob_journal_rewind(ob_journal *j);
 // Step of the next entry to carry out again; UINT64_MAX: none.
 uint64_t ob_journal_next_step(const ob_journal *j);
-// Next entry to carry out again in this pause; NULL: none. at: a pause, whose number is found; pause UINT32_MAX at the
-// first call.
-const ob_request *ob_journal_again(ob_journal *j, ob_journal_place *at);
+// Next entry to carry out again in this place; NULL: none.
+const ob_request *ob_journal_again(ob_journal *j, const ob_journal_place *at);
 // Notes a request when it is carried out for the first time; none may be left to carry out again.
 void ob_journal_note(ob_journal *j, const ob_journal_place *at, const ob_request *r);
 

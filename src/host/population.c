@@ -50,6 +50,7 @@ struct ob_population {
 	uint32_t created; // existing objects that scripts have created
 	ob_hulls hulls;
 	ob_journal journal; // requests since the population was kept
+	uint64_t reached; // steps that were complete before a restart
 	ob_request_log *log; // NULL: none
 	struct {
 		slot *slots; // NULL: none kept
@@ -473,19 +474,18 @@ static void carry_out_request(ob_population *p, const ob_request *r)
 		change_on_request(p, r);
 }
 
-// Carries out requests. After a restart, first those that were carried out before, in the same pauses; new ones wait
-// until then.
+// Carries out requests. After a restart, first those that were carried out before, in the same places; new ones wait until
+// the run is again where it was: what viewers have seen of it stays true.
 static void carry_out_requests(ob_population *p, uint64_t step, ob_requests *q)
 {
 	const ob_script_counts *scripts = ob_universe_step_data(p->u)->script_counts;
-	ob_journal_place at = { step, scripts && scripts->ran_for == step + 1, UINT32_MAX };
+	const ob_journal_place at = { step, scripts && scripts->ran_for == step + 1 };
 	const ob_request *again;
 	ob_request r;
 	while ((again = ob_journal_again(&p->journal, &at)))
 		carry_out_request(p, again);
-	if (ob_journal_next_step(&p->journal) < UINT64_MAX || !ob_requests_waiting(q))
+	if (ob_journal_next_step(&p->journal) < UINT64_MAX || step < p->reached || !ob_requests_waiting(q))
 		return;
-	at.pause = p->journal.pauses++;
 	while (ob_requests_take(q, &r)) {
 		if (p->kept.slots)
 			ob_journal_note(&p->journal, &at, &r);
@@ -547,8 +547,9 @@ bool ob_population_keep(ob_population *p)
 	return true;
 }
 
-void ob_population_put_back(ob_population *p)
+void ob_population_put_back(ob_population *p, uint64_t reached)
 {
+	p->reached = reached > p->reached ? reached : p->reached;
 	if (!p->kept.slots)
 		return;
 	memcpy(p->slots, p->kept.slots, ob_universe_capacity(p->u) * sizeof *p->slots);
@@ -566,8 +567,10 @@ uint64_t ob_population_next_step(const ob_population *p)
 {
 	const uint64_t timetable = p->next < p->event_count ? p->events[p->next].step : UINT64_MAX,
 		       again = ob_journal_next_step(&p->journal),
-		       first = timetable < p->next_prescribed ? timetable : p->next_prescribed;
-	return first < again ? first : again;
+		       reached = p->reached > ob_step_count(p->u) ? p->reached : UINT64_MAX, // requests may wait for it
+		       first = timetable < p->next_prescribed ? timetable : p->next_prescribed,
+		       then = again < reached ? again : reached;
+	return first < then ? first : then;
 }
 
 // ---- saved

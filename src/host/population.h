@@ -44,9 +44,10 @@ void ob_population_set_log(ob_population *p, ob_request_log *log);
 // Carries out the timetable up to this step, then the requests. true: objects were added or removed.
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
 // For a checkpoint in memory (table/checkpoint.h): keeps the state that is not in the universe, and puts it back. Later
-// changes by timetable, scripts and requests are repeated by a run that restarts there (host/journal.h).
+// changes by timetable, scripts and requests are repeated by a run that restarts there (host/journal.h). reached: number of
+// steps that were complete before the restart; new requests wait until as many are complete again.
 bool ob_population_keep(ob_population *p); // false: out of memory
-void ob_population_put_back(ob_population *p);
+void ob_population_put_back(ob_population *p, uint64_t reached);
 // True if another checkpoint is due: much would be repeated, or there was no memory to note it.
 bool ob_population_is_checkpoint_due(const ob_population *p);
 // The next step at which something is due; UINT64_MAX: never.

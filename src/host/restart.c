@@ -344,8 +344,10 @@ bool ob_restart(ob_host *h)
 	ob_log_warn("%s; restarting all simulators from the checkpoint of step %llu", text.text,
 		    (unsigned long long)step);
 	back_off(h);
+	const uint64_t count = ob_step_count(h->u), // a simulator may have overwritten it
+		reached = count < h->interval.most ? count : h->interval.most;
 	ob_checkpoint_put_back(r->checkpoint, h->u);
-	ob_population_put_back(h->population);
+	ob_population_put_back(h->population, reached);
 	r->requested = false;
 	if (h->interrupted)
 		return false;

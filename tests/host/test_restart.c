@@ -156,9 +156,18 @@ static void test_visitors(void)
 	free(s.object);
 }
 
-// Adds and removes balls by requests at some steps. Kills a simulator in the step after each, long after the
-// checkpoint, which is that of the start: no other is due before the end.
-static uint64_t end_of_requests(const ob_scene *s, bool kills, unsigned *deaths)
+// Kills a simulator, and waits until the host has noticed.
+static void kill_noticed(ob_host *h, uint32_t worker)
+{
+	kill(pid_of_worker(ob_host_universe(h), worker), SIGKILL);
+	while (!h->restart.requested && !h->failed)
+		pause_ms(1);
+}
+
+// Adds and removes balls by requests at some steps, in two pauses each. Kills a simulator in the step after each, long
+// after the checkpoint, which is that of the start: no other is due before the end. early: the kill comes first, and the
+// requests arrive when the run has begun again.
+static uint64_t end_of_requests(const ob_scene *s, bool kills, bool early, unsigned *deaths)
 {
 	enum { FIRST = 20, EACH = 15, LAST = 200 };
 	ob_host_config c = little_config(s, OB_ISOLATION_PROCESS, 2);
@@ -167,19 +176,26 @@ static uint64_t end_of_requests(const ob_scene *s, bool kills, unsigned *deaths)
 	ob_host *h = ob_host_start(s, &c, &e);
 	h->restart.cost = 1e9; // s, of the last checkpoint: the next is due when this is a small share of the time
 	for (uint64_t step = FIRST; step <= LAST; step += EACH) {
-		ob_object_def d = ball("visitor", .3, .001 * (double)step, 2);
+		ob_object_def d = ball("visitor", .3, .001 * (double)step, 2), near = ball("second", .3, .2, 2.1);
 		ob_passport p = { 0 };
 		ob_host_go(h, step);
-		CHECK(ob_host_wait(h, &e) && ob_host_request_add(h, &d, &e));
-		if (ob_universe_get_passport(ob_host_universe(h), (uint32_t)(step / EACH), &p))
+		CHECK(ob_host_wait(h, &e));
+		const bool there = ob_universe_get_passport(ob_host_universe(h), (uint32_t)(step / EACH), &p);
+		if (kills && early) {
+			kill_noticed(h, step % 2);
+			CHECK(ob_restart(h) && steps_of(h) < step);
+			h->started = steps_of(h) > 0;
+		}
+		CHECK(ob_host_request_add(h, &d, &e));
+		if (!early)
+			ob_host_go(h, step); // a pause of its own
+		CHECK(ob_host_request_add(h, &near, &e));
+		if (there)
 			ob_host_request_remove(h, p.id, p.generation);
-		if (!kills)
-			continue;
 		ob_host_go(h, step + 1);
 		CHECK(ob_host_wait(h, &e));
-		kill(pid_of_worker(ob_host_universe(h), step % 2), SIGKILL);
-		while (!h->restart.requested && !h->failed)
-			pause_ms(1);
+		if (kills && !early)
+			kill_noticed(h, step % 2);
 	}
 	ob_host_go(h, STEPS);
 	CHECK(ob_host_wait(h, &e));
@@ -196,9 +212,11 @@ static void test_requested(void)
 {
 	ob_scene s = busy_heap(BALLS);
 	unsigned deaths;
-	const uint64_t expected = end_of_requests(&s, false, &deaths);
-	CHECK(deaths == 0);
-	CHECK(end_of_requests(&s, true, &deaths) == expected && deaths > 10);
+	for (int early = 0; early < 2; early++) {
+		const uint64_t expected = end_of_requests(&s, false, early, &deaths);
+		CHECK(deaths == 0);
+		CHECK(end_of_requests(&s, true, early, &deaths) == expected && deaths > 10);
+	}
 	free(s.object);
 }
 
