@@ -246,8 +246,8 @@ static void check_same_count(void)
 	static const char *const texts[] = {
 		"local t = {} for i = 1, 3000 do t['key ' .. i] = i end for i = 1, 9 do for k in pairs(t) do end end",
 		"local t = {} for i = 1, 300 do t[('x'):rep(i * 9 % 2000) .. i] = i end for k in pairs(t) do end",
-		"for j = 1, 9 do local t = {} for i = 1, 9000 do t[i] = 9 + i * 7919 % 9001 end "
-		"t[1], t[4500], t[9000] = 1, 2, 3 table.sort(t) end",
+		("for j = 1, 9 do local t = {} for i = 1, 9000 do t[i] = 9 + i * 7919 % 9001 end "
+		 "t[1], t[4500], t[9000] = 1, 2, 3 table.sort(t) end"),
 	};
 	for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
 		ob_error e;
@@ -266,9 +266,8 @@ static void check_machine(void)
 		"local n for i = 1, 40000 do n = math.mininteger .. '' n = i .. '' end",
 		"local n, x = 1, 1.2345678901234e300 for i = 1, 40000 do n = x .. x end",
 		"local function r(n) if n > 0 then return 1, r(n - 1) end end for i = 1, 4 do r(3000) end",
-		"local t = {} for i = 1, 200 do t[i] = i end local function f(n, ...) if n > 0 then return f(n - 1, "
-		"...) "
-		"end end f(70000, table.unpack(t))",
+		("local t = {} for i = 1, 200 do t[i] = i end local function f(n, ...) if n > 0 then "
+		 "return f(n - 1, ...) end end f(70000, table.unpack(t))"),
 		"local n for i = 1, 100000 do n = { 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12 } end",
 	};
 	static const char *const refused[] = {
