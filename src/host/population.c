@@ -32,7 +32,7 @@ typedef struct slot {
 	bool driven : 1; // by its path or time-dependent force, those of the scene's object of this id
 	bool kinematic : 1; // counted as kinematic, whatever its passport, which others can write, says now
 	uint32_t born; // step
-	uint32_t origin; // of the request that has added it; 0: none
+	uint32_t origin; // connection whose request has added it; 0: none
 } slot;
 static_assert(sizeof(slot) == 16, "all objects have one, and what is kept of it");
 
@@ -475,7 +475,7 @@ static void carry_out_request(ob_population *p, const ob_request *r)
 }
 
 // Carries out requests. After a restart, first those that were carried out before, in the same places; new ones wait until
-// the run is again where it was: what viewers have seen of it stays true.
+// the run is again where it was, as viewers have seen its states.
 static void carry_out_requests(ob_population *p, uint64_t step, ob_requests *q)
 {
 	const ob_script_counts *scripts = ob_universe_step_data(p->u)->script_counts;

@@ -11,7 +11,7 @@
 
 typedef struct ob_roster_entry {
 	uint32_t id, generation;
-	uint32_t origin; // of the request that has added it (host/request.h); 0: none
+	uint32_t origin; // connection whose request has added it (host/request.h); 0: none
 	uint8_t script; // 1 + its number in the scene; 0: none
 	bool own_worker; // its number is the id; else one of a pool, whichever claims the object's island
 	char name[OB_NAME_MAX];
