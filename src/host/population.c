@@ -568,7 +568,7 @@ uint64_t ob_population_next_step(const ob_population *p)
 	const uint64_t timetable = p->next < p->event_count ? p->events[p->next].step : UINT64_MAX,
 		       again = ob_journal_next_step(&p->journal),
 		       reached = p->reached > ob_step_count(p->u) ? p->reached : UINT64_MAX, // requests may wait for it
-		       first = timetable < p->next_prescribed ? timetable : p->next_prescribed,
+		first = timetable < p->next_prescribed ? timetable : p->next_prescribed,
 		       then = again < reached ? again : reached;
 	return first < then ? first : then;
 }
