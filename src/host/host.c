@@ -13,13 +13,14 @@
 #include "base/log.h"
 #include "host/accounting.h"
 #include "host/host_state.h"
+#include "host/object_check.h"
 #include "base/interrupt.h"
 #include "host/restart.h"
 #include "ode/ode_body.h"
 #include "sim/sim.h"
 
 enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
-static const double default_patience = 60, least_start_patience = 5; // s
+static const double default_patience = 60; // s
 static const double rank_leave_timeout = 3600; // s: rank 0 may have much to write; the death of a rank ends the others
 static const double interrupted_leave_timeout = .02; // s: Ctrl-C does not wait for the end of a long step
 
@@ -219,43 +220,6 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_confi
 	return true;
 }
 
-// Fails the start because of a worker that does not get ready. It counts as stalled: all are started again where
-// possible.
-static bool fail_start(ob_host *h, uint32_t worker, double patience, ob_error *e)
-{
-	pid_t server = ob_fork_server_pid(h->fork_server);
-	ob_death d = {
-		.cause = OB_DEATH_STALL, .worker = worker, .step = ob_step_count(h->u) + 1, .object = OB_NO_OBJECT
-	};
-	snprintf(d.text, sizeof d.text,
-		 "simulator %u of %u was not ready after %g s; the fork server is process %d, %s", worker + 1,
-		 h->workers, patience, (int)server, ob_state_word(ob_state_of_thread(server, server)));
-	ob_restart_request(h, &d);
-	return ob_fail(e, "%s", h->failed ? h->failure.text : d.text);
-}
-
-bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
-{
-	const double patience = fmax(h->patience, least_start_patience);
-	ob_hang_clock clock = ob_hang_clock_start();
-	ob_worker_info info;
-	for (uint32_t w = 0; w < h->workers;) {
-		if (h->interrupted)
-			return ob_fail(e, "interrupted");
-		if (h->failed || h->restart.requested)
-			return ob_fail(e, "%s", h->failed ? h->failure.text : "a simulator has died");
-		if (!ob_worker_is_here(h->u, w) || (ob_universe_get_worker(h->u, w, &info) && info.pid != 0)) {
-			w++;
-			clock = ob_hang_clock_start();
-			continue;
-		}
-		if (ob_hang_clock_tick(&clock) > patience)
-			return fail_start(h, w, patience, e);
-		nanosleep(&(struct timespec){ .tv_nsec = 100000 }, NULL);
-	}
-	return true;
-}
-
 // Waits for all workers. Workers that die before they are ready are restarted, too.
 static bool wait_until_ready(ob_host *h, ob_error *e)
 {
@@ -327,29 +291,6 @@ const ob_universe *ob_host_universe(const ob_host *h)
 const ob_roster *ob_host_roster(const ob_host *h)
 {
 	return h->roster;
-}
-
-uint64_t ob_host_count_switches(const ob_host *h)
-{
-	uint64_t sum = 0;
-	ob_worker_info info;
-	for (uint32_t w = 0; w < h->workers; w++)
-		if (ob_universe_get_worker(h->u, w, &info) && info.pid != 0)
-			sum += ob_switches_of_thread(info.pid, info.tid);
-	return sum;
-}
-
-// A worker that waits now has waited since its last phase (since_ns).
-double ob_host_gate_time(const ob_host *h, double now)
-{
-	double sum = 0;
-	for (uint32_t w = 0; w < h->workers; w++) {
-		const ob_counters *c = ob_worker_counters(h->u, w);
-		sum += 1e-9 * (double)c->gate_ns;
-		if (c->since_ns)
-			sum += fmax(0, now - 1e-9 * (double)c->since_ns);
-	}
-	return sum;
 }
 
 static void get_memory(const ob_host *h, ob_host_times *out)
@@ -430,31 +371,6 @@ void ob_host_save(ob_host *h, ob_saved_host *out)
 	ob_universe_count(h->u, &out->counters);
 	memset(out->counters.time_ns, 0, sizeof out->counters.time_ns);
 	out->counters.held_ns = out->counters.gate_ns = out->counters.gate_cpu_ns = out->counters.since_ns = 0;
-}
-
-static bool request(ob_host *h, const ob_request *r)
-{
-	if (!ob_requests_push(h->requests, r))
-		return false;
-	ob_host_pause_early(h);
-	return true;
-}
-
-bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e)
-{
-	return ob_object_check(def, e) &&
-	       (request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = *def }) || ob_fail(e, "out of memory"));
-}
-
-bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e)
-{
-	return (r->kind != OB_REQUEST_ADD || ob_object_check(&r->def, e)) &&
-	       (request(h, r) || ob_fail(e, "out of memory"));
-}
-
-bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation)
-{
-	return request(h, &(ob_request){ .kind = OB_REQUEST_REMOVE, .id = id, .generation = generation });
 }
 
 void ob_host_stop(ob_host *h)

@@ -1,4 +1,5 @@
-// State of the host, shared by host.c, run.c, supervisor.c and restart.c.
+// State of the host, shared by its files: host.c starts and ends a run, run.c leads it, supervisor.c watches the workers,
+// restart.c starts them again, usage.c and halt.c serve them all.
 #ifndef OB_HOST_HOST_STATE_H
 #define OB_HOST_HOST_STATE_H
 

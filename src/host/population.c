@@ -7,6 +7,7 @@
 
 #include "base/log.h"
 #include "host/journal.h"
+#include "host/object_check.h"
 #include "host/rcu_tsan.h"
 #include "ode/ode_body.h"
 #include "scene/object_limits.h"
@@ -121,23 +122,6 @@ bool ob_requests_waiting(ob_requests *q)
 }
 
 // ---- checks
-
-static bool name_fault(const ob_passport *p, const ob_error *why, ob_error *e)
-{
-	return ob_fail(e, "object \"%s\": %s", p->name, why->text);
-}
-
-static bool check_name(const ob_passport *p, ob_error *e)
-{
-	return memchr(p->name, 0, OB_NAME_MAX) ||
-	       ob_fail(e, "object %u: its name is longer than %d characters", p->id, OB_NAME_MAX - 1);
-}
-
-bool ob_object_check(const ob_object_def *def, ob_error *e)
-{
-	ob_error why;
-	return check_name(&def->passport, e) && (ob_object_def_check(def, &why) || name_fault(&def->passport, &why, e));
-}
 
 bool ob_population_find_look(const ob_population *p, ob_object_def *def, ob_error *e)
 {
@@ -567,8 +551,9 @@ uint64_t ob_population_next_step(const ob_population *p)
 {
 	const uint64_t timetable = p->next < p->event_count ? p->events[p->next].step : UINT64_MAX,
 		       again = ob_journal_next_step(&p->journal),
-		       reached = p->reached > ob_step_count(p->u) ? p->reached : UINT64_MAX, // requests may wait for it
-		first = timetable < p->next_prescribed ? timetable : p->next_prescribed,
+		       first = timetable < p->next_prescribed ? timetable : p->next_prescribed;
+	// requests may wait for it
+	const uint64_t reached = p->reached > ob_step_count(p->u) ? p->reached : UINT64_MAX,
 		       then = again < reached ? again : reached;
 	return first < then ? first : then;
 }
@@ -634,12 +619,7 @@ static bool check_object(const ob_population *p, uint32_t id, ob_error *e)
 {
 	const ob_passport *pass = ob_passport_of(p->u, id);
 	const ob_motion *m = ob_newest_motion(p->u, id);
-	ob_error why;
-	if (!check_name(pass, e))
-		return false;
-	if (!ob_passport_check(pass, &why))
-		return name_fault(pass, &why, e);
-	if (!check_parts(p, pass, e))
+	if (!ob_object_check_saved(pass, e) || !check_parts(p, pass, e))
 		return false;
 	const ob_vec3 inertia = inertia_of(p, pass);
 	if (!is_near(pass->inertia.x, inertia.x) || !is_near(pass->inertia.y, inertia.y) ||

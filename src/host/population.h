@@ -25,9 +25,6 @@ bool ob_requests_waiting(ob_requests *q);
 
 typedef struct ob_population ob_population;
 
-// True if the object is within the limits (scene/object_limits.h); e names it, and what is not.
-bool ob_object_check(const ob_object_def *def, ob_error *e);
-
 // Slots 0 .. scene->objects-1 are the scene's; the rest of the table is for objects added later. All three must outlive
 // it. Writes the scene's hulls. NULL and e: out of memory, of the system or of /dev/shm.
 ob_population *ob_population_create(const ob_scene *scene, ob_universe *u, ob_roster *r, ob_error *e);

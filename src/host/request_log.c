@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "host/population.h"
+#include "host/object_check.h"
 
 #define BYTES_MAX ((uint64_t)960 << 20) // of a log that is read
 

@@ -17,6 +17,7 @@ enum { QUICK_ATTEMPTS = 3 }; // without progress are made at once
 static const double faults_timeout = 10; // s, for further attempts after the first fault
 static const double checkpoint_interval = .25; // s, between checkpoints
 static const double checkpoint_share = .05; // share of the time that checkpoints may take
+static const double least_start_patience = 5; // s
 static const double kill_timeout = 10; // s to wait until killed processes are gone
 static const double interrupted_kill_timeout = .05; // s, same after Ctrl-C
 
@@ -321,6 +322,43 @@ static bool give_up(ob_host *h)
 			describe(h, &text), r->attempts, (unsigned long long)ob_checkpoint_step(r->checkpoint),
 			count_alike(r), kept);
 	return h->failed;
+}
+
+// Fails the start because of a worker that does not get ready. It counts as stalled: all are started again where
+// possible.
+static bool fail_start(ob_host *h, uint32_t worker, double patience, ob_error *e)
+{
+	pid_t server = ob_fork_server_pid(h->fork_server);
+	ob_death d = {
+		.cause = OB_DEATH_STALL, .worker = worker, .step = ob_step_count(h->u) + 1, .object = OB_NO_OBJECT
+	};
+	snprintf(d.text, sizeof d.text,
+		 "simulator %u of %u was not ready after %g s; the fork server is process %d, %s", worker + 1,
+		 h->workers, patience, (int)server, ob_state_word(ob_state_of_thread(server, server)));
+	ob_restart_request(h, &d);
+	return ob_fail(e, "%s", h->failed ? h->failure.text : d.text);
+}
+
+bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
+{
+	const double patience = fmax(h->patience, least_start_patience);
+	ob_hang_clock clock = ob_hang_clock_start();
+	ob_worker_info info;
+	for (uint32_t w = 0; w < h->workers;) {
+		if (h->interrupted)
+			return ob_fail(e, "interrupted");
+		if (h->failed || h->restart.requested)
+			return ob_fail(e, "%s", h->failed ? h->failure.text : "a simulator has died");
+		if (!ob_worker_is_here(h->u, w) || (ob_universe_get_worker(h->u, w, &info) && info.pid != 0)) {
+			w++;
+			clock = ob_hang_clock_start();
+			continue;
+		}
+		if (ob_hang_clock_tick(&clock) > patience)
+			return fail_start(h, w, patience, e);
+		nanosleep(&(struct timespec){ .tv_nsec = 100000 }, NULL);
+	}
+	return true;
 }
 
 bool ob_restart(ob_host *h)

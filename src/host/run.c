@@ -1,5 +1,4 @@
 // From go to wait: run intervals between pauses, the work done in pauses, and stall detection.
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -15,41 +14,6 @@
 static const double poll_interval = .05; // s, between checks of a run that does not pause
 enum { LOOKS_PER_POLL = 5 }; // checks for Ctrl-C in each of these intervals
 static const double interrupt_grace = .03; // s that a step may still take after Ctrl-C, unless the run is to be saved
-
-void ob_host_set_failure(ob_host *h, const char *format, ...)
-{
-	va_list args;
-	pthread_mutex_lock(&h->failure_lock);
-	if (!h->failed) {
-		va_start(args, format);
-		vsnprintf(h->failure.text, sizeof h->failure.text, format, args);
-		va_end(args);
-		h->failed = true;
-	}
-	pthread_mutex_unlock(&h->failure_lock);
-	ob_host_halt(h);
-}
-
-void ob_host_halt(ob_host *h)
-{
-	pthread_mutex_lock(&h->interval.lock);
-	h->interval.halted = true;
-	ob_gate_set_pause_step(h->u, 0); // where all objects sleep, thousands of steps pass without a phase at the gate
-	pthread_mutex_unlock(&h->interval.lock);
-	ob_gate_stop(h->u);
-}
-
-void ob_host_pause_early(ob_host *h)
-{
-	ob_interval *interval = &h->interval;
-	pthread_mutex_lock(&interval->lock);
-	uint64_t next = ob_step_count(h->u) + 1;
-	if (interval->running && next < interval->end) {
-		interval->end = next;
-		ob_gate_set_pause_step(h->u, next);
-	}
-	pthread_mutex_unlock(&interval->lock);
-}
 
 // Paused: adds and removes objects, then opens the gate for the next interval, if the target is still ahead.
 static void begin_interval(ob_host *h)

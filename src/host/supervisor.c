@@ -15,21 +15,6 @@
 
 enum { REFRESH_MS = 500 };
 
-uint64_t ob_host_read_cpu(ob_host *h)
-{
-	uint64_t sum = h->restart.cpu;
-	for (uint32_t w = 0; w < h->workers; w++) {
-		ob_worker_info info;
-		if (!ob_universe_get_worker(h->u, w, &info) || info.pid == 0)
-			continue;
-		uint64_t ns = h->spawn->cpu(&info);
-		if (ns > info.cpu_ns)
-			ob_worker_set_cpu(h->u, w, ns);
-		sum += ns > info.cpu_ns ? ns : info.cpu_ns;
-	}
-	return sum;
-}
-
 // "simulator 3 (object "crate", process 4242)"
 static void describe_worker(const ob_host *h, const ob_worker_end *end, char *text, size_t size)
 {

@@ -10,6 +10,20 @@
 #include "scene/text.h"
 #include "script/runner.h"
 
+void ob_script_warn(lua_State *L, const char *format, ...)
+{
+	ob_script_runner *r = ob_sandbox_user(L);
+	if (!r->turn || *r->warning.text || r->turn->flags & OB_SCRIPT_WARNED)
+		return;
+	char text[sizeof r->warning.text];
+	va_list args;
+	va_start(args, format);
+	vsnprintf(text, sizeof text, format, args);
+	va_end(args);
+	ob_fail(&r->warning, "%s:%d: %s", r->data->script_text->text[r->turn->script - 1].name, ob_sandbox_line(L),
+		text);
+}
+
 // ---- arguments
 
 static ob_script_runner *runner_of(lua_State *L)
