@@ -36,6 +36,9 @@ ob_pose ob_motion_between(const ob_motion *prev, const ob_motion *next, ob_vec3 
 // the box of its bounding ball (ob_hull_bounds is tight).
 void ob_shape_bounds(ob_shape shape, ob_vec3 size, ob_pose pose, double bounds[6]);
 
+// Name of a shape, as scenes have it; "" for none.
+const char *ob_shape_name(ob_shape shape);
+
 // Radius (m) of the bounding sphere about the centre of mass; infinity for a plane.
 double ob_shape_radius(ob_shape shape, ob_vec3 size);
 

@@ -8,6 +8,8 @@
 #include <wchar.h>
 #include <wctype.h>
 
+#include <ob/motion.h>
+
 #include "base/utf8.h"
 
 enum { LINE_MAX_BYTES = 512, NAME_WIDTH = 12, WORKERS_AT_A_GLANCE = 4, WORKER_HEADING = 2 };
@@ -127,10 +129,9 @@ static double tidy(double x)
 
 static void put_object(ob_top_view *view, const ob_top_object *o, FILE *f)
 {
-	static const char *const shapes[] = { "-", "sphere", "box", "plane", "capsule", "cylinder" };
 	char line[LINE_MAX_BYTES], name[128];
 	int pad = NAME_WIDTH - clean_name(o->passport.name, NAME_WIDTH, name, sizeof name);
-	const char *shape = o->passport.shape < sizeof shapes / sizeof *shapes ? shapes[o->passport.shape] : "?";
+	const char *shape = ob_shape_name((ob_shape)o->passport.shape);
 	const char *state = o->passport.flags & OB_OBJECT_FROZEN      ? "frozen"
 			    : o->passport.flags & OB_OBJECT_STATIC    ? "static"
 			    : o->passport.flags & OB_OBJECT_KINEMATIC ? "driven"

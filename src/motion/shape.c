@@ -44,6 +44,16 @@ void ob_shape_bounds(ob_shape shape, ob_vec3 size, ob_pose pose, double bounds[6
 	bounds[5] = high.z;
 }
 
+const char *ob_shape_name(ob_shape shape)
+{
+	static const char *const names[] = {
+		[OB_SHAPE_NONE] = "",       [OB_SHAPE_SPHERE] = "sphere",   [OB_SHAPE_BOX] = "box",
+		[OB_SHAPE_PLANE] = "plane", [OB_SHAPE_CAPSULE] = "capsule", [OB_SHAPE_CYLINDER] = "cylinder",
+		[OB_SHAPE_HULL] = "hull",
+	};
+	return (size_t)shape < sizeof names / sizeof *names ? names[shape] : "";
+}
+
 double ob_shape_radius(ob_shape shape, ob_vec3 size)
 {
 	switch (shape) {

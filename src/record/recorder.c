@@ -146,9 +146,8 @@ static bool create_objects(objects *o, hid_t file, uint32_t count)
 
 static void copy_fact(const struct fact *f, const ob_passport *p, char *to)
 {
-	static const char shapes[][SHAPE_MAX] = { "", "sphere", "box", "plane", "capsule", "cylinder", "hull" };
 	if (f->kind == SHAPE)
-		memcpy(to, shapes[p->shape <= OB_SHAPE_HULL ? p->shape : 0], SHAPE_MAX);
+		strncpy(to, ob_shape_name((ob_shape)p->shape), SHAPE_MAX);
 	else if (f->kind == FLAG)
 		*to = (p->flags & OB_OBJECT_STATIC) != 0;
 	else

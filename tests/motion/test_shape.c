@@ -1,5 +1,6 @@
 // Bounding boxes of shapes, still and moving: they contain the shapes, and still ones are tight.
 #include <float.h>
+#include <string.h>
 
 #include <ob/motion.h>
 
@@ -129,11 +130,23 @@ static void test_swept_tight(void)
 		CHECK(box[i] == (i < 3 ? -INFINITY : INFINITY));
 }
 
+// Every shape has a name of its own, and nothing else has one.
+static void test_names(void)
+{
+	for (int a = OB_SHAPE_SPHERE; a <= OB_SHAPE_HULL; a++) {
+		CHECK(*ob_shape_name((ob_shape)a));
+		for (int b = OB_SHAPE_SPHERE; b < a; b++)
+			CHECK(strcmp(ob_shape_name((ob_shape)a), ob_shape_name((ob_shape)b)) != 0);
+	}
+	CHECK(!*ob_shape_name(OB_SHAPE_NONE) && !*ob_shape_name((ob_shape)(OB_SHAPE_HULL + 1)));
+}
+
 int main(void)
 {
 	test_tight();
 	test_known();
 	test_swept_holds();
 	test_swept_tight();
+	test_names();
 	return check_end();
 }
