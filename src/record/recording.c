@@ -7,10 +7,11 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/utf8.h"
 #include "record/layout.h"
@@ -19,9 +20,10 @@
 
 enum { OBJECTS_MAX = 1 << 20, CAMERAS_MAX = 1000, HULLS_MAX = UINT16_MAX + 1, EVERY_MAX = 1 << 30 };
 enum { BYTES_AT_ONCE = 1 << 18 };
-// Limits of the first reading: seconds of CPU, plus one for each BYTES_PER_SECOND on the disk, and bytes of memory. The
+// Limits of the first reading, whatever the size of the file: seconds of CPU for each of its advances, the first of
+// which opens the record, and bytes of memory. An advance ends with the first state after PAUSE seconds of CPU. The
 // limit of wall time is WALL_PER_CPU times as long. A healthy record takes about 2 s of CPU for each 2^30 bytes.
-enum { SECONDS = 4, BYTES_PER_SECOND = 64 << 20, WALL_PER_CPU = 30, MEMORY = 768 << 20 };
+enum { SECONDS = 5, PAUSE = 2, WALL_PER_CPU = 30, MEMORY = 768 << 20 };
 static const double number_max = 1e15; // largest of any number in SI units
 
 // A dataset of compounds, read in blocks.
@@ -33,8 +35,16 @@ typedef struct list {
 	char *item; // [held], of table->size
 } list;
 
+// The process that reads the record before this one does.
+typedef struct reader {
+	pid_t pid; // 0: none
+	int link; // socket to it
+	uint64_t states; // read by it so far; UINT64_MAX: all
+} reader;
+
 struct ob_recording {
 	ob_record_base base;
+	reader first;
 	char *path; // for messages: the file is read through its descriptor
 	hid_t file; // negative: missing
 	uint64_t file_bytes;
@@ -544,16 +554,34 @@ static bool open_file(ob_recording *r, int fd, ob_error *e)
 	       open_meshes(r, e) && open_states(r, e);
 }
 
-static ob_recording *open_here(const char *path, int fd, uint64_t bytes, ob_error *e)
+// ---- the first reading, by a child
+
+// Ends it, and returns its status as waitpid gives it.
+static int end_reader(reader *first)
+{
+	int status = 0;
+	if (first->pid) {
+		close(first->link); // it waits for this, or has ended
+		while (waitpid(first->pid, &status, 0) < 0 && errno == EINTR)
+			;
+	}
+	first->pid = 0;
+	return status;
+}
+
+// Takes over first.
+static ob_recording *open_here(const char *path, int fd, uint64_t bytes, reader first, ob_error *e)
 {
 	ob_hdf5_silence();
 	H5PLset_loading_state(0); // filters unknown to this HDF5 would be loaded as libraries from a folder
 	ob_recording *r = calloc(1, sizeof *r);
 	if (!r || !(r->path = strdup(path))) {
 		ob_fail(e, "%s: no memory", path);
+		end_reader(&first);
 		free(r);
 		return NULL;
 	}
+	r->first = first;
 	r->file = H5I_INVALID_HID;
 	r->file_bytes = bytes;
 	r->events = (list){ .table = &ob_record_events, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
@@ -563,22 +591,6 @@ static ob_recording *open_here(const char *path, int fd, uint64_t bytes, ob_erro
 		return r;
 	ob_hdf5_recording_close(r);
 	return NULL;
-}
-
-// ---- the first reading, by a child
-
-// Reads the whole record; e is empty on success.
-static void read_to_end(const char *path, int fd, uint64_t bytes, ob_error *e)
-{
-	bool ended = false;
-	ob_recording *r = open_here(path, fd, bytes, e);
-	if (!r)
-		return;
-	while (ob_hdf5_recording_next(r, &ended, e))
-		;
-	if (ended)
-		e->text[0] = 0;
-	ob_hdf5_recording_close(r);
 }
 
 static uint64_t address_space(void) // bytes; 0: it cannot be read
@@ -591,85 +603,142 @@ static uint64_t address_space(void) // bytes; 0: it cannot be read
 	return n > 0 ? strtoull(text, NULL, 10) * (uint64_t)sysconf(_SC_PAGESIZE) : 0;
 }
 
-// Limits the damage that a corrupt file can do to a process: time, memory, files. One descriptor remains, with which
-// HDF5 opens the file itself. The size of a sparse file is that of its allocated blocks.
+// Limits the damage that a corrupt file can do to a process: memory, files. One descriptor remains, with which HDF5
+// opens the file itself. Signals to all processes of a terminal leave the decision to the program.
 static void limit_child(int fd)
 {
-	struct stat st = { .st_blocks = 0 };
 	const int last = dup(fd);
 	close(last);
-	fstat(fd, &st);
-	const rlim_t seconds = SECONDS + (rlim_t)st.st_blocks * 512 / BYTES_PER_SECOND;
 	const rlim_t memory = address_space() + MEMORY;
-	setrlimit(RLIMIT_CPU, &(struct rlimit){ seconds, seconds + 1 });
 	setrlimit(RLIMIT_AS, &(struct rlimit){ memory, memory });
 	setrlimit(RLIMIT_CORE, &(struct rlimit){ 0, 0 });
 	setrlimit(RLIMIT_FSIZE, &(struct rlimit){ 0, 0 });
 	setrlimit(RLIMIT_NOFILE, &(struct rlimit){ (rlim_t)last + 1, (rlim_t)last + 1 });
 	signal(SIGALRM, SIG_DFL);
 	signal(SIGXCPU, SIG_DFL);
-	alarm((unsigned)(WALL_PER_CPU * seconds)); // it should never wait, except for the disk
+	signal(SIGINT, SIG_IGN);
+	signal(SIGTERM, SIG_IGN);
+	signal(SIGHUP, SIG_IGN);
 }
 
-static _Noreturn void be_child(const char *path, int fd, uint64_t bytes, int to, pid_t parent)
+// Allows SECONDS of CPU from now on. Returns the CPU time at which an advance pauses.
+static double begin_advance(void)
 {
-	ob_error e = { "" };
+	struct rlimit cpu;
+	const double now = ob_clock_process_cpu();
+	const rlim_t until = (rlim_t)now + SECONDS;
+	getrlimit(RLIMIT_CPU, &cpu);
+	cpu.rlim_cur = until < cpu.rlim_max ? until : cpu.rlim_max;
+	setrlimit(RLIMIT_CPU, &cpu);
+	alarm(WALL_PER_CPU * SECONDS); // it should never wait, except for the disk
+	return now + PAUSE;
+}
+
+// Report of the first reader after each advance.
+typedef struct report {
+	uint64_t states; // read so far; UINT64_MAX: all
+	ob_error e; // empty: none
+} report;
+
+static _Noreturn void be_child(const char *path, int fd, uint64_t bytes, int link, pid_t parent)
+{
+	report said = { .states = 0 };
+	char go;
+	bool ended = false;
 	int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
 	dup2(nowhere, STDERR_FILENO); // messages of a library that dies
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
 	if (getppid() != parent)
 		_exit(1); // the parent died before that
 	limit_child(fd);
-	read_to_end(path, fd, bytes, &e);
-	ssize_t written = write(to, e.text, sizeof e.text);
-	_exit(written == sizeof e.text ? 0 : 1);
+	double until = begin_advance();
+	ob_recording *r = open_here(path, fd, bytes, (reader){ .states = UINT64_MAX }, &said.e);
+	for (bool good = r; good; until = begin_advance()) {
+		do
+			said.states += good = ob_hdf5_recording_next(r, &ended, &said.e);
+		while (good && ob_clock_process_cpu() < until);
+		if (!good)
+			break;
+		alarm(0);
+		if (write(link, &said, sizeof said) != sizeof said || read(link, &go, 1) != 1)
+			_exit(1);
+	}
+	if (ended)
+		said = (report){ .states = UINT64_MAX };
+	_exit(write(link, &said, sizeof said) == sizeof said ? 0 : 1);
 }
 
 static bool fail_child(const char *path, int status, ob_error *e)
 {
 	const int death = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
 	if (death == SIGXCPU || death == SIGALRM)
-		return ob_fail(e, "%s: this record is damaged: reading it takes longer than a record of its size may",
-			       path);
+		return ob_fail(e,
+			       "%s: this record is damaged: it takes more than %d s of CPU, or %d s by the clock, to "
+			       "open it or to read a state; record the run again",
+			       path, SECONDS, WALL_PER_CPU * SECONDS);
 	return ob_fail(e, "%s: this record is damaged: HDF5 cannot read it (%s)", path,
 		       death ? strsignal(death) : "and gives no reason");
 }
 
-static bool read_by_child(const char *path, int fd, uint64_t bytes, ob_error *e)
+// Waits until the first reader pauses or ends. false and e: it found damage, or died.
+static bool take_report(reader *first, const char *path, ob_error *e)
 {
-	int ends[2], status = 0;
-	ob_error said = { "" };
-	const pid_t parent = getpid();
-	if (pipe2(ends, O_CLOEXEC) != 0)
-		return ob_fail(e, "%s: no pipe: %s", path, strerror(errno));
-	pid_t child = fork();
-	if (child == 0)
-		be_child(path, fd, bytes, ends[1], parent);
-	close(ends[1]);
-	size_t at = 0;
-	ssize_t n = 0;
-	while (child > 0 && at < sizeof said.text &&
-	       ((n = read(ends[0], said.text + at, sizeof said.text - at)) > 0 || (n < 0 && errno == EINTR)))
-		at += n > 0 ? (size_t)n : 0;
-	close(ends[0]);
-	if (child < 0)
-		return ob_fail(e, "%s: no process to read it: %s", path, strerror(errno));
-	while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+	report said = { .states = 0 };
+	ssize_t n;
+	while ((n = read(first->link, &said, sizeof said)) < 0 && errno == EINTR)
 		;
-	said.text[sizeof said.text - 1] = 0;
-	if (at < sizeof said.text || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-		return fail_child(path, status, e);
-	return !said.text[0] || ob_fail(e, "%s", said.text);
+	if (n != sizeof said)
+		return fail_child(path, end_reader(first), e);
+	said.e.text[sizeof said.e.text - 1] = 0;
+	first->states = said.states;
+	if (said.states == UINT64_MAX || said.e.text[0])
+		end_reader(first);
+	return !said.e.text[0] || ob_fail(e, "%s", said.e.text);
+}
+
+// Starts the first reader, which opens the record and reads some of it, or all.
+static bool start_reader(reader *first, const char *path, int fd, uint64_t bytes, ob_error *e)
+{
+	int ends[2];
+	const pid_t parent = getpid();
+	if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+		return ob_fail(e, "%s: no socket: %s", path, strerror(errno));
+	const pid_t child = fork();
+	if (child == 0) {
+		close(ends[0]);
+		be_child(path, fd, bytes, ends[1], parent);
+	}
+	const int why = errno;
+	close(ends[1]);
+	if (child < 0) {
+		close(ends[0]);
+		return ob_fail(e, "%s: no process to read it: %s", path, strerror(why));
+	}
+	*first = (reader){ .pid = child, .link = ends[0] };
+	return take_report(first, path, e);
+}
+
+// True if the first reader has read the next state. Waits for its next advance if needed.
+static bool is_read(ob_recording *r, ob_error *e)
+{
+	const uint64_t next = r->state + 1;
+	if (next == r->first.states && r->first.pid) {
+		send(r->first.link, "", 1, MSG_NOSIGNAL); // if it is dead, there is no report
+		if (!take_report(&r->first, r->path, e))
+			return false;
+	}
+	return next < r->first.states || damaged(r, "it cannot be read any further", e);
 }
 
 ob_recording *ob_hdf5_recording_open(const char *path, ob_error *e)
 {
 	uint64_t bytes = 0;
+	reader first;
 	ob_error why;
 	const int fd = ob_file_open(path, UINT64_MAX, &bytes, &why);
 	if (fd < 0)
 		return ob_fail(e, "%s: cannot read the record: %s", path, why.text), NULL;
-	ob_recording *r = read_by_child(path, fd, bytes, e) ? open_here(path, fd, bytes, e) : NULL;
+	ob_recording *r = start_reader(&first, path, fd, bytes, e) ? open_here(path, fd, bytes, first, e) : NULL;
 	close(fd);
 	return r;
 }
@@ -683,6 +752,7 @@ void ob_hdf5_recording_close(ob_recording *r)
 {
 	if (!r)
 		return;
+	end_reader(&r->first);
 	close_list(&r->events);
 	close_list(&r->motions);
 	if (r->file >= 0)
@@ -792,7 +862,7 @@ static bool check_new(const ob_recording *r, uint64_t first, list *events, ob_er
 bool ob_hdf5_recording_next(ob_recording *r, bool *ended, ob_error *e)
 {
 	*ended = r->state + 1 == r->info.states;
-	if (*ended)
+	if (*ended || !is_read(r, e))
 		return false;
 	r->state++;
 	r->now.time = r->time[r->state];

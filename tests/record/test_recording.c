@@ -1,11 +1,15 @@
 // Reading a record gives the recorded snapshots; a damaged record, or another file, gives one line.
+#include <fcntl.h>
 #include <hdf5.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "hull/hull.h"
@@ -490,10 +494,14 @@ static void test_little_memory(void)
 
 // In place of the C library's: while a record is read by a child, it goes no further than here.
 static int stuck = -1;
+static struct {
+	unsigned alarms; // set by children
+	rlim_t cpu; // s, last limit of a child
+} * seen; // in shared memory
 
 __attribute__((visibility("default"))) unsigned alarm(unsigned seconds)
 {
-	(void)seconds;
+	seen->alarms += seconds > 0;
 	if (stuck >= 0 && write(stuck, "", 1) == 1)
 		for (;;)
 			pause();
@@ -521,6 +529,93 @@ static void test_child_dies_with_the_program(void)
 	close(ends[0]);
 }
 
+__attribute__((visibility("default"))) int setrlimit(__rlimit_resource_t resource, const struct rlimit *limit)
+{
+	if (resource == RLIMIT_CPU)
+		seen->cpu = limit->rlim_cur;
+	return (int)syscall(SYS_prlimit64, 0, resource, limit, NULL);
+}
+
+// In place of the C library's: a clock of CPU time by which each look at it takes so long.
+static time_t slowness, slow_time; // s
+static time_t last_time = INT32_MAX; // a process dies then, as at its limit of CPU time
+
+__attribute__((visibility("default"))) int clock_gettime(clockid_t id, struct timespec *t)
+{
+	if (!slowness || id != CLOCK_PROCESS_CPUTIME_ID)
+		return (int)syscall(SYS_clock_gettime, id, t);
+	slow_time += slowness;
+	if (slow_time >= last_time)
+		raise(SIGXCPU);
+	*t = (struct timespec){ .tv_sec = slow_time };
+	return 0;
+}
+
+// The limit of CPU time does not grow with the file.
+static void test_flat_limit(void)
+{
+	ob_error e;
+	rlim_t limit[2];
+	record(10);
+	for (int i = 0; i < 2; i++) {
+		seen->cpu = 0;
+		ob_recording_close(ob_recording_open(path, &e));
+		limit[i] = seen->cpu;
+		const int fd = open(path, O_WRONLY | O_CLOEXEC);
+		CHECK(posix_fallocate(fd, 0, 192 << 20) == 0);
+		close(fd);
+	}
+	CHECK(limit[0] > 0 && limit[0] <= 5 && limit[1] == limit[0]);
+}
+
+static uint64_t play(ob_recording *r, bool *ended, ob_error *e)
+{
+	uint64_t states = 0;
+	*ended = false;
+	while (r && ob_recording_next(r, ended, e))
+		states++;
+	ob_recording_close(r);
+	return states;
+}
+
+static void late_nan_motion(hid_t file)
+{
+	hid_t set = H5Dopen2(file, "motions", H5P_DEFAULT), space = H5Dget_space(set);
+	const hsize_t count = (hsize_t)H5Sget_simple_extent_npoints(space);
+	H5Sclose(space);
+	H5Dclose(set);
+	set_member(file, "motions", "valid_until", H5T_NATIVE_DOUBLE, count - 1, &(double){ NAN });
+}
+
+// A record whose reading takes long is opened after a part of it, and then read as it is played: never states that the
+// child has not read.
+static void test_long_record(void)
+{
+	ob_error e = { "" };
+	bool ended;
+	record(STATES);
+	slowness = 1;
+	seen->alarms = 0;
+	ob_recording *r = ob_recording_open(path, &e);
+	CHECK(r && seen->alarms == 1);
+	CHECK(play(r, &ended, &e) == STATES && ended && seen->alarms >= STATES / 3);
+	slowness = 1000; // no advance leaves time for a second state
+	CHECK(play(ob_recording_open(path, &e), &ended, &e) == STATES && ended);
+	slowness = 1;
+	last_time = 20;
+	CHECK(play(ob_recording_open(path, &e), &ended, &e) > 0 && !ended && strstr(e.text, "more than 5 s of CPU"));
+	last_time = 1;
+	CHECK(!ob_recording_open(path, &e) && strstr(e.text, "more than 5 s of CPU"));
+	last_time = INT32_MAX;
+	change(late_nan_motion);
+	CHECK(play(ob_recording_open(path, &e), &ended, &e) > 0 && !ended && strstr(e.text, "a motion makes no sense"));
+	r = ob_recording_open(path, &e);
+	CHECK(r);
+	ob_recording_close(r); // and its child ends, too
+	slowness = 0;
+	CHECK(waitpid(-1, NULL, 0) < 0);
+}
+
 static void test_no_record(void)
 {
 	record(10);
@@ -540,11 +635,15 @@ int main(void)
 {
 	snprintf(path, sizeof path, "/tmp/obsim-test-recording-%d.h5", (int)getpid());
 	H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+	seen = mmap(NULL, sizeof *seen, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	CHECK(seen != MAP_FAILED);
 	build_hulls();
 	test_same_snapshots();
 	test_damaged();
 	test_little_memory();
 	test_child_dies_with_the_program();
+	test_flat_limit();
+	test_long_record();
 	test_no_record();
 	unlink(path);
 	return check_end();
