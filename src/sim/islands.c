@@ -174,8 +174,7 @@ static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 // ---- ballistic advance
 
 // True for a body near planes only, or two near each other and planes, with no resting contact, and no late contact in
-// this step: a ballistic advance may suffice. A body that the contact solver has had as it bounced low goes on in
-// flight; one that has become slow is left to come to rest.
+// this step: a ballistic advance may suffice. A contact rests if it carried a load, or if the body has been slow.
 static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 {
 	const ob_step_data *data = s->data;

@@ -1,10 +1,10 @@
-// Islands of the universe, moved through one step: read for the solver (solver/solver.h), solved, and their results handed
-// over; or advanced along closed forms where that will do.
+// Moves islands of the universe through one step: reads an island for the solver (solver/solver.h), solves it and hands
+// over its results, or advances it in closed form.
 //
 //   step ── ballistic advance, where that suffices: many lone bodies side by side, or a pair
 //     └── read bodies and contacts
-//     └── substeps, of equal length: the run's number, as many as the tolerance needs (solver/error_control.h), or one in
-//     │   equilibrium (solver/equilibrium.h)
+//     └── substeps, of equal length: the run's number, as many as the tolerance needs (solver/error_control.h), or one
+//     │   in equilibrium (solver/equilibrium.h)
 //     │     └── partial substeps, where fast bodies touch (solver/adaptive_substep.h)
 //     │           narrow phase, warm start, impacts, contact solver, free motion to the end, position projection
 //     └── hand over contacts, publish bodies

@@ -1,5 +1,5 @@
-// Motion of an object that holds now, within a step, and the place of the object by it. A motion describes the way from an
-// instant on, which may be long ago.
+// Motion of an object that holds now, within a step, and the place of the object by it. A motion describes the path from
+// an instant on, which may be long ago.
 #ifndef OB_SIM_NOW_H
 #define OB_SIM_NOW_H
 

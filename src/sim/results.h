@@ -14,7 +14,7 @@ typedef struct ob_found_result {
 
 enum { OB_LATE_CONTACTS_BATCH = 256 }; // pairs that a worker checks at a time
 
-// By the worker that found the result, in phase ..
+// Called by the worker that found the result; each line names its phase.
 
 void ob_commit_result(ob_sim *s, const ob_found_result *r); // ISLANDS
 void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6]); // ISLANDS; and by the host

@@ -8,11 +8,11 @@
 #include "sim/sim.h"
 #include "sim/state.h"
 
-// Number of ODE bodies that a worker keeps. All together keep no more than there are objects, or a few for each: a worker
-// that claims islands comes to solve, in the course of a run, every object.
+// Number of ODE bodies that a worker keeps. All workers together keep no more than there are objects, or a few for each:
+// a worker that claims islands comes to solve every object in the course of a run.
 static uint32_t ode_bodies_of(const ob_universe *u)
 {
-	enum { LEAST = 256 }; // for the members of an island, whoever leads it: .35 MB
+	enum { LEAST = 256 }; // enough for the members of an island; .35 MB
 	const uint32_t objects = ob_universe_capacity(u), workers = ob_universe_workers(u);
 	const uint32_t share = objects / workers + (objects % workers != 0);
 	return share < LEAST ? (objects < LEAST ? objects : LEAST) : share;
