@@ -18,7 +18,7 @@ static void read_object(ob_sim *s, ob_island_object *to, uint32_t id, bool membe
 {
 	const ob_passport *p = ob_passport_of(s->u, id);
 	const ob_motion *m = ob_newest_motion(s->u, id);
-	const uint64_t step = ob_step_count(s->u);
+	const uint64_t step = s->scratch.in.step;
 	*to = (ob_island_object){ .id = id,
 				  .passport = p,
 				  .hull = ob_hull_of(s->u, p),
@@ -54,7 +54,7 @@ static void read_pair(ob_sim *s, ob_island_pair *to, uint32_t pair)
 				.before = before };
 	if (before) {
 		const ob_pair_record *r = &s->data->record[k->record];
-		to->newest = r->stamp[before - r->version] == ob_step_count(s->u) + 1;
+		to->newest = r->stamp[before - r->version] == x->in.step + 1;
 		to->impulse_b = s->data->impulse_b ? s->data->impulse_b[k->record][before - r->version] : NULL;
 	}
 }
@@ -112,7 +112,8 @@ static void enter_section(void *sim, ob_profile_section section)
 static void begin_attempt(void *sim)
 {
 	ob_sim *s = sim;
-	ob_touches_begin(s, s->scratch.island);
+	if (s->scratch.in.feels)
+		ob_touches_begin(s, s->scratch.island);
 }
 
 static void note_touch(void *sim, uint32_t a, uint32_t b, double impulse, ob_vec3 point)
@@ -190,7 +191,7 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 			   b = data->schedule[k->b].state == OB_SCHEDULE_PLANE;
 		const bool met = data->result_island[k->a] == data->result_island[k->b];
 		if ((!a && !b && !met) || (k->active && (ob_newest_motion(s->u, a ? k->b : k->a)->rest_time > 0 ||
-							 ob_pair_carried_load(s->u, k))))
+							 ob_pair_carried_load(ob_pair_state_before(s->u, k)))))
 			return false;
 	}
 	return true;
@@ -210,7 +211,7 @@ static bool advance_pair(ob_sim *s, const ob_island *is)
 {
 	if (is->members != 2 || !may_advance_ballistically(s, is))
 		return false;
-	ob_solver_enter(&s->solver, OB_PROFILE_BALLISTIC);
+	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
 	ob_touches_begin(s, is);
 	if (!ob_ballistic_pair_advance(s, s->data->member + is->first_member))
 		return false;
@@ -225,7 +226,7 @@ void ob_islands_fly(ob_sim *s, uint32_t first, uint32_t n, bool *flown)
 	uint32_t lone[OB_ISLANDS_ABREAST], id[OB_ISLANDS_ABREAST], fly = 0;
 	bool done[OB_ISLANDS_ABREAST];
 	ob_budget_begin_share(s, data->member[data->island[first].first_member]);
-	ob_solver_enter(&s->solver, OB_PROFILE_BALLISTIC);
+	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
 	for (uint32_t k = 0; k < n; k++) {
 		const ob_island *is = &data->island[first + k];
 		flown[k] = false;

@@ -390,12 +390,3 @@ const ob_pair_state *ob_pair_state_before(const ob_universe *u, const ob_pair_ke
 	const ob_pair_state *p = ob_pair_before(&data->record[k->record], ob_step_count(u));
 	return p && p->points ? p : NULL;
 }
-
-bool ob_pair_carried_load(const ob_universe *u, const ob_pair_key *k)
-{
-	const ob_pair_state *p = ob_pair_state_before(u, k);
-	double sum = 0;
-	for (uint32_t j = 0; p && j < p->points; j++)
-		sum += p->impulse[j];
-	return sum > 0;
-}

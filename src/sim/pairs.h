@@ -21,8 +21,6 @@ static inline bool ob_has_pairs(const ob_step_data *data, uint32_t id)
 
 // Returns the pair's state before the step; NULL if it did not touch. Any worker, while islands are solved.
 const ob_pair_state *ob_pair_state_before(const ob_universe *u, const ob_pair_key *k);
-// True if the pair's contact carried a load before the step.
-bool ob_pair_carried_load(const ob_universe *u, const ob_pair_key *k);
 
 // Finds the object's neighbours, and hands over the changes of its pairs. box_tests grows by the number of boxes
 // compared. Any worker, after the scheduling worker has updated the index.

@@ -150,7 +150,7 @@ static void find_what_holds(ob_solver *s, const ob_island_input *in)
 	ob_island_work *w = &s->island;
 	bool held = in->members == 1 || w->in_field;
 	for (uint32_t i = 0; i < in->pairs && !held; i++)
-		held = holding_row(s, in, i) && ob_island_pair_carried_load(&in->pair[i]);
+		held = holding_row(s, in, i) && ob_pair_carried_load(in->pair[i].before);
 	for (uint32_t row = 1 + w->bodies; row < w->rows; row++)
 		w->body[row].holds = held;
 	const double energy = held ? 0 : inner_energy(w);

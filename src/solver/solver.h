@@ -46,8 +46,8 @@ typedef struct ob_island_pair {
 typedef struct ob_island_input {
 	uint64_t step; // number of complete steps
 	uint32_t members, objects, pairs;
-	const ob_island_object
-		*object; // [objects]: the members by ascending id, then the others as the pairs name them
+	// [objects]: the members by ascending id, then the others as the pairs name them
+	const ob_island_object *object;
 	const ob_island_pair *pair;
 	bool feels; // touches are to be reported
 } ob_island_input;
@@ -111,15 +111,6 @@ static inline void ob_solver_enter(ob_solver *s, ob_profile_section section)
 static inline ob_vec3 ob_external_acceleration(const ob_run_settings *run, const ob_passport *p)
 {
 	return p->mass > 0 ? ob_madd(run->gravity, 1 / p->mass, p->force) : ob_v3(0, 0, 0);
-}
-
-// True if a contact's normal impulses were above 0 when the step began.
-static inline bool ob_island_pair_carried_load(const ob_island_pair *p)
-{
-	double sum = 0;
-	for (uint32_t j = 0; p->before && j < p->before->points; j++)
-		sum += p->before->impulse[j];
-	return sum > 0;
 }
 
 #endif

@@ -1,7 +1,8 @@
-// What is kept of a pair of objects that touch, from step to step: the solver's warm start.
+// State of a pair of objects that touch, kept from step to step: the solver's warm start.
 #ifndef OB_TABLE_PAIR_STATE_H
 #define OB_TABLE_PAIR_STATE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include <ob/vec.h>
@@ -16,7 +17,7 @@ typedef struct ob_pair_state {
 	ob_vec3 normal;
 	ob_vec3 between; // m, from a's centre to b's: an arm of b is that of a less this
 	double impulse[OB_PAIR_ROWS]; // N s of the last substep: 4 normal, 2 friction (along the tangents), N m s twist
-	double substep; // m, radius of a disc contact; 0: contact over the points' hull
+	double substep; // s, length of that substep
 	double disc_radius; // m, of a disc that they touch all over; 0: over the points' hull
 	ob_vec3 arm_a[OB_PAIR_POINTS]; // m
 	double gap[OB_PAIR_POINTS]; // m, separation now; < 0 is penetration
@@ -24,5 +25,14 @@ typedef struct ob_pair_state {
 	uint16_t of_now; // 1: its geometry was found for the bodies' poses when the version holds
 	float creep; // m, slip of the last second while friction should have held
 } ob_pair_state;
+
+// True if its normal impulses were above 0. p may be NULL: they have never touched.
+static inline bool ob_pair_carried_load(const ob_pair_state *p)
+{
+	double sum = 0;
+	for (uint32_t j = 0; p && j < p->points; j++)
+		sum += p->impulse[j];
+	return sum > 0;
+}
 
 #endif

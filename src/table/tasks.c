@@ -1,11 +1,16 @@
-// Tasks of a phase: claimed one after the other by whoever is free, or shared in turns by contained simulators.
+// Tasks of a phase: claimed one after the other by workers that are free, or shared in turns by contained simulators.
 #include "table/layout.h"
 #include "table/outbox.h"
 
+// Place of a worker in a round of turns, or worker of a place: 0 1 2, then 2 1 0, and so on.
+static uint32_t in_turn(uint32_t round, uint32_t place, uint32_t workers)
+{
+	return round % 2 ? workers - 1 - place : place;
+}
+
 uint32_t ob_task_owner(uint32_t index, uint32_t workers)
 {
-	const uint32_t round = index / workers, place = index % workers;
-	return round % 2 ? workers - 1 - place : place;
+	return in_turn(index / workers, index % workers, workers);
 }
 
 uint32_t ob_task_workers(const ob_universe *u)
@@ -35,13 +40,12 @@ void ob_task_reset_from(ob_universe *u, uint32_t total, uint32_t first, uint32_t
 static bool claim_own(ob_universe *u, uint32_t *index)
 {
 	uint32_t worker;
-	const uint64_t total = u->control->claim_total, workers = u->control->claim_workers,
-		       round = ob_outbox_next_task(u, &worker), place = worker - u->control->claim_first;
+	const uint32_t round = ob_outbox_next_task(u, &worker), workers = u->control->claim_workers;
 	if (!workers)
 		return false;
-	const uint64_t i = round * workers + (round % 2 ? workers - 1 - place : place);
+	const uint64_t i = (uint64_t)round * workers + in_turn(round, worker - u->control->claim_first, workers);
 	*index = (uint32_t)i;
-	return i < total;
+	return i < u->control->claim_total;
 }
 
 bool ob_task_claim(ob_universe *u, uint32_t *index)
