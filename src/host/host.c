@@ -13,10 +13,10 @@
 #include "base/log.h"
 #include "host/accounting.h"
 #include "host/host_state.h"
-#include "host/object_check.h"
 #include "base/interrupt.h"
 #include "host/restart.h"
 #include "ode/ode_body.h"
+#include "scene/object_limits.h"
 #include "sim/sim.h"
 
 enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };

@@ -7,7 +7,6 @@
 
 #include "base/log.h"
 #include "host/journal.h"
-#include "host/object_check.h"
 #include "host/rcu_tsan.h"
 #include "ode/ode_body.h"
 #include "scene/object_limits.h"

@@ -1,6 +1,6 @@
 // Requests of any thread to a run.
 #include "host/host_state.h"
-#include "host/object_check.h"
+#include "scene/object_limits.h"
 
 static bool request(ob_host *h, const ob_request *r)
 {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-#include "host/object_check.h"
+#include "scene/object_limits.h"
 
 #define BYTES_MAX ((uint64_t)960 << 20) // of a log that is read
 

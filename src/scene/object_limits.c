@@ -1,6 +1,7 @@
 #include "scene/object_limits.h"
 
 #include <math.h>
+#include <string.h>
 
 static bool within(const char *property, const char *unit, double least, double most, double value, ob_error *e)
 {
@@ -137,4 +138,29 @@ double ob_torque_most(const ob_passport *p)
 {
 	const double least = fmin(p->inertia.x, fmin(p->inertia.y, p->inertia.z));
 	return least > 0 ? fmin(OB_FORCE_MOST, OB_ACCELERATION_MOST * least) : OB_FORCE_MOST;
+}
+
+// ---- whole objects, named
+
+static bool name_fault(const ob_passport *p, const ob_error *why, ob_error *e)
+{
+	return ob_fail(e, "object \"%s\": %s", p->name, why->text);
+}
+
+static bool check_name(const ob_passport *p, ob_error *e)
+{
+	return memchr(p->name, 0, OB_NAME_MAX) ||
+	       ob_fail(e, "object %u: its name is longer than %d characters", p->id, OB_NAME_MAX - 1);
+}
+
+bool ob_object_check(const ob_object_def *def, ob_error *e)
+{
+	ob_error why;
+	return check_name(&def->passport, e) && (ob_object_def_check(def, &why) || name_fault(&def->passport, &why, e));
+}
+
+bool ob_object_check_saved(const ob_passport *p, ob_error *e)
+{
+	ob_error why;
+	return check_name(p, e) && (ob_passport_check(p, &why) || name_fault(p, &why, e));
 }

@@ -24,6 +24,10 @@
 bool ob_passport_check(const ob_passport *p, ob_error *e);
 // Likewise of an object before it begins, with its passport, its path and its force.
 bool ob_object_def_check(const ob_object_def *def, ob_error *e);
+// The same, and its name ends; e names the object, too.
+bool ob_object_check(const ob_object_def *def, ob_error *e);
+// The same for the properties that a checkpoint has of an object.
+bool ob_object_check_saved(const ob_passport *p, ob_error *e);
 
 // The most that may act on an object along each axis: a force (N) or an impulse (N s), a torque (N m) or an angular
 // impulse (N m s). They change its speed, or its spin, by OB_ACCELERATION_MOST in a second, or at once.
