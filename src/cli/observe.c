@@ -130,7 +130,8 @@ static bool measure_penetration(ob_observer *o, const ob_snapshot *s, const ob_h
 	return true;
 }
 
-void ob_warn_of_overlap(const ob_penetration *now, const ob_snapshot *s, const ob_host *host)
+// Warns of the two objects that begin deepest inside each other, if by more than what contacts explain.
+static void warn_of_overlap(const ob_penetration *now, const ob_snapshot *s, const ob_host *host)
 {
 	static const double much = 10; // tolerances
 	const double tolerance = ob_universe_settings(ob_host_universe(host))->tolerance;
@@ -140,6 +141,16 @@ void ob_warn_of_overlap(const ob_penetration *now, const ob_snapshot *s, const o
 			    ") begin %s inside each other: move them apart",
 			    s->passport[now->worst_a].name, now->worst_a, s->passport[now->worst_b].name, now->worst_b,
 			    ob_quantity_text(&depth, now->max_m, "m"));
+}
+
+void ob_warn_of_overlap(ob_host *h)
+{
+	ob_snapshot s = { 0 };
+	ob_penetration now;
+	if (ob_snapshot_take(&s, ob_host_universe(h), false, NULL) &&
+	    ob_measure_penetration_unless(&s, &now, is_interrupted, h, NULL))
+		warn_of_overlap(&now, &s, h);
+	ob_snapshot_finish(&s);
 }
 
 bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *host, ob_error *e)
@@ -159,7 +170,7 @@ bool ob_observer_measure(ob_observer *o, const ob_snapshot *s, const ob_host *ho
 	if (!measure_penetration(o, s, host, e))
 		return false;
 	if (begins)
-		ob_warn_of_overlap(&o->now, s, host);
+		warn_of_overlap(&o->now, s, host);
 	if (o->now.max_m > o->worst) {
 		o->worst = o->now.max_m;
 		o->worst_time = s->time;

@@ -26,8 +26,9 @@ typedef struct ob_observer {
 	const char *series_path;
 } ob_observer;
 
-// Logs a warning of the two objects that begin deepest inside each other, if by more than what contacts explain.
-void ob_warn_of_overlap(const ob_penetration *now, const ob_snapshot *s, const ob_host *host);
+// Logs a warning if objects of the universe, which has not begun, are inside each other by more than what contacts
+// explain. An observer does so by itself.
+void ob_warn_of_overlap(ob_host *h);
 // path: the CSV file, which outlives the observer; NULL = none
 bool ob_observer_open(ob_observer *o, const ob_scene *scene, const char *path, ob_error *e);
 // For a checkpoint at the step of the last snapshot. A run that resumes there measures it again.

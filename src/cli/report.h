@@ -35,8 +35,8 @@ typedef struct ob_report {
 	double wall_s, cpu_s, total_s;
 	double body_step_cpu_us;
 	double startup_s, step_p50_s, step_p90_s, step_p99_s, step_max_s;
-	double critical_s, critical_16_s, work_s, held_s, gate_s, gate_cpu_s, idle_s,
-		elapsed_s; // of all workers; NaN unless timed
+	// sums over all workers; NaN unless timed
+	double critical_s, critical_16_s, work_s, held_s, gate_s, gate_cpu_s, idle_s, elapsed_s;
 	double host_cpu_s, renderer_cpu_s;
 	char fault_kinds[160]; // "kill 3, exit 1": injected faults by kind; "" = none
 	uint64_t faults; // of all kinds

@@ -392,8 +392,7 @@ static bool read_fault(ob_run_request *r, const char *text, ob_error *e)
 	const uint32_t anywhere = 1u << OB_FAULT_SLOW | 1u << OB_FAULT_NOSPACE | 1u << OB_FAULT_NOPAGES;
 	if (f.kinds & ~anywhere && r->isolation != OB_ISOLATION_PROCESS)
 		return ob_fail(e, "--fault: only slow, nospace and nopages can happen to a thread; give the simulators "
-				  "processes of their "
-				  "own: --isolation process");
+				  "processes of their own: --isolation process");
 	if (f.kinds & 1u << OB_FAULT_NOSPACE && !r->checkpoint)
 		return ob_fail(e, "--fault nospace is for --checkpoint");
 	r->fault = f;

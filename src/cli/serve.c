@@ -14,7 +14,6 @@
 #include "cli/request.h"
 #include "cli/rerun.h"
 #include "cli/version.h"
-#include "measure/measure.h"
 #include "serve/film.h"
 
 static const double patience = .05; // s, in which requests are taken while no step is due
@@ -80,28 +79,12 @@ static bool live(ob_host *h, ob_pace *pace, const serve_request *s, uint64_t las
 	return ob_host_interrupted(h);
 }
 
-static bool is_interrupted(void *host)
-{
-	return ob_host_interrupted(host);
-}
-
-// Before the first step
-static void measure_start(ob_host *h)
-{
-	ob_snapshot s = { 0 };
-	ob_penetration now;
-	if (ob_snapshot_take(&s, ob_host_universe(h), false, NULL) &&
-	    ob_measure_penetration_unless(&s, &now, is_interrupted, h, NULL))
-		ob_warn_of_overlap(&now, &s, h);
-	ob_snapshot_finish(&s);
-}
-
 static int carry_out(ob_host *h, const serve_request *q, uint64_t last)
 {
 	ob_error e;
 	ob_pace pace;
 	bool ended = false;
-	measure_start(h);
+	ob_warn_of_overlap(h);
 	ob_pace_begin(&pace, q->run.pace, q->paused);
 	ob_server *server = ob_server_start(&q->server, h, &pace, &e);
 	if (server) {

@@ -14,12 +14,6 @@ static const char *const kinds[OB_DO_KINDS] = {
 	[OB_DO_RESUME] = "resume",     [OB_DO_STEP] = "step",       [OB_DO_RATE] = "rate",
 	[OB_DO_CONTACTS] = "contacts", [OB_DO_INSPECT] = "inspect",
 };
-static const char *const shapes[] = {
-	[OB_SHAPE_SPHERE] = "sphere",
-	[OB_SHAPE_BOX] = "box",
-	[OB_SHAPE_CAPSULE] = "capsule",
-	[OB_SHAPE_CYLINDER] = "cylinder",
-};
 
 enum {
 	DO,
@@ -192,9 +186,20 @@ static bool needs(reading *r, unsigned needed, unsigned allowed)
 	return true;
 }
 
+// Returns the shape of this name that viewers may create; OB_SHAPE_NONE: there is none.
+static ob_shape find_shape(const char *word)
+{
+	static const ob_shape offered[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
+	for (size_t i = 0; i < sizeof offered / sizeof *offered; i++) {
+		if (strcmp(ob_shape_name(offered[i]), word) == 0)
+			return offered[i];
+	}
+	return OB_SHAPE_NONE;
+}
+
 static bool make_object(reading *r, ob_object_def *def)
 {
-	int shape = find_word(r->word[SHAPE], shapes, sizeof shapes / sizeof *shapes);
+	const ob_shape shape = find_shape(r->word[SHAPE]);
 	const double *q = r->value[ATTITUDE], *c = r->value[COLOUR];
 	if (!shape)
 		return fail(r, "expected box, sphere, capsule or cylinder", "shape") == 0;
@@ -225,7 +230,8 @@ static bool make_object(reading *r, ob_object_def *def)
 			return fail(r, "expected text without control characters", "name") == 0;
 		s += bytes;
 	}
-	snprintf(def->passport.name, sizeof def->passport.name, "%s", *r->word[NAME] ? r->word[NAME] : shapes[shape]);
+	snprintf(def->passport.name, sizeof def->passport.name, "%s",
+		 *r->word[NAME] ? r->word[NAME] : ob_shape_name((ob_shape)def->passport.shape));
 	return ob_object_def_check(def, r->e);
 }
 
