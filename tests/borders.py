@@ -39,7 +39,7 @@ ARROWS = {
     'experiment': 'plot reference ranks base',
     'compare': 'experiment plot reference settings base',
     'world': 'hull motion elementary base',
-    'engine': 'world sim solver ode table settings measure motion base',
+    'engine': 'world sim ode table settings measure motion base',
     'lab': 'reference engine world plot experiment settings measure motion base',
     'render': 'measure mesh scene motion base',
     'record': 'measure mesh scene table settings motion base',

@@ -1,5 +1,5 @@
-// What each worker says of itself: its identity, what it is working on, its counters, faults injected into it. A contained
-// simulator writes into its outbox what others keep in its cell.
+// Reports of each worker: its identity, the object it is working on, its counters, faults injected into it. A contained
+// simulator writes them into its outbox, others into their cells.
 #include <string.h>
 
 #include "table/layout.h"

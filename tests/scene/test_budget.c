@@ -258,7 +258,7 @@ static void check_same_count(void)
 	}
 }
 
-// What the machine does in one instruction counts: each of these is more than a million.
+// Work of the machine within one instruction counts: each of these is more than a million.
 static void check_machine(void)
 {
 	static const char *const texts[] = {
