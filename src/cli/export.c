@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "cli/command.h"
+#include "cli/request.h"
 #include "serve/film.h"
 #include "serve/film_page.h"
 
@@ -20,10 +21,12 @@ static bool check_operands(const ob_arguments *a, ob_error *e)
 }
 
 // Makes the whole page in memory; NULL and e.
-static ob_message *make_page(const char *path, ob_error *e)
+static ob_message *make_page(const ob_arguments *a, ob_error *e)
 {
-	ob_recording *r = ob_recording_open(path, e);
-	ob_message *film = r ? ob_film_make(r, path, e) : NULL;
+	const char *path = a->operand;
+	double seconds = OB_FILM_SECONDS;
+	ob_recording *r = ob_request_read_patience(a, &seconds, e) ? ob_recording_open(path, e) : NULL;
+	ob_message *film = r ? ob_film_make(r, path, seconds, e) : NULL;
 	ob_message *page = film ? ob_film_page_whole(film) : NULL;
 	if (film && !page)
 		ob_fail(e, "%s: no memory to make a page of it", path);
@@ -46,7 +49,7 @@ static bool write_page(const ob_message *page, const char *path, ob_error *e)
 int ob_command_export(const ob_arguments *a)
 {
 	ob_error e;
-	ob_message *page = check_operands(a, &e) ? make_page(a->operands[0], &e) : NULL;
+	ob_message *page = check_operands(a, &e) ? make_page(a, &e) : NULL;
 	if (!page)
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	bool written = write_page(page, a->operands[1], &e);

@@ -35,6 +35,11 @@ static bool real(const ob_arguments *a, ob_option_id id, double most, double *ou
 	return ob_number_real(name_of(id), a->value[id], 0, most, out, e);
 }
 
+bool ob_request_read_patience(const ob_arguments *a, double *seconds, ob_error *e)
+{
+	return real(a, OB_OPTION_PATIENCE, 1e9, seconds, e);
+}
+
 // dirname() writes into its argument.
 static bool copy_path(char copy[PATH_MAX], const char *option, const char *path, ob_error *e)
 {
@@ -468,7 +473,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	r->scene_options.has_seed = a->value[OB_OPTION_SEED] != NULL;
 	if (r->measure != OB_MEASURE_STEPS && r->series)
 		return ob_fail(e, "--series has a line for each step: it needs --measure step");
-	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && real(a, OB_OPTION_PATIENCE, 1e9, &r->patience, e) &&
+	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && ob_request_read_patience(a, &r->patience, e) &&
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
 	       read_pace(r, a, e) && read_settings(r, a, e) && read_workers(r, a, e) && read_harden(r, a, e) &&
 	       read_deaths(r, a, e) && (!r->record || ob_record_check(e)) && check_name(r->name, e) &&

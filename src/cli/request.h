@@ -54,9 +54,11 @@ typedef struct ob_run_request {
 // The strings stay those of a.
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
 
+// Seconds given by --patience; unchanged without it.
+bool ob_request_read_patience(const ob_arguments *a, double *seconds, ob_error *e);
+
 // Fills duration and settings from the scene where the command line leaves them open. false and e when the result
 // cannot be run.
-// false and e when the result cannot be run.
 bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e);
 
 // The same for a run that resumes from a checkpoint and keeps its settings; s is the scene of saved, which must outlive

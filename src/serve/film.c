@@ -7,11 +7,12 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "base/clock.h"
 #include "serve/facts.h"
 #include "serve/feed.h"
 
 enum { ANEW_AT_LEAST = 1 << 16, ANEW_AFTER = 4 }; // bytes; times the size of a whole state
-static const size_t bytes_max = 1u << 30; // limit of a browser's memory
+static const size_t bytes_max = 256u << 20; // of messages: a page needs three times as much while it is made
 
 // ---- a recording as a source: "of" is the recording
 
@@ -92,6 +93,7 @@ typedef struct film {
 	uint32_t ids;
 	size_t since; // bytes since the last whole state
 	size_t whole; // bytes of that state
+	double seconds, until; // CPU time that it may take; of the process, when it has
 } film;
 
 static void put(ob_message *to, const ob_message *m)
@@ -159,6 +161,15 @@ static bool tell_state(film *f)
 	return true;
 }
 
+static bool has_time(const film *f, const char *path, ob_error *e)
+{
+	return ob_clock_process_cpu() < f->until || ob_fail(e,
+							    "%s: it takes more than %g s of CPU to show it in a "
+							    "browser: --patience %g allows more, or record "
+							    "fewer steps or objects",
+							    path, f->seconds, 4 * f->seconds);
+}
+
 static bool tell_all(film *f, const char *path, ob_error *e)
 {
 	uint64_t population = UINT64_MAX;
@@ -168,7 +179,9 @@ static bool tell_all(film *f, const char *path, ob_error *e)
 		population = ob_recording_population(f->recording);
 		if ((changed && !note_population(f)) || !tell_state(f) || f->told->failed)
 			return ob_fail(e, "%s: no memory to show it", path);
-		if (f->told->size > bytes_max)
+		if (!has_time(f, path, e))
+			return false;
+		if (f->told->size + 2 * (f->objects->size + f->events->size) > bytes_max)
 			return ob_fail(e,
 				       "%s: it is too long to be shown in a browser, which would need more than %zu "
 				       "MiB for it; record fewer steps, or fewer objects",
@@ -227,7 +240,7 @@ static bool put_head(const film *f, ob_message *out)
 	return ok;
 }
 
-// Compresses some bytes with deflate, and adds the result to out.
+// Compresses some bytes with deflate, and adds the result to out. false: no memory.
 static bool deflate_some(z_stream *z, const unsigned char *bytes, size_t size, bool last, ob_message *out)
 {
 	unsigned char buffer[1 << 15];
@@ -247,25 +260,33 @@ static bool deflate_some(z_stream *z, const unsigned char *bytes, size_t size, b
 	return !out->failed;
 }
 
-static ob_message *pack(const film *f)
+// NULL and e: no memory, or no time.
+static ob_message *pack(const film *f, const char *path, ob_error *e)
 {
-	enum { GZIP = 16 };
+	enum { GZIP = 16, PIECE = 4 << 20 };
 	z_stream z = { .zalloc = NULL };
 	ob_message *head = ob_message_new(false), *out = ob_message_new(false);
 	bool begun = head && out && put_head(f, head) &&
 		     deflateInit2(&z, 6, Z_DEFLATED, MAX_WBITS + GZIP, 8, Z_DEFAULT_STRATEGY) == Z_OK;
-	bool ok = begun && deflate_some(&z, head->bytes, head->size, false, out) &&
-		  deflate_some(&z, f->told->bytes, f->told->size, true, out);
+	bool ok = begun && deflate_some(&z, head->bytes, head->size, false, out), in_time = true;
+	for (size_t at = 0, n; ok && at < f->told->size && (in_time = has_time(f, path, e)); at += n) {
+		const size_t left = f->told->size - at;
+		n = left < PIECE ? left : PIECE;
+		ok = deflate_some(&z, f->told->bytes + at, n, n == left, out);
+	}
 	if (begun)
 		deflateEnd(&z);
 	ob_message_release(head);
+	ok = ok && in_time;
+	if (!ok && in_time)
+		ob_fail(e, "%s: no memory to show it", path);
 	if (ok)
 		return out;
 	ob_message_release(out);
 	return NULL;
 }
 
-ob_message *ob_film_make(ob_recording *r, const char *path, ob_error *e)
+ob_message *ob_film_make(ob_recording *r, const char *path, double seconds, ob_error *e)
 {
 	const ob_feed_source source = { .of = r,
 					.number = recorded_number,
@@ -277,13 +298,17 @@ ob_message *ob_film_make(ob_recording *r, const char *path, ob_error *e)
 					.time = recorded_time,
 					.step_length = ob_recording_get_info(r)->scene.run.step_length };
 	film f = { .recording = r,
+		   .seconds = seconds,
+		   .until = ob_clock_process_cpu() + seconds,
 		   .feed = ob_feed_create_of(&source),
 		   .told = ob_message_new(false),
 		   .objects = ob_message_new(true),
 		   .events = ob_message_new(true) };
 	ob_message *out = NULL;
-	if (!f.feed || !f.told || !f.objects || !f.events || (tell_all(&f, path, e) && !(out = pack(&f))))
+	if (!f.feed || !f.told || !f.objects || !f.events)
 		ob_fail(e, "%s: no memory to show it", path);
+	else if (tell_all(&f, path, e))
+		out = pack(&f, path, e);
 	ob_feed_destroy(f.feed);
 	ob_message_release(f.told);
 	ob_message_release(f.objects);

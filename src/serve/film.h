@@ -17,8 +17,11 @@
 #include "record/recording.h"
 #include "serve/message.h"
 
-// Makes the film of a recording that has just been opened; path is for errors. NULL and e: unreadable, or out of
-// memory.
-ob_message *ob_film_make(ob_recording *r, const char *path, ob_error *e);
+// CPU time (s) in which a page is made, unless more is allowed: a record from outside may have millions of states.
+#define OB_FILM_SECONDS 10.
+
+// Makes the film of a recording that has just been opened, in some seconds of this process's CPU time; path is for
+// errors. NULL and e: unreadable, too long for that time or for a browser, or out of memory.
+ob_message *ob_film_make(ob_recording *r, const char *path, double seconds, ob_error *e);
 
 #endif

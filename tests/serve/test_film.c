@@ -134,7 +134,7 @@ static void test_film(void)
 	ob_error e = { "" };
 	size_t size = 0;
 	ob_recording *r = ob_recording_open(path, &e);
-	ob_message *film = r ? ob_film_make(r, path, &e) : NULL;
+	ob_message *film = r ? ob_film_make(r, path, OB_FILM_SECONDS, &e) : NULL;
 	CHECK(film);
 	if (film) {
 		unsigned char *bytes = unpack(film, &size);
@@ -155,11 +155,21 @@ static void test_film(void)
 	ob_recording_close(r);
 }
 
+static void test_out_of_time(void)
+{
+	ob_error e = { "" };
+	ob_recording *r = ob_recording_open(path, &e);
+	CHECK(r && !ob_film_make(r, path, 1e-6, &e));
+	CHECK(has((unsigned char *)e.text, strlen(e.text), "takes more than 1e-06 s of CPU"));
+	ob_recording_close(r);
+}
+
 int main(void)
 {
 	snprintf(path, sizeof path, "/tmp/obsim-test-film-%d.h5", (int)getpid());
 	record();
 	test_film();
+	test_out_of_time();
 	unlink(path);
 	return check_end();
 }

@@ -62,6 +62,7 @@ complete -c obsim -n $serve -l log-requests -r -F -d 'what viewers ask for, and 
 complete -c obsim -n $serve -l room -x -d 'objects that viewers may add'
 complete -c obsim -n $serve -l replay -r -F -d 'show what was recorded'
 complete -c obsim -n '__fish_seen_subcommand_from export' -F
+complete -c obsim -n '__fish_seen_subcommand_from export' -l patience -x -d 'seconds of CPU for the page'
 
 set -l run '__fish_seen_subcommand_from run'
 complete -c obsim -n '__fish_seen_subcommand_from run compare' -l json -r -F -d 'the report as JSON'
