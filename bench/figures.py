@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures obsim's published figures once, and writes them into the documents: figures.py measure OBSIM | write | check
 
-measure   runs all experiments on an otherwise idle machine (half an hour) and stores the results, with commit and machine, in
+measure   runs all experiments on an otherwise idle machine (a quarter of an hour) and stores the results, with commit and machine, in
           docs/notebook/data/figures.json
 write     renders tables, sentences and diagrams from that file into the documents, between <!-- figures: NAME --> and
           <!-- end -->, and into docs/images (draw_plot of a build with tests: build*/tools/draw_plot, or --draw PROGRAM)
