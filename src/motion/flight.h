@@ -26,7 +26,7 @@ typedef struct ob_flier {
 	ob_quat q; // attitude at s = 0; constant if spin is NULL
 	ob_vec3 w; // rad/s, world, at s = 0
 	ob_spin *spin;
-	const ob_hull *hull; // OB_SHAPE_HULL
+	const ob_hull *hull; // NULL unless the shape needs one
 } ob_flier;
 
 typedef struct ob_half_space {

@@ -5,12 +5,13 @@
 
 #include "elementary/lanes.h"
 #include "motion/landing_lanes.h"
+#include "shape/shape.h"
 
 static const double near = 1e-11; // relative to the shape's radius: a falling point below this height lands
 static const int most_advances = 200; // a grazing corner takes many; after so many it counts as landing
 
 // Outline: points around the centre, grown by a radius. A box has its corners, a capsule the ends of its axis. A
-// cylinder has the ends of its axis, with a rim about each.
+// cylinder has the ends of its axis, with a rim about each. Of a hull the points are its corners.
 typedef struct outline {
 	ob_vec3 half; // m, half extents of the box of the points
 	double radius; // m, of each
@@ -21,19 +22,12 @@ typedef struct outline {
 
 static bool outline_of(const ob_flier *f, outline *h)
 {
-	*h = (outline){ .half = f->size };
-	if (f->shape == OB_SHAPE_SPHERE)
-		*h = (outline){ .radius = f->size.x };
-	else if (f->shape == OB_SHAPE_CAPSULE)
-		*h = (outline){ .half = { 0, 0, f->size.y }, .radius = f->size.x };
-	else if (f->shape == OB_SHAPE_CYLINDER)
-		*h = (outline){ .half = { 0, 0, f->size.y }, .rim = f->size.x };
-	else if (f->shape == OB_SHAPE_HULL)
-		*h = (outline){ .corners = f->hull };
-	else if (f->shape != OB_SHAPE_BOX)
-		return false;
+	ob_outline of;
+	const bool summed = ob_shape_outline(f->shape, f->size, &of);
+	*h = (outline){ .half = of.half, .radius = of.ball, .rim = of.rim };
+	h->corners = ob_shape_is(f->shape, OB_HULLED) ? f->hull : NULL;
 	h->reach = h->corners ? h->corners->radius : ob_norm(ob_v3(h->half.x + h->rim, h->half.y, h->half.z));
-	return true;
+	return summed || h->corners;
 }
 
 static ob_vec3 component(ob_vec3 half, ob_vec3 n)
@@ -300,7 +294,7 @@ static bool search_begin(search *x, const ob_landing *of, double *time)
 	const ob_flier *f = of->flier;
 	*x = (search){ .f = f, .n = of->plane->normal, .until = of->until };
 	x->known = outline_of(f, &x->h);
-	x->radius = x->known ? ob_shape_radius(f->shape, f->size) : f->size.x;
+	x->radius = f->shape ? ob_shape_radius(f->shape, f->size) : f->size.x;
 	x->p = ob_dot(x->n, f->p) - of->plane->offset, x->v = ob_dot(x->n, f->v), x->a = ob_dot(x->n, f->a);
 	x->now.s = of->from;
 	if (x->known && x->h.reach == 0) {
@@ -361,7 +355,7 @@ static int advance_boxes(search *const *x, int n, double *t, bool *lands)
 {
 	ob_falling_box box[OB_LANES];
 	int boxes = 0;
-	while (boxes < n && boxes < OB_LANES && x[boxes]->f->shape == OB_SHAPE_BOX)
+	while (boxes < n && boxes < OB_LANES && ob_shape_is(x[boxes]->f->shape, OB_SIDED))
 		boxes++;
 	if (boxes < 2 || !__builtin_cpu_supports("avx2"))
 		return 0;

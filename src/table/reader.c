@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/utf8.h"
+#include "shape/shape.h"
 #include "table/layout.h"
 #include "table/pages.h"
 #include "table/segment.h"
@@ -160,7 +161,7 @@ static bool finite3(ob_vec3 v)
 
 bool ob_passport_makes_sense(const ob_passport *p, uint32_t id)
 {
-	return p->id == id && p->shape <= OB_SHAPE_HULL && finite3(p->size) && finite3(p->inertia) &&
+	return p->id == id && p->shape < OB_SHAPE_KINDS && finite3(p->size) && finite3(p->inertia) &&
 	       finite3(p->force) && isfinite(p->mass) && p->mass >= 0 && isfinite(p->friction) &&
 	       isfinite(p->restitution) && memchr(p->name, 0, sizeof p->name);
 }
@@ -171,7 +172,7 @@ bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *ou
 	if (is_lost(u) || id >= least(ob_universe_ids(u), u->header.sizes.capacity))
 		return false;
 	if (!ob_passport_read(u, id, &p) || !(p.flags & OB_OBJECT_PRESENT) || !ob_passport_makes_sense(&p, id) ||
-	    (p.shape == OB_SHAPE_HULL && p.hull >= u->header.sizes.hulls))
+	    (ob_shape_is(p.shape, OB_HULLED) && p.hull >= u->header.sizes.hulls))
 		return false;
 	*out = p; // never implausible data: a snapshot treats it as present
 	ob_utf8_make_plain(out->name); // so that no name can act as a terminal command

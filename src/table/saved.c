@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "shape/shape.h"
 #include "table/layout.h"
 #include "table/pages.h"
 
@@ -139,10 +140,10 @@ static bool principal_moments_make_sense(const ob_passport *p)
 
 static uint32_t kind_of(const ob_passport *p)
 {
-	return p->flags & OB_OBJECT_KINEMATIC   ? OB_SCHEDULE_KINEMATIC
-	       : !(p->flags & OB_OBJECT_STATIC) ? OB_SCHEDULE_AWAKE
-	       : p->shape == OB_SHAPE_PLANE     ? OB_SCHEDULE_PLANE
-						: OB_SCHEDULE_STATIC;
+	return p->flags & OB_OBJECT_KINEMATIC        ? OB_SCHEDULE_KINEMATIC
+	       : !(p->flags & OB_OBJECT_STATIC)      ? OB_SCHEDULE_AWAKE
+	       : ob_shape_is(p->shape, OB_UNBOUNDED) ? OB_SCHEDULE_PLANE
+						     : OB_SCHEDULE_STATIC;
 }
 
 static bool schedule_makes_sense(const ob_schedule *s, const ob_passport *p, uint64_t step)
@@ -166,7 +167,7 @@ static bool motion_of_run_makes_sense(const ob_motion *m, uint64_t step)
 static bool bounds_make_sense(const float *b, const ob_passport *p)
 {
 	for (int c = 0; c < 3; c++)
-		if (!(b[c] <= b[c + 3]) || (p->shape != OB_SHAPE_PLANE && !isfinite(b[c + 3] - b[c])))
+		if (!(b[c] <= b[c + 3]) || (!ob_shape_is(p->shape, OB_UNBOUNDED) && !isfinite(b[c + 3] - b[c])))
 			return false;
 	return true;
 }

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "shape/shape.h"
 #include "table/layout.h"
 #include "table/pages.h"
 
@@ -64,7 +65,7 @@ void ob_prefetch_slot(const ob_universe *u, uint32_t id)
 
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
 {
-	return p->shape == OB_SHAPE_HULL && p->hull < u->header.sizes.hulls ? u->hull + p->hull : NULL;
+	return ob_shape_is(p->shape, OB_HULLED) && p->hull < u->header.sizes.hulls ? u->hull + p->hull : NULL;
 }
 
 bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h)
