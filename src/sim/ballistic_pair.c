@@ -22,7 +22,7 @@ static ob_placed placed_of(ob_sim *s, const ob_course *c, ob_vec3 v)
 	const ob_passport *p = ob_passport_of(s->u, c->id);
 	const ob_state now = ob_course_state(s, c);
 	return (ob_placed){ .shape = p->shape,
-			    .size = p->shape == OB_SHAPE_SPHERE ? ob_v3(p->size.x, 0, 0) : p->size,
+			    .size = p->size,
 			    .p = now.pose.p,
 			    .r = ob_quat_matrix(now.pose.q),
 			    .v = v,

@@ -9,6 +9,7 @@
 
 #include "base/cpu.h"
 #include "motion/drift.h"
+#include "shape/shape.h"
 #include "sim/now.h"
 #include "sim/publish.h"
 #include "solver/relative_speed.h"
@@ -62,7 +63,7 @@ static uint64_t *occupied_word(const ob_step_data *data, uint32_t place)
 
 static bool is_plane(const ob_universe *u, uint32_t id)
 {
-	return ob_passport_of(u, id)->shape == OB_SHAPE_PLANE;
+	return ob_shape_is(ob_passport_of(u, id)->shape, OB_UNBOUNDED);
 }
 
 // Returns the cell coordinate of x (m). per_metre: cells per metre, a power of two.

@@ -4,6 +4,7 @@
 #include "contact/impact.h"
 #include "contact/polytope.h"
 #include "motion/flight.h"
+#include "shape/shape.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
 #include "sim/now.h"
@@ -45,33 +46,30 @@ enum { SUPPORT_POINTS = 8 };
 // their number.
 static int support_points(const ob_passport *body, ob_vec3 n, const ob_mat3 *r, ob_vec3 *arm)
 {
-	switch (body->shape) {
-	case OB_SHAPE_SPHERE:
-		arm[0] = ob_scale(n, -body->size.x);
-		return 1;
-	case OB_SHAPE_BOX:
-		for (int k = 0; k < 8; k++)
-			arm[k] = ob_rotate(r, ob_v3(k & 1 ? body->size.x : -body->size.x,
-						    k & 2 ? body->size.y : -body->size.y,
-						    k & 4 ? body->size.z : -body->size.z));
-		return 8;
-	case OB_SHAPE_CAPSULE:
-		for (int k = 0; k < 2; k++)
-			arm[k] = ob_madd(ob_scale(n, -body->size.x), k ? body->size.y : -body->size.y, ob_column(r, 2));
-		return 2;
-	case OB_SHAPE_CYLINDER: {
-		const ob_placed cylinder = { .shape = body->shape, .size = body->size, .r = *r };
-		const ob_placed plane = { .shape = OB_SHAPE_PLANE };
-		ob_vec3 rim[4];
-		ob_rim_directions(&cylinder, &plane, ob_scale(n, -1), rim);
-		for (int k = 0; k < 8; k++)
-			arm[k] = ob_madd(ob_scale(rim[k & 3], body->size.x), k & 4 ? body->size.y : -body->size.y,
-					 ob_column(r, 2));
-		return 8;
-	}
-	default:
+	const ob_vec3 z = ob_column(r, 2);
+	ob_outline o;
+	if (!ob_shape_outline(body->shape, body->size, &o))
 		return 0;
+	if (ob_shape_is(body->shape, OB_ISOTROPIC)) {
+		arm[0] = ob_scale(n, -o.ball);
+		return 1;
 	}
+	if (ob_shape_is(body->shape, OB_CORNERED)) {
+		for (uint32_t k = 0; k < 8; k++)
+			arm[k] = ob_rotate(r, ob_box_corner(o.half, k));
+		return 8;
+	}
+	if (!(o.rim > 0)) {
+		for (int k = 0; k < 2; k++)
+			arm[k] = ob_madd(ob_scale(n, -o.ball), k ? o.half.z : -o.half.z, z);
+		return 2;
+	}
+	const ob_placed cylinder = { .shape = body->shape, .size = body->size, .r = *r }, plane = { 0 };
+	ob_vec3 rim[4];
+	ob_rim_directions(&cylinder, &plane, ob_scale(n, -1), rim);
+	for (int k = 0; k < 8; k++)
+		arm[k] = ob_madd(ob_scale(rim[k & 3], o.rim), k & 4 ? o.half.z : -o.half.z, z);
+	return 8;
 }
 
 // Finds the points of a hull on the plane: at most four, however many there are.
@@ -81,13 +79,10 @@ static uint32_t corners_on_plane(ob_units unit, const ob_hull *hull, const ob_ha
 	const double margin = OB_IMPACT_SIMULTANEOUS * unit.length;
 	const ob_vec3 n = ground->normal, z = fabs(n.x) < .6 ? ob_v3(1, 0, 0) : ob_v3(0, 1, 0);
 	const ob_vec3 u = ob_scale(ob_cross(z, n), 1 / ob_norm(ob_cross(z, n))), w = ob_cross(n, u);
-	const ob_placed body = { .shape = OB_SHAPE_HULL,
-				 .p = s->pose.p,
-				 .r = ob_quat_matrix(s->pose.q),
-				 .rest_depth = .5 * margin,
-				 .hull = hull };
-	const ob_placed plane = { .shape = OB_SHAPE_PLANE,
-				  .p = ob_scale(n, ground->offset),
+	const ob_placed body = {
+		.p = s->pose.p, .r = ob_quat_matrix(s->pose.q), .rest_depth = .5 * margin, .hull = hull
+	};
+	const ob_placed plane = { .p = ob_scale(n, ground->offset),
 				  .r = { { { u.x, w.x, n.x }, { u.y, w.y, n.y }, { u.z, w.z, n.z } } } };
 	ob_manifold m = { .points = 0 };
 	ob_manifold_hull_plane(&body, &plane, margin, &m);
@@ -344,7 +339,7 @@ static void take_rotation(ob_sim *s, ob_course *c)
 {
 	const ob_passport *body = ob_passport_of(s->u, c->id);
 	const ob_motion *m = &c->m;
-	c->spin = body->shape != OB_SHAPE_SPHERE && ob_norm2(m->w) > 0 ? &c->own : NULL;
+	c->spin = !ob_shape_is(body->shape, OB_ISOTROPIC) && ob_norm2(m->w) > 0 ? &c->own : NULL;
 	if (c->spin && !ob_rotation_cache_find(&s->rotations, c->id, m->q, m->w, body->inertia, c->spin))
 		ob_spin_plan(c->spin, m->q, m->w, body->inertia);
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/sanitizer.h"
+#include "shape/shape.h"
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
 #include "sim/pairs.h"
@@ -56,11 +57,11 @@ static bool is_there(const check *c, uint32_t id)
 
 static uint32_t kind_of(const ob_passport *p)
 {
-	return !(p->flags & OB_OBJECT_PRESENT)  ? OB_SCHEDULE_ABSENT
-	       : p->flags & OB_OBJECT_KINEMATIC ? OB_SCHEDULE_KINEMATIC
-	       : !(p->flags & OB_OBJECT_STATIC) ? OB_SCHEDULE_AWAKE
-	       : p->shape == OB_SHAPE_PLANE     ? OB_SCHEDULE_PLANE
-						: OB_SCHEDULE_STATIC;
+	return !(p->flags & OB_OBJECT_PRESENT)       ? OB_SCHEDULE_ABSENT
+	       : p->flags & OB_OBJECT_KINEMATIC      ? OB_SCHEDULE_KINEMATIC
+	       : !(p->flags & OB_OBJECT_STATIC)      ? OB_SCHEDULE_AWAKE
+	       : ob_shape_is(p->shape, OB_UNBOUNDED) ? OB_SCHEDULE_PLANE
+						     : OB_SCHEDULE_STATIC;
 }
 
 static bool check_object(const check *c, uint32_t id)

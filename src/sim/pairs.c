@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "shape/shape.h"
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
 #include "sim/now.h"
@@ -181,9 +182,9 @@ static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64
 	bool aabbs = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // boxes reach beyond the bounding sphere
 	double ra = ob_shape_radius(pa->shape, pa->size), rb = ob_shape_radius(pb->shape, pb->size);
 	ob_vec3 centre_a = ob_centre_now(u, a, ma, steps), centre_b = ob_centre_now(u, b, mb, steps);
-	if (pa->shape == OB_SHAPE_PLANE)
+	if (ob_shape_is(pa->shape, OB_UNBOUNDED))
 		return plane_distance(u, a, centre_b, (aabbs ? sqrt(3) : 1) * rb);
-	if (pb->shape == OB_SHAPE_PLANE)
+	if (ob_shape_is(pb->shape, OB_UNBOUNDED))
 		return plane_distance(u, b, centre_a, (aabbs ? sqrt(3) : 1) * ra);
 	double spheres = ob_norm(ob_sub(centre_a, centre_b)) - ra - rb;
 	if (spheres > ob_max(ra, rb) && !aabbs) // boxes would not add much, and cost more

@@ -3,6 +3,7 @@
 
 #include "contact/batch.h"
 #include "motion/flight.h"
+#include "shape/shape.h"
 #include "sim/broadphase.h"
 #include "sim/calendar.h"
 #include "sim/now.h"
@@ -54,10 +55,10 @@ void ob_sim_place(ob_universe *u, uint32_t id, const ob_state *state)
 		m.a = ob_external_acceleration(run, p), m.flags = OB_MOTION_FREE;
 	double reach = fixed ? 0 : ob_step_reach(run, p, m.q, m.v, m.w);
 	ob_fat_aabb_renew(u, id, &(ob_state){ { m.p, m.q }, m.v, m.w }, reach);
-	uint32_t kind = !prescribed                  ? OB_SCHEDULE_AWAKE
-			: !fixed                     ? OB_SCHEDULE_KINEMATIC
-			: p->shape == OB_SHAPE_PLANE ? OB_SCHEDULE_PLANE
-						     : OB_SCHEDULE_STATIC;
+	uint32_t kind = !prescribed                           ? OB_SCHEDULE_AWAKE
+			: !fixed                              ? OB_SCHEDULE_KINEMATIC
+			: ob_shape_is(p->shape, OB_UNBOUNDED) ? OB_SCHEDULE_PLANE
+							      : OB_SCHEDULE_STATIC;
 	data->schedule[id] = (ob_schedule){ 0, (float)reach, kind, m.step, prescribed ? UINT32_MAX : m.step };
 	data->result_island[id] = UINT32_MAX;
 	note_change(u, id);
@@ -78,7 +79,7 @@ static double prescribed_speed(const ob_passport *p, const ob_motion *m, double 
 		speed = sqrt(ob_norm2(m->v) + ob_norm2(m->a) / (m->frequency * m->frequency));
 	else if (ob_norm2(m->a) > 0)
 		speed = ob_max(speed, ob_norm(ob_velocity_at(m, m->valid_until)));
-	return speed + (p->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(m->w) * ob_shape_radius(p->shape, p->size));
+	return speed + (ob_shape_is(p->shape, OB_ISOTROPIC) ? 0 : ob_norm(m->w) * ob_shape_radius(p->shape, p->size));
 }
 
 // Makes the fat AABB hold the object for so long (s) from now on; infinity: for good.

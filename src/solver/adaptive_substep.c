@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/contacts.h"
 #include "solver/midpoint.h"
@@ -23,7 +24,7 @@ static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	double turn = ob_contact_turn_rate(w, rows, contact);
 	double slide = ob_norm(ob_contact_velocity(w, rows, contact));
-	if (a->shape == OB_SHAPE_PLANE || b->shape == OB_SHAPE_PLANE)
+	if (ob_shape_is(a->shape, OB_UNBOUNDED) || ob_shape_is(b->shape, OB_UNBOUNDED))
 		slide = 0;
 	double thin = ob_min(a->thickness, b->thickness), distance = (slide + .5 * thin * turn) * w->substep;
 	const double share = ob_max(fast_share, ob_min(1, thin / distance)), allowed = w->tolerance / thin;

@@ -6,6 +6,7 @@
 #include "base/allocate.h"
 #include "elementary/elementary.h"
 #include "motion/drift.h"
+#include "shape/shape.h"
 #include "solver/equilibrium.h"
 #include "solver/ghost.h"
 #include "solver/narrowphase.h"
@@ -32,9 +33,9 @@ static void set_speed_bound(ob_island_work *w, uint32_t row)
 	const ob_vec3 rate = ob_rotate_back(&body->r, ob_row_angular(w->v[row]));
 	body->turning = ob_turning_speed(body->shape, body->size, body->inertia, rate, w->h);
 	body->speed = ob_norm(ob_row_linear(w->v[row])) + body->turning;
-	if (ob_has_axis(body->shape))
+	if (ob_shape_is(body->shape, OB_AXIAL))
 		body->speed += body->radius * fabs(rate.z);
-	else if (body->shape == OB_SHAPE_SPHERE)
+	else if (ob_shape_is(body->shape, OB_ISOTROPIC))
 		body->speed += body->radius * ob_norm(rate);
 }
 

@@ -2,13 +2,16 @@
 
 #include <string.h>
 
+#include "shape/shape.h"
+
 // Returns the distance of the centres relative to the sum of the bodies' radii. For a plane: the other body's height
 // relative to its radius, times .1, so that bodies on the ground come first.
 static float relative_distance(const ob_body *a, const ob_body *b)
 {
-	const ob_body *plane = a->shape == OB_SHAPE_PLANE ? a : b, *other = a->shape == OB_SHAPE_PLANE ? b : a;
+	const bool first = ob_shape_is(a->shape, OB_UNBOUNDED);
+	const ob_body *plane = first ? a : b, *other = first ? b : a;
 	ob_vec3 between = ob_sub(other->p, plane->p);
-	if (plane->shape == OB_SHAPE_PLANE)
+	if (ob_shape_is(plane->shape, OB_UNBOUNDED))
 		return (float)ob_max(0, .1 * ob_dot(between, ob_column(&plane->r, 2)) / other->radius);
 	return (float)(ob_norm(between) / (a->radius + b->radius));
 }

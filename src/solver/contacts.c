@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/contact_order.h"
 #include "solver/ghost.h"
@@ -69,7 +70,7 @@ static ob_batch_kind kind_of(const ob_solver *s, const ob_contact *contact)
 	const ob_island_work *w = &s->island;
 	bool aabb = s->settings->narrow_phase == OB_NARROW_AABB; // the box of a sphere has four points
 	ob_shape a = w->body[contact->a].shape, b = w->body[contact->b].shape;
-	bool point = a == OB_SHAPE_SPHERE || b == OB_SHAPE_SPHERE;
+	bool point = ob_shape_is(a, OB_ISOTROPIC) || ob_shape_is(b, OB_ISOTROPIC);
 	return (point && !aabb ? OB_KIND_POINT : OB_KIND_FULL) |
 	       (contact->mu > 0 ? OB_KIND_FULL : OB_KIND_FRICTIONLESS);
 }
@@ -185,7 +186,7 @@ static int only_loaded(const saved_impulses *old)
 static bool on_same_rim(const ob_body *body, ob_vec3 arm, ob_vec3 moved)
 {
 	const ob_vec3 axis = ob_column(&body->r, 2);
-	return body->shape == OB_SHAPE_CYLINDER && ob_dot(axis, arm) * ob_dot(axis, ob_sub(arm, moved)) > 0 &&
+	return ob_shape_is(body->shape, OB_RIMMED) && ob_dot(axis, arm) * ob_dot(axis, ob_sub(arm, moved)) > 0 &&
 	       ob_norm(moved) < same_rim * body->size.x;
 }
 
@@ -234,10 +235,10 @@ static unsigned match_nearest(ob_contact *contact, const saved_impulses *old, do
 static void match_points(const ob_island_work *w, ob_contact *contact, const saved_impulses *old)
 {
 	const ob_body *ma = &w->body[contact->a], *mb = &w->body[contact->b];
-	const bool sphere = ma->shape == OB_SHAPE_SPHERE || mb->shape == OB_SHAPE_SPHERE;
+	const bool sphere = ob_shape_is(ma->shape, OB_ISOTROPIC) || ob_shape_is(mb->shape, OB_ISOTROPIC);
 	const double near = same_place * ob_min(ma->thickness, mb->thickness);
 	const unsigned taken = match_nearest(contact, old, sphere ? INFINITY : near * near);
-	if (contact->was[0] >= 0 || (ma->shape != OB_SHAPE_CYLINDER && mb->shape != OB_SHAPE_CYLINDER))
+	if (contact->was[0] >= 0 || !(ob_shape_is(ma->shape, OB_RIMMED) || ob_shape_is(mb->shape, OB_RIMMED)))
 		return;
 	const int k = only_loaded(old);
 	if (k < 0 || taken >> k & 1)
@@ -292,9 +293,9 @@ static void order_points(const ob_island_work *w, ob_contact *contact, double *g
 {
 	double far[OB_PAIR_POINTS];
 	const ob_shape sa = w->body[contact->a].shape, sb = w->body[contact->b].shape;
-	const double of_a = sa == OB_SHAPE_PLANE && contact->mu == 0 ? 0 : 1,
-		     of_b = sb == OB_SHAPE_PLANE && contact->mu == 0 ? 0 : 1;
-	if (sa == OB_SHAPE_CYLINDER || sb == OB_SHAPE_CYLINDER)
+	const double of_a = ob_shape_is(sa, OB_UNBOUNDED) && contact->mu == 0 ? 0 : 1,
+		     of_b = ob_shape_is(sb, OB_UNBOUNDED) && contact->mu == 0 ? 0 : 1;
+	if (ob_shape_is(sa, OB_RIMMED) || ob_shape_is(sb, OB_RIMMED))
 		return;
 	for (uint32_t i = 0; i < contact->points; i++) {
 		const ob_vec3 a = contact->arm_a[i], b = contact->arm_b[i];

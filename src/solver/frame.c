@@ -1,5 +1,6 @@
 #include "solver/frame.h"
 
+#include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/narrowphase.h"
 #include "solver/relative_speed.h"
@@ -9,7 +10,7 @@ static const double same_share = 1e-9; // share of an acceleration: smaller diff
 
 static bool is_slippery(const ob_body *body)
 {
-	return body->shape == OB_SHAPE_PLANE && body->friction == 0;
+	return ob_shape_is(body->shape, OB_UNBOUNDED) && body->friction == 0;
 }
 
 // Returns the magnitude of a - b (m/s^2) as it acts on the body, whose acceleration is b. Its component along a plane

@@ -7,6 +7,7 @@
 #include "base/allocate.h"
 #include "elementary/elementary.h"
 #include "motion/drift.h"
+#include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/budget.h"
 #include "solver/contacts.h"
@@ -116,7 +117,7 @@ static double curvature(const ob_island_work *w, const ob_contact *contact)
 	for (int side = 0; side < 2; side++) {
 		const uint32_t row = side ? contact->b : contact->a;
 		const ob_body *body = &w->body[row];
-		if ((!(body->inv_mass > 0) && !body->surface) || body->shape == OB_SHAPE_SPHERE)
+		if ((!(body->inv_mass > 0) && !body->surface) || ob_shape_is(body->shape, OB_ISOTROPIC))
 			continue;
 		const double rate = ob_norm(ob_row_angular(w->v[row]));
 		turn += rate;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "motion/drift.h"
+#include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/contacts.h"
 #include "solver/ghost.h"
@@ -25,9 +26,10 @@ static double least_change(const ob_island_work *w, uint32_t held)
 
 // ---- contacts that take part
 
-static bool is_round(ob_shape s)
+// True if a round body is on one that ends.
+static bool rolls_on(const ob_body *round, const ob_body *on)
 {
-	return s != OB_SHAPE_BOX && s != OB_SHAPE_PLANE && s != OB_SHAPE_HULL;
+	return ob_shape_is(round->shape, OB_ROUND) && !ob_shape_is(on->shape, OB_UNBOUNDED);
 }
 
 // Bounds the change of a row by turning in half the partial substep (m/s). The rows of a sphere turn with its centre,
@@ -37,7 +39,7 @@ static double change_bound(const ob_island_work *w, const ob_contact *contact)
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	double speed = ob_contact_speed(w, contact);
 	double turn = ob_contact_turn_rate(w, w->v, contact);
-	if ((is_round(a->shape) && b->shape != OB_SHAPE_PLANE) || (is_round(b->shape) && a->shape != OB_SHAPE_PLANE))
+	if (rolls_on(a, b) || rolls_on(b, a))
 		turn += speed / ob_min(a->radius, b->radius);
 	return .5 * w->h * turn * speed;
 }

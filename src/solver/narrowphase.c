@@ -1,6 +1,7 @@
 #include "solver/narrowphase.h"
 
 #include "base/cpu.h"
+#include "shape/shape.h"
 #include "solver/budget.h"
 #include "solver/contact_solver.h"
 
@@ -10,25 +11,7 @@ static const double swept_gap = 1e-3; // m: a smaller gap counts as touching
 
 // ---- axis-aligned boxes of shapes
 
-// Returns half the width of the shape along the world's axis i (m).
-static double half_width(const ob_placed *x, int i)
-{
-	const double *m = x->r.m[i];
-	switch (x->shape) {
-	case OB_SHAPE_SPHERE:
-		return x->size.x;
-	case OB_SHAPE_BOX:
-		return fabs(m[0]) * x->size.x + fabs(m[1]) * x->size.y + fabs(m[2]) * x->size.z;
-	case OB_SHAPE_CAPSULE:
-		return x->size.x + fabs(m[2]) * x->size.y;
-	case OB_SHAPE_CYLINDER:
-		return x->size.x * sqrt(m[0] * m[0] + m[1] * m[1]) + fabs(m[2]) * x->size.y;
-	default:
-		return 0;
-	}
-}
-
-// Finds centre and half widths of the box; a hull's box is not about the hull's centre.
+// Finds centre and half widths of a hull's box, which is not about the hull's centre.
 static void find_extent(const ob_placed *x, ob_vec3 *middle, ob_vec3 *half)
 {
 	ob_vec3 low = { INFINITY, INFINITY, INFINITY }, high = { -INFINITY, -INFINITY, -INFINITY };
@@ -41,26 +24,27 @@ static void find_extent(const ob_placed *x, ob_vec3 *middle, ob_vec3 *half)
 	*half = ob_scale(ob_sub(high, low), .5);
 }
 
+// Half the width of the shape along the world's axis i (m).
+static double half_width(const ob_placed *x, int i)
+{
+	return ob_shape_extent(x->shape, x->size, ob_v3(x->r.m[i][0], x->r.m[i][1], x->r.m[i][2]));
+}
+
 static ob_placed box_around(const ob_placed *x)
 {
-	if (x->shape == OB_SHAPE_PLANE)
+	if (ob_shape_is(x->shape, OB_UNBOUNDED))
 		return *x;
-	if (x->shape == OB_SHAPE_HULL) {
-		ob_placed box = { .shape = OB_SHAPE_BOX,
-				  .r = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
-				  .v = x->v,
-				  .rest_depth = x->rest_depth,
-				  .far_future = x->far_future };
+	ob_placed box = { .shape = OB_SHAPE_BOX,
+			  .p = x->p,
+			  .r = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
+			  .v = x->v,
+			  .rest_depth = x->rest_depth,
+			  .far_future = x->far_future };
+	if (x->hull)
 		find_extent(x, &box.p, &box.size);
-		return box;
-	}
-	return (ob_placed){ .shape = OB_SHAPE_BOX,
-			    .size = ob_v3(half_width(x, 0), half_width(x, 1), half_width(x, 2)),
-			    .p = x->p,
-			    .r = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
-			    .v = x->v,
-			    .rest_depth = x->rest_depth,
-			    .far_future = x->far_future };
+	else
+		box.size = ob_v3(half_width(x, 0), half_width(x, 1), half_width(x, 2));
+	return box;
 }
 
 void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
@@ -74,12 +58,7 @@ void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_
 static uint64_t corners_of(const ob_placed *x)
 {
 	enum { OF_A_BOX = 8 };
-	return x->shape == OB_SHAPE_BOX ? OF_A_BOX : x->hull ? x->hull->corners : 0;
-}
-
-static bool is_round(const ob_placed *x)
-{
-	return x->shape == OB_SHAPE_CYLINDER || x->shape == OB_SHAPE_CAPSULE;
+	return ob_shape_is(x->shape, OB_SIDED) ? OF_A_BOX : x->hull ? x->hull->corners : 0;
 }
 
 // Returns the work of a test, with that of finding the points of a touching pair: a cylinder's rim is compared with all
@@ -93,9 +72,10 @@ static uint64_t work_of_test(const ob_placed *a, const ob_placed *b)
 static uint64_t work_of_points(const ob_placed *a, const ob_placed *b)
 {
 	enum { OF_A_CORNER = 100, OF_TWO_ROUND = 256 };
-	if (a->shape != OB_SHAPE_CYLINDER && b->shape != OB_SHAPE_CYLINDER)
+	if (!ob_shape_is(a->shape, OB_RIMMED) && !ob_shape_is(b->shape, OB_RIMMED))
 		return 0;
-	return is_round(a) && is_round(b) ? OF_TWO_ROUND : OF_A_CORNER * (corners_of(a) + corners_of(b));
+	const bool two = ob_shape_is(a->shape, OB_AXIAL) && ob_shape_is(b->shape, OB_AXIAL);
+	return two ? OF_TWO_ROUND : OF_A_CORNER * (corners_of(a) + corners_of(b));
 }
 
 // Runs a collision test. Once the budget is spent all shapes are far apart, so that loops over many pairs, and searches

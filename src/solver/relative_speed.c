@@ -1,12 +1,14 @@
 #include "solver/relative_speed.h"
 
 #include "motion/drift.h"
+#include "shape/shape.h"
 
 double ob_relative_speed(ob_shape a, const ob_mat3 *ra, ob_shape b, const ob_mat3 *rb, ob_vec3 v)
 {
-	if (a != OB_SHAPE_PLANE && b != OB_SHAPE_PLANE)
+	const bool first = ob_shape_is(a, OB_UNBOUNDED);
+	if (!first && !ob_shape_is(b, OB_UNBOUNDED))
 		return ob_norm(v);
-	return fabs(ob_dot(v, ob_column(a == OB_SHAPE_PLANE ? ra : rb, 2)));
+	return fabs(ob_dot(v, ob_column(first ? ra : rb, 2)));
 }
 
 ob_vec3 ob_contact_velocity(const ob_island_work *w, const ob_body_row *rows, const ob_contact *contact)
@@ -23,7 +25,7 @@ ob_vec3 ob_contact_velocity(const ob_island_work *w, const ob_body_row *rows, co
 double ob_spin_lever(const ob_body *body, ob_vec3 n, const ob_vec3 *arm, uint32_t points)
 {
 	double most = 0;
-	if (!ob_has_axis(body->shape))
+	if (!ob_shape_is(body->shape, OB_AXIAL))
 		return 0;
 	const ob_vec3 across = ob_cross(n, ob_column(&body->r, 2));
 	for (uint32_t j = 0; j < points; j++)
@@ -52,9 +54,9 @@ double ob_contact_speed(const ob_island_work *w, const ob_contact *contact)
 static double turn_rate_of(const ob_body *body, const double *v, double spin_lever)
 {
 	const ob_vec3 w = ob_v3(v[3], v[4], v[5]);
-	if (body->shape == OB_SHAPE_SPHERE)
+	if (ob_shape_is(body->shape, OB_ISOTROPIC))
 		return 0;
-	if (!ob_has_axis(body->shape))
+	if (!ob_shape_is(body->shape, OB_AXIAL))
 		return ob_norm(w);
 	const ob_vec3 axis = ob_column(&body->r, 2);
 	return ob_norm(ob_cross(axis, w)) + spin_lever / body->radius * fabs(ob_dot(axis, w));
@@ -68,8 +70,8 @@ double ob_contact_turn_rate(const ob_island_work *w, const ob_body_row *rows, co
 
 double ob_turning_speed(ob_shape shape, ob_vec3 size, ob_vec3 inertia, ob_vec3 w, double s)
 {
-	if (ob_has_axis(shape) && inertia.x == inertia.y) // its axis turns at a constant rate
+	if (ob_shape_is(shape, OB_AXIAL) && inertia.x == inertia.y) // its axis turns at a constant rate
 		w.z = 0, s = 0;
-	double rate = shape == OB_SHAPE_SPHERE ? 0 : ob_drift_bound(w, inertia, s);
+	double rate = ob_shape_is(shape, OB_ISOTROPIC) ? 0 : ob_drift_bound(w, inertia, s);
 	return rate == 0 ? 0 : rate * ob_shape_radius(shape, size);
 }

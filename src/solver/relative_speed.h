@@ -5,12 +5,6 @@
 
 #include "solver/island.h"
 
-// A capsule or a cylinder: it looks the same however it has spun about its axis, z of its frame.
-static inline bool ob_has_axis(ob_shape s)
-{
-	return s == OB_SHAPE_CAPSULE || s == OB_SHAPE_CYLINDER;
-}
-
 // Speed, m/s, at which the centres come nearer or part, without rotation. v: a's velocity less b's; ra, rb: attitudes.
 double ob_relative_speed(ob_shape a, const ob_mat3 *ra, ob_shape b, const ob_mat3 *rb, ob_vec3 v);
 // Velocity, m/s, of a's centre less that of b's; for a surface that turns, taken at the centre of the other body.

@@ -6,6 +6,7 @@
 #include "base/allocate.h"
 #include "motion/drift.h"
 #include "motion/flight.h"
+#include "shape/shape.h"
 #include "solver/relative_speed.h"
 
 static void set_row(double *row, ob_vec3 linear, ob_vec3 angular)
@@ -27,7 +28,7 @@ bool ob_surface_moves(const ob_passport *p)
 static void set_speed_bound(ob_body *body, const ob_state *now)
 {
 	const double points = body->radius * ob_norm(now->w);
-	body->turning = body->shape == OB_SHAPE_SPHERE ? 0 : points;
+	body->turning = ob_shape_is(body->shape, OB_ISOTROPIC) ? 0 : points;
 	body->speed = ob_norm(now->v) + points;
 }
 
