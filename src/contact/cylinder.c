@@ -3,6 +3,7 @@
 #include "contact/capsule.h"
 #include "contact/facets.h"
 #include "contact/support.h"
+#include "shape/shape.h"
 
 // Lengths, relative to the thickness of the thinner shape.
 static const double crossing = 1e-9; // a point inside, this near to the surface, has no direction away from it
@@ -86,6 +87,12 @@ void ob_manifold_cylinder_sphere(const ob_placed *a, const ob_placed *b, double 
 
 // ---- directions
 
+// True for an axial shape without rims.
+static bool is_rounded(const ob_placed *x)
+{
+	return ob_shape_is(x->shape, OB_AXIAL) && !ob_shape_is(x->shape, OB_RIMMED);
+}
+
 // Best directions so far.
 typedef struct search {
 	const ob_placed *a, *b;
@@ -118,11 +125,11 @@ static void try_along(search *s, ob_vec3 d, bool facet)
 
 static void try_facets(search *s, const ob_placed *x)
 {
-	if (x->shape == OB_SHAPE_CYLINDER)
+	if (ob_shape_is(x->shape, OB_RIMMED))
 		try_along(s, ob_column(&x->r, 2), true);
-	for (int i = 0; x->shape == OB_SHAPE_BOX && i < 3; i++)
+	for (int i = 0; ob_shape_is(x->shape, OB_SIDED) && i < 3; i++)
 		try_along(s, ob_column(&x->r, i), true);
-	for (uint32_t f = 0; x->shape == OB_SHAPE_HULL && f < x->hull->faces; f++) { // x is b: its normals point to a
+	for (uint32_t f = 0; x->hull && f < x->hull->faces; f++) { // x is b: its normals point to a
 		const ob_vec3 n = ob_rotate(&x->r, x->hull->normal[f]);
 		if (ob_dot(n, ob_sub(s->a->p, s->b->p)) - x->hull->offset[f] > ob_min(s->gap, touching * s->thickness))
 			try_direction(s, n, true);
@@ -153,9 +160,9 @@ static int edges_at_corner(const ob_placed *x, ob_vec3 n, ob_vec3 *edge)
 // farthest corner along n. Returns their number.
 static int edges_of(const ob_placed *x, ob_vec3 n0, ob_vec3 edge[EDGES_MAX])
 {
-	if (x->shape == OB_SHAPE_HULL)
+	if (x->hull)
 		return edges_at_corner(x, n0, edge);
-	int n = x->shape == OB_SHAPE_BOX ? 3 : 1;
+	int n = ob_shape_is(x->shape, OB_SIDED) ? 3 : 1;
 	for (int i = 0; i < n; i++)
 		edge[i] = ob_column(&x->r, n == 3 ? i : 2);
 	return n;
@@ -193,14 +200,15 @@ static feature hull_feature(const ob_placed *x, ob_vec3 n)
 
 static feature feature_along(const ob_placed *x, ob_vec3 n)
 {
-	if (x->shape == OB_SHAPE_HULL)
+	if (x->hull)
 		return hull_feature(x, n);
+	const bool sided = ob_shape_is(x->shape, OB_SIDED);
 	double h[3] = { x->size.x, x->size.y, x->size.z };
 	feature f = { .centre = ob_support(x, n) };
 	for (int i = 0; i < 3; i++) {
 		ob_vec3 e = ob_column(&x->r, i);
-		double half = x->shape == OB_SHAPE_BOX ? h[i] : x->size.y, at = ob_dot(e, ob_sub(f.centre, x->p));
-		if ((x->shape != OB_SHAPE_BOX && i < 2) || fabs(ob_dot(e, n)) > level)
+		double half = sided ? h[i] : x->size.y, at = ob_dot(e, ob_sub(f.centre, x->p));
+		if ((!sided && i < 2) || fabs(ob_dot(e, n)) > level)
 			continue;
 		f.centre = ob_madd(f.centre, -copysign(half, at), e);
 		f.edge[f.edges++] = ob_scale(e, half);
@@ -265,7 +273,7 @@ static void try_crossed(search *s, const ob_vec3 *edge, int n)
 static void climb(search *s, const ob_vec3 *edge, int n, double enough)
 {
 	enum { CLIMBS = 24 };
-	const bool rims = s->b->shape == OB_SHAPE_CYLINDER;
+	const bool rims = ob_shape_is(s->b->shape, OB_RIMMED);
 	const unsigned all = (1u << (n + rims)) - 1; // n is 1 + EDGES_MAX at most
 	unsigned tried = 0;
 	for (int i = 0; i < CLIMBS && tried != all; i++) {
@@ -299,7 +307,7 @@ static void climb_from_everywhere(search *s, const ob_vec3 *edge, int n)
 	for (int i = 0; i < starts; i++) {
 		for (int k = 0; k < n; k++)
 			try_direction(s, ob_climb_across(s->a, s->b, edge[k], start[i]), false);
-		if (s->b->shape == OB_SHAPE_CYLINDER)
+		if (ob_shape_is(s->b->shape, OB_RIMMED))
 			try_direction(s, ob_climb_rims(s->a, s->b, start[i]), false);
 	}
 }
@@ -344,12 +352,9 @@ static void try_corners(search *s)
 {
 	const ob_placed *b = s->b;
 	ob_vec3 at, n;
-	const uint32_t corners = b->shape == OB_SHAPE_HULL ? b->hull->corners : 8;
+	const uint32_t corners = b->hull ? b->hull->corners : 8;
 	for (uint32_t k = 0; k < corners; k++) {
-		ob_vec3 h = b->shape == OB_SHAPE_HULL
-				    ? b->hull->corner[k]
-				    : ob_v3(k & 1 ? b->size.x : -b->size.x, k & 2 ? b->size.y : -b->size.y,
-					    k & 4 ? b->size.z : -b->size.z);
+		const ob_vec3 h = b->hull ? b->hull->corner[k] : ob_box_corner(b->size, k);
 		nearest_point(s->a, ob_add(b->p, ob_rotate(&b->r, h)), &at, &n);
 		try_direction(s, ob_scale(n, -1), false);
 	}
@@ -361,10 +366,10 @@ static void try_others(search *s, double enough)
 {
 	enum { CORNERS = 4 };
 	const ob_placed *b = s->b;
-	const bool hull = b->shape == OB_SHAPE_HULL;
+	const bool hull = b->hull, rounded = is_rounded(b);
 	ob_vec3 at, n, edge[1 + EDGES_MAX] = { ob_column(&s->a->r, 2) };
 	int edges = 1 + edges_of(b, s->normal, edge + 1);
-	for (int k = -1; b->shape == OB_SHAPE_CAPSULE && k < 2; k += 2) {
+	for (int k = -1; rounded && k < 2; k += 2) {
 		nearest_point(s->a, ob_madd(b->p, k * b->size.y, ob_column(&b->r, 2)), &at, &n);
 		try_direction(s, ob_scale(n, -1), false);
 	}
@@ -386,7 +391,7 @@ static void try_others(search *s, double enough)
 		climb_hull(s);
 	if (is_deep(s))
 		climb_from_everywhere(s, edge, edges < STARTS ? edges : STARTS - 1);
-	if ((b->shape != OB_SHAPE_BOX && !hull) || !(s->gap > 0) || s->gap > enough || is_proven(s))
+	if (!ob_shape_is(b->shape, OB_CORNERED) || !(s->gap > 0) || s->gap > enough || is_proven(s))
 		return;
 	try_corners(s); // a corner beside a rim
 }
@@ -397,14 +402,14 @@ static void try_others(search *s, double enough)
 static bool facet_near(const ob_placed *x, ob_vec3 n, double cosine, ob_vec3 *outward)
 {
 	bool near = false;
-	for (uint32_t f = 0; x->shape == OB_SHAPE_HULL && f < x->hull->faces; f++) {
+	for (uint32_t f = 0; x->hull && f < x->hull->faces; f++) {
 		const ob_vec3 e = ob_rotate(&x->r, x->hull->normal[f]);
 		if (ob_dot(e, n) >= cosine)
 			cosine = ob_dot(e, n), *outward = e, near = true;
 	}
-	if (x->shape == OB_SHAPE_HULL)
+	if (x->hull)
 		return near;
-	for (int i = x->shape == OB_SHAPE_BOX ? 0 : 2; i < 3 && x->shape != OB_SHAPE_CAPSULE; i++) {
+	for (int i = ob_shape_is(x->shape, OB_SIDED) ? 0 : 2; i < 3 && !is_rounded(x); i++) {
 		ob_vec3 e = ob_column(&x->r, i);
 		double c = ob_dot(e, n);
 		if (fabs(c) >= cosine)
@@ -431,10 +436,9 @@ static bool hull_line_beside(const ob_placed *x, ob_vec3 n, ob_vec3 axis, ob_pla
 static bool line_beside(const ob_placed *x, ob_vec3 n, ob_vec3 axis, ob_placed *line)
 {
 	*line = *x;
-	line->shape = OB_SHAPE_CAPSULE;
-	if (x->shape == OB_SHAPE_HULL)
+	if (x->hull)
 		return hull_line_beside(x, n, axis, line);
-	if (x->shape != OB_SHAPE_BOX)
+	if (!ob_shape_is(x->shape, OB_SIDED))
 		return fabs(ob_dot(ob_column(&x->r, 2), n)) < side_lean;
 	double h[3] = { x->size.x, x->size.y, x->size.z };
 	for (int i = 0; i < 3; i++) {
@@ -514,7 +518,7 @@ static bool is_overhanging(const search *s)
 	const ob_vec3 d = ob_sub(s->a->p, s->b->p);
 	for (int k = 0; s->gap < 0 && k < 2; k++) {
 		const ob_vec3 side = part_across(d, ob_column(&x[k]->r, 2));
-		if (x[k]->shape == OB_SHAPE_CYLINDER && ob_norm2(side) > 1e-12 * ob_norm2(d) &&
+		if (ob_shape_is(x[k]->shape, OB_RIMMED) && ob_norm2(side) > 1e-12 * ob_norm2(d) &&
 		    ob_apart_along(s->a, s->b, unit(side)) > hardly * s->gap)
 			return true;
 	}
@@ -541,7 +545,7 @@ static bool on_face_underfoot(const search *s, ob_vec3 n, double margin, ob_mani
 
 void ob_manifold_cylinder_edged(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
-	const bool sharp = b->shape != OB_SHAPE_CAPSULE; // a round shape slips off: the nearest direction will do
+	const bool sharp = !is_rounded(b); // a round shape slips off: the nearest direction will do
 	const double thickness = ob_min(ob_shape_thickness(a->shape, a->size), ob_shape_thickness(b->shape, b->size));
 	search s = { .a = a, .b = b, .thickness = thickness, .gap = -INFINITY, .time = -1 };
 	ob_spots spots;
@@ -564,7 +568,7 @@ void ob_manifold_cylinder_edged(const ob_placed *a, const ob_placed *b, double m
 	const ob_vec3 n = closing ? s.last : s.normal;
 	const bool facet = closing ? s.last_is_facet : s.is_facet;
 	const bool same = facet && ob_dot(n, tried) == ob_dot(tried, tried);
-	if (b->shape == OB_SHAPE_BOX && !(same && proven) && on_face_underfoot(&s, n, margin, out))
+	if (ob_shape_is(b->shape, OB_SIDED) && !(same && proven) && on_face_underfoot(&s, n, margin, out))
 		return;
 	if (!facet) {
 		other_points(&s, n, margin, out);

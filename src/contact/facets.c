@@ -1,6 +1,7 @@
 #include "contact/facets.h"
 
 #include "contact/support.h"
+#include "shape/shape.h"
 
 static const double steep_cap = .3, steep_side = .95; // cosines: a cap with less, or a side with more, has one point
 static const double steepest_face = .05; // cosine: over a cap, a steeper face has nothing but its edges
@@ -28,7 +29,7 @@ void ob_rim_directions(const ob_placed *cylinder, const ob_placed *other, ob_vec
 		first = part_across(pressed, d);
 		if (!(ob_norm(first) > pressing * ob_norm(pressed))) {
 			first = ob_column(&cylinder->r, 0);
-			if (other->shape == OB_SHAPE_CYLINDER) {
+			if (ob_shape_is(other->shape, OB_RIMMED)) {
 				ob_vec3 x = ob_column(&other->r, 0);
 				first = part_across(ob_madd(first, ob_dot(first, x) < 0 ? -1 : 1, x), d);
 			}
@@ -138,7 +139,7 @@ static uint32_t hull_face_towards(const ob_placed *x, ob_vec3 towards)
 // Face of a box or a hull that looks most along "towards".
 static polygon face_of(const ob_placed *box, ob_vec3 towards)
 {
-	if (box->shape == OB_SHAPE_HULL)
+	if (box->hull)
 		return hull_face(box, hull_face_towards(box, towards));
 	static const int s1[4] = { 1, -1, -1, 1 }, s2[4] = { 1, 1, -1, -1 };
 	double h[3] = { box->size.x, box->size.y, box->size.z }, best = -1;
@@ -161,9 +162,7 @@ static polygon face_of(const ob_placed *box, ob_vec3 towards)
 // Line on the side of a cylinder or a capsule that reaches farthest along "towards".
 static void line_of(const ob_placed *x, ob_vec3 towards, ob_vec3 end[2])
 {
-	ob_vec3 d = ob_column(&x->r, 2), out = part_across(towards, d);
-	if (x->shape == OB_SHAPE_CAPSULE)
-		out = towards;
+	ob_vec3 d = ob_column(&x->r, 2), out = ob_shape_is(x->shape, OB_RIMMED) ? part_across(towards, d) : towards;
 	ob_vec3 middle = ob_madd(x->p, x->size.x / ob_norm(out), out);
 	end[0] = ob_madd(middle, -x->size.y, d);
 	end[1] = ob_madd(middle, x->size.y, d);
@@ -349,17 +348,17 @@ static void line_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 	double share[2] = { 0, 1 };
 	ob_vec3 end[2], below[2], origin = on->p, towards = ob_scale(n, -1);
 	line_of(over, towards, end);
-	if (on->shape == OB_SHAPE_BOX || on->shape == OB_SHAPE_HULL)
+	if (ob_shape_is(on->shape, OB_CORNERED))
 		origin = face_of(on, n).corner[0];
-	else if (on->shape == OB_SHAPE_CYLINDER)
+	else if (ob_shape_is(on->shape, OB_RIMMED))
 		origin = cap_of(on, n).centre;
 	for (int k = 0; k < 2; k++)
 		below[k] = into_plane(end[k], n, origin, n);
-	if (on->shape == OB_SHAPE_BOX || on->shape == OB_SHAPE_HULL) {
+	if (ob_shape_is(on->shape, OB_CORNERED)) {
 		polygon p = face_of(on, n);
 		if (!within_polygon(&p, below[0], below[1], share))
 			return;
-	} else if (on->shape == OB_SHAPE_CYLINDER &&
+	} else if (ob_shape_is(on->shape, OB_RIMMED) &&
 		   !within_circle(below[0], below[1], origin, on->size.x * (1 + border), share)) {
 		return;
 	}
@@ -375,13 +374,13 @@ static void cap_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 	const disc cap = cap_of(over, towards);
 	ob_vec3 rim[4], rim_on[4];
 	ob_rim_directions(over, on, towards, rim);
-	if (on->shape == OB_SHAPE_PLANE) {
+	if (ob_shape_is(on->shape, OB_UNBOUNDED)) {
 		for (int k = 0; k < 4; k++) {
 			ob_vec3 x = ob_madd(cap.centre, cap.radius, rim[k]);
 			add(s, into_plane(x, s->normal, on->p, s->normal), x);
 		}
 		s->disc_radius = s->n == 4 ? cap.radius : 0;
-	} else if (on->shape == OB_SHAPE_BOX || on->shape == OB_SHAPE_HULL) {
+	} else if (ob_shape_is(on->shape, OB_CORNERED)) {
 		const polygon p = face_of(on, s->normal);
 		polygon_and_disc(s, &p, &cap, rim, true);
 	} else {
@@ -461,21 +460,18 @@ void ob_spots_find(const ob_placed *on, const ob_placed *over, ob_vec3 n, double
 {
 	out->normal = n;
 	out->margin = margin;
-	out->same = 1e-5 * (on->shape == OB_SHAPE_CYLINDER ? on : over)->size.x;
+	out->same = 1e-5 * (ob_shape_is(on->shape, OB_RIMMED) ? on : over)->size.x;
 	out->n = 0;
 	out->disc_radius = 0;
-	if (over->shape == OB_SHAPE_BOX) {
-		box_over(out, on, over);
+	if (ob_shape_is(over->shape, OB_CORNERED)) {
+		(over->hull ? hull_over : box_over)(out, on, over);
 		return;
 	}
-	if (over->shape == OB_SHAPE_HULL) {
-		hull_over(out, on, over);
-		return;
-	}
+	const bool rimmed = ob_shape_is(over->shape, OB_RIMMED);
 	double lean = fabs(ob_dot(n, ob_column(&over->r, 2)));
-	if (over->shape == OB_SHAPE_CYLINDER && lean > steep_cap)
+	if (rimmed && lean > steep_cap)
 		cap_over(out, on, over);
-	if (over->shape == OB_SHAPE_CAPSULE || lean < steep_side)
+	if (!rimmed || lean < steep_side)
 		line_over(out, on, over);
 }
 

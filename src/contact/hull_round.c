@@ -2,6 +2,7 @@
 
 #include "contact/capsule.h"
 #include "contact/facets.h"
+#include "shape/shape.h"
 
 static const double side_by_side = .99; // cosine: directions this near to each other run side by side
 static const double crossing = 1e-9; // m: a segment this near to the inside has no direction away from it
@@ -315,7 +316,7 @@ static void through(const ob_placed *b, const segment *x, double margin, ob_mani
 void ob_manifold_round_hull(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	const ob_hull *h = b->hull;
-	const double length = a->shape == OB_SHAPE_CAPSULE ? a->size.y : 0;
+	const double length = ob_shape_is(a->shape, OB_AXIAL) ? a->size.y : 0;
 	const double far = ob_norm(ob_sub(a->p, b->p)) - h->radius - length - a->size.x;
 	const segment x = { h, ob_rotate_back(&b->r, ob_sub(a->p, b->p)), ob_rotate_back(&b->r, ob_column(&a->r, 2)),
 			    length, a->size.x };

@@ -9,6 +9,7 @@
 #include "contact/polytope.h"
 #include "contact/support.h"
 #include "motion/drift.h"
+#include "shape/shape.h"
 
 static void one_point(ob_manifold *m, ob_vec3 normal, ob_vec3 at, double gap, double margin)
 {
@@ -131,9 +132,7 @@ static void box_plane(const ob_placed *a, const ob_placed *plane, double margin,
 	double gap[8];
 	unsigned used = 0;
 	for (int k = 0; k < 8; k++) {
-		ob_vec3 h = { k & 1 ? a->size.x : -a->size.x, k & 2 ? a->size.y : -a->size.y,
-			      k & 4 ? a->size.z : -a->size.z };
-		corner[k] = ob_add(a->p, ob_rotate(&a->r, h));
+		corner[k] = ob_add(a->p, ob_rotate(&a->r, ob_box_corner(a->size, (uint32_t)k)));
 		gap[k] = ob_dot(n, ob_sub(corner[k], plane->p));
 	}
 	m->normal = n;
@@ -166,7 +165,7 @@ void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob
 typedef void pair_function(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 // By the shapes of a and b. A missing pair is found with a and b exchanged, if there is one.
-static pair_function *const pair_functions[OB_SHAPE_HULL + 1][OB_SHAPE_HULL + 1] = {
+static pair_function *const pair_functions[OB_SHAPE_KINDS][OB_SHAPE_KINDS] = {
 	[OB_SHAPE_SPHERE] = { [OB_SHAPE_SPHERE] = sphere_sphere,
 			      [OB_SHAPE_PLANE] = sphere_plane,
 			      [OB_SHAPE_BOX] = sphere_box,
@@ -219,7 +218,7 @@ static void set_off(const ob_placed *x, moving_shape *o)
 {
 	o->from = x;
 	o->rate = ob_rotate_back(&x->r, x->w);
-	o->speed = x->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(x->w); // a sphere looks the same in any attitude
+	o->speed = ob_shape_is(x->shape, OB_ISOTROPIC) ? 0 : ob_norm(x->w);
 	ob_spin_plan(&o->spin, ob_quat_identity(), o->rate, x->inertia);
 }
 
@@ -359,12 +358,12 @@ static double apart_at(const seen_along *x, double t)
 // Speed of the shape's points by turning (m/s), at most.
 static double rim_speed(const ob_placed *x)
 {
-	return x->shape == OB_SHAPE_SPHERE ? 0 : ob_norm(x->w) * ob_shape_radius(x->shape, x->size);
+	return ob_shape_is(x->shape, OB_ISOTROPIC) ? 0 : ob_norm(x->w) * ob_shape_radius(x->shape, x->size);
 }
 
 static ob_vec3 turn_seen_by(const ob_placed *x, ob_vec3 n)
 {
-	return x->shape == OB_SHAPE_SPHERE ? ob_v3(0, 0, 0) : ob_cross(n, x->w);
+	return ob_shape_is(x->shape, OB_ISOTROPIC) ? ob_v3(0, 0, 0) : ob_cross(n, x->w);
 }
 
 // View along n, which is constant. bend: m/s^2, of both shapes together
@@ -392,7 +391,7 @@ static void project_sides(const ob_placed *x, ob_vec3 n, double out[3])
 // Sets the half sides of two boxes along n, for a forecast: it is called often, and need not be exact.
 static void take_sides(seen_along *x)
 {
-	x->boxes = x->a->shape == OB_SHAPE_BOX && x->b->shape == OB_SHAPE_BOX;
+	x->boxes = ob_shape_is(x->a->shape, OB_SIDED) && ob_shape_is(x->b->shape, OB_SIDED);
 	if (!x->boxes)
 		return;
 	project_sides(x->a, x->n, x->half);

@@ -21,7 +21,7 @@ typedef struct ob_placed {
 	// does not count as closing; 0: any closing counts
 	double far_future;
 	ob_vec3 a; // m/s^2, external acceleration: a standing cylinder has a point where it presses most on the rim
-	const ob_hull *hull; // OB_SHAPE_HULL
+	const ob_hull *hull; // NULL unless the shape needs one
 } ob_placed;
 
 typedef struct ob_manifold {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "elementary/elementary.h"
+#include "shape/shape.h"
 
 static const double along_face = .99; // cosine: an axis of edges this near counts as a face's normal
 // Fraction of the thickness, up to the resting depth, by which an axis of edges must separate more than a face's.
@@ -53,7 +54,7 @@ typedef struct polytope {
 
 static double radius_of(const ob_placed *x)
 {
-	return x->shape == OB_SHAPE_BOX ? ob_norm(x->size) : x->hull->radius;
+	return x->hull ? x->hull->radius : ob_norm(x->size);
 }
 
 static void polytope_init(polytope *x, const ob_placed *from, ob_vec3 origin)
@@ -61,15 +62,15 @@ static void polytope_init(polytope *x, const ob_placed *from, ob_vec3 origin)
 	x->placed = from;
 	x->centre = ob_sub(from->p, origin);
 	x->radius = radius_of(from);
-	if (from->shape == OB_SHAPE_BOX) {
+	if (!from->hull) {
 		const ob_vec3 h = from->size;
 		x->shape = &box_topology;
 		x->inner = ob_min(h.x, ob_min(h.y, h.z));
 		x->thin = 2 * x->inner;
 		x->corner = x->box_corner;
 		x->offset = x->box_offset;
-		for (int k = 0; k < 8; k++)
-			x->box_corner[k] = ob_v3(k & 1 ? h.x : -h.x, k & 2 ? h.y : -h.y, k & 4 ? h.z : -h.z);
+		for (uint32_t k = 0; k < 8; k++)
+			x->box_corner[k] = ob_box_corner(h, k);
 		for (int f = 0; f < 6; f++)
 			x->box_offset[f] = f < 2 ? h.x : f < 4 ? h.y : h.z;
 	} else {

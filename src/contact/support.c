@@ -1,5 +1,7 @@
 #include "contact/support.h"
 
+#include "shape/shape.h"
+
 static const double flat = 1e-12; // part of a unit vector across an axis: a smaller one has no direction
 static const double converged = 1e-14; // relative to the shapes' size: gradient that counts as 0
 static const double rounding = 1e-14; // relative to the shapes' size
@@ -13,33 +15,10 @@ static ob_vec3 unit(ob_vec3 v)
 	return ob_scale(v, 1 / ob_norm(v));
 }
 
-static ob_vec3 farthest_corner(const ob_hull *h, ob_vec3 l)
-{
-	double most = -INFINITY;
-	ob_vec3 at = { 0, 0, 0 };
-	for (uint32_t k = 0; k < h->corners; k++) {
-		const double there = ob_dot(l, h->corner[k]);
-		if (there > most)
-			most = there, at = h->corner[k];
-	}
-	return at;
-}
-
 ob_vec3 ob_support(const ob_placed *x, ob_vec3 n)
 {
-	ob_vec3 l = ob_rotate_back(&x->r, n), at = { 0, 0, copysign(x->size.y, l.z) };
-	if (x->shape == OB_SHAPE_BOX) {
-		at = ob_v3(copysign(x->size.x, l.x), copysign(x->size.y, l.y), copysign(x->size.z, l.z));
-	} else if (x->shape == OB_SHAPE_CYLINDER) {
-		double across = sqrt(l.x * l.x + l.y * l.y);
-		if (across > flat)
-			at.x = x->size.x * l.x / across, at.y = x->size.x * l.y / across;
-	} else if (x->shape == OB_SHAPE_HULL) {
-		at = farthest_corner(x->hull, l);
-	} else {
-		at = ob_madd(at, x->size.x / ob_norm(l), l);
-	}
-	return ob_add(x->p, ob_rotate(&x->r, at));
+	const ob_vec3 l = ob_rotate_back(&x->r, n);
+	return ob_add(x->p, ob_rotate(&x->r, ob_shape_kind_of(x->shape)->farthest(&x->size, x->hull, &l)));
 }
 
 ob_vec3 ob_support_between(const ob_placed *a, const ob_placed *b, ob_vec3 n)
@@ -51,17 +30,14 @@ double ob_reach(const ob_placed *x, ob_vec3 n)
 {
 	const ob_vec3 z = ob_column(&x->r, 2);
 	const double along = fabs(ob_dot(z, n));
-	switch (x->shape) {
-	case OB_SHAPE_BOX:
+	if (ob_shape_is(x->shape, OB_SIDED))
 		return x->size.x * fabs(ob_dot(ob_column(&x->r, 0), n)) +
 		       x->size.y * fabs(ob_dot(ob_column(&x->r, 1), n)) + x->size.z * along;
-	case OB_SHAPE_CYLINDER:
-		return x->size.x * ob_norm(ob_cross(z, n)) + x->size.y * along;
-	case OB_SHAPE_CAPSULE:
-		return x->size.x * ob_norm(n) + x->size.y * along;
-	default:
-		return ob_dot(n, ob_sub(ob_support(x, n), x->p));
+	if (ob_shape_is(x->shape, OB_AXIAL)) {
+		const double across = ob_shape_is(x->shape, OB_RIMMED) ? ob_norm(ob_cross(z, n)) : ob_norm(n);
+		return x->size.x * across + x->size.y * along;
 	}
+	return ob_dot(n, ob_sub(ob_support(x, n), x->p));
 }
 
 double ob_apart_along(const ob_placed *a, const ob_placed *b, ob_vec3 n)
@@ -83,12 +59,10 @@ typedef struct slice {
 static slice slice_of(const ob_placed *x, double turn, ob_vec3 p, ob_vec3 q)
 {
 	slice s = { .x = x, .turn = turn, .p = ob_rotate_back(&x->r, p), .q = ob_rotate_back(&x->r, q) };
-	if (x->shape == OB_SHAPE_BOX)
-		s.half[0] = x->size.x, s.half[1] = x->size.y, s.half[2] = x->size.z;
-	else if (x->shape != OB_SHAPE_HULL)
-		s.half[2] = x->size.y;
-	if (x->shape == OB_SHAPE_CYLINDER)
-		s.radius = x->size.x;
+	ob_outline o;
+	ob_shape_outline(x->shape, x->size, &o);
+	s.half[0] = o.half.x, s.half[1] = o.half.y, s.half[2] = o.half.z;
+	s.radius = o.rim;
 	return s;
 }
 
@@ -96,12 +70,12 @@ static slice slice_of(const ob_placed *x, double turn, ob_vec3 p, ob_vec3 q)
 static double part_of_slope(const slice *s, double t)
 {
 	const ob_vec3 n = ob_madd(s->p, t, s->q), d = ob_madd(s->q, -t, s->p);
-	if (s->x->shape == OB_SHAPE_HULL) {
+	if (s->x->hull) {
 		const ob_vec3 at = ob_sub(ob_support(s->x, ob_scale(ob_rotate(&s->x->r, n), s->turn)), s->x->p);
 		return s->turn * ob_dot(ob_rotate(&s->x->r, d), at);
 	}
 	double sum = copysign(s->half[2], n.z) * d.z;
-	if (s->x->shape == OB_SHAPE_BOX)
+	if (ob_shape_is(s->x->shape, OB_SIDED))
 		return sum + copysign(s->half[0], n.x) * d.x + copysign(s->half[1], n.y) * d.y;
 	const double across = sqrt(n.x * n.x + n.y * n.y);
 	return across > flat ? sum + s->radius * (n.x * d.x + n.y * d.y) / across : sum;
@@ -198,7 +172,7 @@ static void add_curvature(const ob_placed *x, ob_vec3 n, ob_vec3 p, ob_vec3 q, d
 {
 	ob_vec3 d = ob_column(&x->r, 2), t = ob_cross(d, n);
 	double across2 = ob_norm2(t);
-	if (x->shape != OB_SHAPE_CYLINDER || across2 < flat)
+	if (!ob_shape_is(x->shape, OB_RIMMED) || across2 < flat)
 		return;
 	double k = x->size.x / (across2 * sqrt(across2)), tp = ob_dot(t, p), tq = ob_dot(t, q);
 	m[0] += k * tp * tp;
