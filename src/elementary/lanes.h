@@ -79,6 +79,13 @@ static inline void lanes_store(double *to, lanes x)
 {
 	__builtin_memcpy(to, &x, sizeof x);
 }
+// Reads lane l. (See lanes_put.)
+static inline double lanes_get(const lanes *x, int l)
+{
+	double y;
+	__builtin_memcpy(&y, (const char *)x + (unsigned)l * sizeof y, sizeof y);
+	return y;
+}
 // Writes lane l alone. (For a variable l, clang compiles x[l] = y to a copy of the whole vector and back, which waits
 // for the store in between.)
 static inline void lanes_put(lanes *x, int l, double y)

@@ -6,8 +6,7 @@
 #include "motion/magnus.h"
 #include "motion/spin_lanes.h"
 
-typedef double real;
-typedef int mask;
+#include "elementary/real.h" // for one body
 #include "motion/theta.h"
 
 // Moments closer than this are equal: over a thousand radians the difference stays below 1e-12 rad.
@@ -16,36 +15,6 @@ static const double SAME = 1e-15;
 static const double ON_AXIS = 1e-16;
 
 // ---- interface of theta.h for one body
-
-static inline real real_of(double x)
-{
-	return x;
-}
-
-static inline real chosen(mask m, real yes, real no)
-{
-	return m ? yes : no;
-}
-
-static inline mask both_of(mask a, mask b)
-{
-	return a & b;
-}
-
-static inline int is_any(mask m)
-{
-	return m;
-}
-
-static inline real root_of(real x)
-{
-	return sqrt(x);
-}
-
-static inline real size_of(real x)
-{
-	return fabs(x);
-}
 
 static inline real signed_as(real size, real x)
 {

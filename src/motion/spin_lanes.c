@@ -12,41 +12,10 @@ enum { WIDTH = OB_LANES };
 
 #include "elementary/arc_wide.h" // needs the types above
 
-typedef lanes real;
-typedef lane_mask mask;
+#include "elementary/real_lanes.h"
 #include "motion/theta.h"
 
 // ---- interface of theta.h for four bodies
-
-static inline real real_of(double x)
-{
-	return lanes_of(x);
-}
-
-static inline real chosen(mask m, real yes, real no)
-{
-	return lanes_select(m, yes, no);
-}
-
-static inline mask both_of(mask a, mask b)
-{
-	return a & b;
-}
-
-static inline int is_any(mask m)
-{
-	return lanes_bits(m) != 0;
-}
-
-static inline real root_of(real x)
-{
-	return lanes_sqrt(x);
-}
-
-static inline real size_of(real x)
-{
-	return lanes_abs(x);
-}
 
 static inline real signed_as(real size, real x)
 {

@@ -9,19 +9,13 @@
 // use the arithmetic-geometric mean and the theta series of Jacobi (Fundamenta Nova, 1829).
 //
 // Text compiled for one body (spin.c) and for four side by side (spin_lanes.c), with the same operations in the same
-// order: each lane has the bits of a single body. The including file first names the type of a number, real, and that
-// of a comparison's result, mask, and defines the functions declared first.
+// order: each lane has the bits of a single body. The including file first includes elementary/real.h or
+// elementary/real_lanes.h, and defines the functions declared first.
 #ifndef OB_MOTION_THETA_H
 #define OB_MOTION_THETA_H
 
 #include "motion/spin.h"
 
-static inline real real_of(double x);
-static inline real chosen(mask m, real yes, real no);
-static inline mask both_of(mask a, mask b);
-static inline int is_any(mask m);
-static inline real root_of(real x);
-static inline real size_of(real x); // |x|
 static inline real signed_as(real size, real x); // copysign
 static inline real angle_of(real y, real x); // atan2
 static inline real power_of_e(real x);
