@@ -4,6 +4,9 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "elementary/real.h"
+
+#include "contact/friction.h" // for one number
 
 enum {
 	MAX_DENSE_ROWS = 3 * OB_IMPACT_MOST_POINTS, // maximum for Newton's method
@@ -215,9 +218,9 @@ static projection project(const impact_set *s, const point_rows *r, const double
 		return p;
 	p.bound = r->mu * p.x[0];
 	p.z[0] = x[1] - r->rate * u[1], p.z[1] = x[2] - r->rate * u[2];
-	p.length = sqrt(p.z[0] * p.z[0] + p.z[1] * p.z[1]);
-	double shrink = p.length > p.bound ? p.bound / p.length : 1;
-	p.x[1] = shrink * p.z[0], p.x[2] = shrink * p.z[1];
+	const double length2 = p.z[0] * p.z[0] + p.z[1] * p.z[1], share = disc_share(p.bound, length2);
+	p.length = sqrt(length2);
+	p.x[1] = share * p.z[0], p.x[2] = share * p.z[1];
 	return p;
 }
 

@@ -7,7 +7,7 @@
 
 #include "contact/boxes.h"
 #include "contact/lone.h"
-#include "contact/patch.h"
+#include "contact/patch_lanes.h"
 #include "contact/points.h"
 
 static const int max_block_sweeps = 64;
@@ -33,18 +33,6 @@ PER_KIND bool in_use(ob_batch_kind kind, int row)
 static inline double square(double x)
 {
 	return x * x;
-}
-
-static inline void sym_mul(const lanes *s, const lanes *x, lanes *o)
-{
-	o[0] = s[0] * x[0] + s[1] * x[1] + s[2] * x[2];
-	o[1] = s[1] * x[0] + s[3] * x[1] + s[4] * x[2];
-	o[2] = s[2] * x[0] + s[4] * x[1] + s[5] * x[2];
-}
-
-static inline lanes dot3(const lanes *a, const lanes *b)
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 // Inverts A's block of friction for a contact at one point, which has no twist.
@@ -259,102 +247,30 @@ static inline lanes square_of_slip(const ob_batch *b, lanes d4, lanes d5)
 	return (d4 * d4 + d5 * d5) * b->slide_rate2;
 }
 
-typedef struct friction_state {
-	const ob_body_row *v; // velocities when the substep began
-	ob_patch_model *model;
-	patch_search search;
-} friction_state;
-
-// Computes impulses that would undo the slip with which the substep began.
-static void begin_search(const ob_batch *b, ob_batch_kind kind, friction_state *f)
+static void patch_begin_slip(const ob_batch *b, patch_search *search)
 {
 	lanes va[6], vb[6], start[OB_ROWS] = { 0 };
-	gather_both(b, f->v, va, vb);
-	friction_velocities(b, kind, va, vb, start);
-	patch_mul(b->friction_mass, start + 4, f->search.start);
-	memcpy(f->search.slip, start + 4, sizeof f->search.slip);
-	f->search.begun = 1;
+	gather_both(b, search->v, va, vb);
+	friction_velocities(b, OB_KIND_FULL, va, vb, start);
+	memcpy(search->slip, start + OB_POINTS, sizeof search->slip);
 }
 
-// Renews the ellipsoid of the lanes "due", for the direction of the substep's mean slip. If this is too small to tell,
-// it is the direction that the impulses "hold" resist.
-static void renew_model(const ob_batch *b, const lanes *x, lanes sum, lane_mask due, const lanes *slip,
-			friction_state *f, const lanes *hold)
+// Computes the centre of pressure in half edges.
+static inline void find_pressure(const ob_batch *b, const lanes *x, lanes sum, lanes *edges)
 {
-	const double telling = 1e-4; // relative to the change that friction can make in the substep
+	const lanes *s = b->patch_s, *t = b->patch_t, inverse = 1 / lanes_max(sum, lanes_of(1e-300));
+	edges[0] = (x[0] * s[0] + x[1] * s[1] + x[2] * s[2] + x[3] * s[3]) * inverse;
+	edges[1] = (x[0] * t[0] + x[1] * t[1] + x[2] * t[2] + x[3] * t[3]) * inverse;
+}
+
+// Solves friction and twist of patches together.
+static inline void solve_patch(const ob_batch *b, lane_mask patch, const lanes *x, lanes sum, const lanes *step,
+			       patch_search *f, lanes *next)
+{
+	const lanes missing[3] = { step[4] * b->diag[4], step[5] * b->diag[5], step[6] * b->diag[6] };
 	patch_load load;
-	lanes mean[3], asked[3], stay[3] = { -hold[0], -hold[1], -hold[2] };
-	patch_load_set(b, x, sum, &load);
-	for (int c = 0; c < 3; c++)
-		mean[c] = slip[c] + f->search.slip[c];
-	lanes speed = lanes_abs(mean[0]) + lanes_abs(mean[1]) + b->radius * lanes_abs(mean[2]);
-	lane_mask tells = (speed > telling * b->mu * sum * b->diag[4]) & (patch_dot(mean, stay) > 0);
-	patch_first_slip(&load, stay, asked);
-	for (int c = 0; c < 3; c++)
-		mean[c] = lanes_select(tells, mean[c], asked[c]);
-	patch_model_set(&load, due, mean, f->model);
-}
-
-// Limits "hold" in the lanes "outside", where it exceeds the limit surface: they slip.
-static __attribute__((noinline)) void let_slip(const ob_batch *b, ob_batch_kind kind, const lanes *x, lanes sum,
-					       lane_mask outside, const lanes *slip, friction_state *f, lanes *hold)
-{
-	const double same_pressure = 1e-9; // half edges: a smaller shift of the centre of pressure counts as none
-	lanes bound = b->mu * sum, pressure[2];
-	lane_mask none = outside & ~(bound > 0);
-	if (!f->search.begun)
-		begin_search(b, kind, f);
-	for (int c = 0; c < 3; c++)
-		hold[c] = lanes_select(none, lanes_of(0), hold[c]);
-	outside &= ~none;
-	lane_mask moved = patch_pressure(b, x, sum, f->model, pressure) > same_pressure;
-	lane_mask due = outside & (moved | lanes_mask(~f->model->known));
-	if (lanes_bits(due))
-		renew_model(b, x, sum, due, slip, f, hold);
-	f->model->known &=
-		~lanes_bits(patch_project(f->model, pressure, bound, b->friction_mass, outside, &f->search, hold));
-	f->search.slides |= lanes_bits(none);
-}
-
-// Solves friction and twist of patches together: impulses that hold, or those that the limit surface permits.
-static inline void solve_patch(const ob_batch *b, ob_batch_kind kind, lane_mask patch, const lanes *x, lanes sum,
-			       const lanes *step, friction_state *f, lanes *next)
-{
-	lanes r[3] = { step[4] * b->diag[4], step[5] * b->diag[5], step[6] * b->diag[6] };
-	patch_mul(b->friction_mass, r, next);
-	for (int c = 0; c < 3; c++)
-		next[c] += x[4 + c];
-	lane_mask outside = patch & ~patch_holds(b, x, sum, b->mu * sum, next);
-	f->search.slides &= ~lanes_bits(patch);
-	if (lanes_bits(outside)) {
-		const lanes slip[3] = { -r[0], -r[1], -r[2] };
-		let_slip(b, kind, x, sum, outside, slip, f, next);
-	}
-}
-
-// Solves friction at a point, x, to the end: the impulse within the disc that leaves the least slip. A sliding point
-// has (A + t) x = load, |x| = bound, t = slip over impulse: Newton's method in 1/|x|.
-static inline void solve_point(const ob_batch *b, lane_mask outside, lanes bound, const lanes *x, const lanes *step,
-			       lanes *next)
-{
-	enum { MOST = 16 };
-	const double close = 1e-13; // relative to the bound
-	const lanes a = b->diag[4], c = b->diag[5], m = b->coupling[4][5] * c;
-	const lanes load[2] = { a * (x[4] + step[4]) + m * x[5], m * x[4] + c * (x[5] + step[5]) };
-	lanes t = lanes_of(0);
-	lane_mask goes = outside & (bound > 0);
-	for (int k = 0; k < MOST && lanes_bits(goes); k++) {
-		lanes p = a + t, q = c + t, inverse = 1 / (p * q - m * m);
-		lanes y[2] = { (q * load[0] - m * load[1]) * inverse, (p * load[1] - m * load[0]) * inverse };
-		lanes n2 = y[0] * y[0] + y[1] * y[1], n = lanes_sqrt(n2), off = n / bound - 1;
-		lanes falls = (q * y[0] * y[0] - 2 * m * y[0] * y[1] + p * y[1] * y[1]) * inverse;
-		for (int i = 0; i < 2; i++)
-			next[i] = lanes_select(goes, y[i] * (bound / n), next[i]);
-		t += lanes_where(goes, off * n2 / falls);
-		goes &= lanes_abs(off) > close;
-	}
-	for (int i = 0; i < 2; i++)
-		next[i] = lanes_select(outside & ~(bound > 0), lanes_of(0), next[i]);
+	find_pressure(b, x, sum, load.edges);
+	patch_friction(b, patch, &load, sum, missing, x + OB_POINTS, f, next);
 }
 
 // Friction at a point or at the centroid: the impulse that holds, or if that is too large, one on the disc. The step to
@@ -368,10 +284,13 @@ static inline void solve_disc(const ob_batch *b, lane_mask point, lanes bound, c
 	const lane_mask slips = f4 * f4 + f5 * f5 > b2;
 	if (lanes_bits(slips)) { // the root and the quotient take as long as all the rest
 		f4 = x[4] + b->slide[0] * step[4], f5 = x[5] + b->slide[1] * step[5];
-		lanes l2 = f4 * f4 + f5 * f5, shrink = bound / lanes_sqrt(lanes_max(l2, b2) + 1e-300);
-		lanes next[2] = { f4 * shrink, f5 * shrink };
-		if (lanes_bits(slips & point))
-			solve_point(b, slips & point, bound, x, step, next);
+		lanes shrink = disc_share(bound, f4 * f4 + f5 * f5), next[2] = { f4 * shrink, f5 * shrink };
+		if (lanes_bits(slips & point)) {
+			const lanes a[3] = { b->diag[4], b->coupling[4][5] * b->diag[5], b->diag[5] };
+			const lanes load[2] = { a[0] * (x[4] + step[4]) + a[1] * x[5],
+						a[1] * x[4] + a[2] * (x[5] + step[5]) };
+			point_slide(slips & point, bound, a, load, next);
+		}
 		d4 = lanes_select(slips, next[0] - x[4], d4);
 		d5 = lanes_select(slips, next[1] - x[5], d5);
 	}
@@ -383,7 +302,7 @@ static inline void solve_disc(const ob_batch *b, lane_mask point, lanes bound, c
 // a difference. If the two bodies touch nothing else, friction and twist are one block of rows. Lanes that are not open
 // keep their impulses. Returns the square of the largest change of a velocity. patches: the bodies of some lane touch
 // nothing else.
-PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, lane_mask open, friction_state *f,
+PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, lane_mask open, patch_search *f,
 			   lanes *x, lanes *step)
 {
 	lanes largest = lanes_of(0), sum = lanes_of(0), next[3] = { sum, sum, sum }, disc[2];
@@ -403,7 +322,7 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 		patch = isolated & (b->radius > 0);
 	}
 	if (patches && lanes_bits(patch))
-		solve_patch(b, kind, patch, x, sum, step, f, next);
+		solve_patch(b, patch, x, sum, step, f, next);
 	lanes bound = b->mu * sum;
 	solve_disc(b, isolated & ~patch, bound, x, step, disc);
 	lanes d4 = disc[0], d5 = disc[1];
@@ -419,7 +338,7 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 	if (!in_use(kind, 6))
 		return largest;
 	bound *= b->radius;
-	lanes d6 = lanes_max(-bound - x[6], lanes_min(bound - x[6], step[6]));
+	lanes d6 = twist_within(-bound - x[6], bound - x[6], step[6]);
 	if (patches)
 		d6 = lanes_select(patch, next[2] - x[6], d6);
 	couple(b, kind, 6, d6, step);
@@ -532,7 +451,7 @@ static __attribute__((noinline)) void leap_sliding(const ob_batch *b, ob_batch_k
 }
 
 // Lanes whose friction is at its limit.
-PER_KIND lane_mask sliding_lanes(const ob_batch *b, ob_batch_kind kind, const friction_state *f, const lanes *x)
+PER_KIND lane_mask sliding_lanes(const ob_batch *b, ob_batch_kind kind, const patch_search *f, const lanes *x)
 {
 	const double at_limit = 1 - 1e-9;
 	lane_mask none = { 0 };
@@ -543,14 +462,14 @@ PER_KIND lane_mask sliding_lanes(const ob_batch *b, ob_batch_kind kind, const fr
 	if (!in_use(kind, 6))
 		return disc;
 	lane_mask patch = b->radius > 0;
-	return (patch & lanes_mask(f->search.slides)) | (~patch & disc);
+	return (patch & lanes_mask(f->slides)) | (~patch & disc);
 }
 
 // Sweeps a block until it is solved, up to the iteration's number of sweeps. Ends sooner if the block changes so much
 // that another iteration will follow. An isolated lane has no later iteration to correct a residual, so it is solved to
 // the end. alone: there is such a lane. Sets the number of sweeps, and the isolated lanes that are solved.
 PER_KIND void solve_block(ob_batch *b, ob_batch_kind kind, bool alone, const ob_solver_iteration *iteration,
-			  friction_state *f, lanes *x, const lanes *r)
+			  patch_search *f, lanes *x, const lanes *r)
 {
 	const bool patches = alone && in_use(kind, 6);
 	lanes step[OB_ROWS];
@@ -584,23 +503,23 @@ PER_KIND void solve_block(ob_batch *b, ob_batch_kind kind, bool alone, const ob_
 // Applies the impulses of lane l to one of its bodies: the sums of apply, in their order.
 static void apply_impulses_of(const ob_batch *b, int l, bool a, const lanes *d, ob_body_row *rows)
 {
-	const double sign = a ? 1 : -1, inv_mass = sign * lone_get(a ? &b->ima : &b->imb, l);
+	const double sign = a ? 1 : -1, inv_mass = sign * lanes_get(a ? &b->ima : &b->imb, l);
 	const lanes(*j)[3] = a ? b->ja : b->jb;
 	const lanes *f1 = a ? b->fa1 : b->fb1, *f2 = a ? b->fa2 : b->fb2, *inertia = a ? b->ia : b->ib;
 	double *row = rows[a ? b->body_a[l] : b->body_b[l]];
 	double x[OB_ROWS], turn[3], k[6];
 	for (int i = 0; i < OB_ROWS; i++)
-		x[i] = lone_get(&d[i], l);
+		x[i] = lanes_get(&d[i], l);
 	for (int i = 0; i < 6; i++)
-		k[i] = sign * lone_get(&inertia[i], l);
+		k[i] = sign * lanes_get(&inertia[i], l);
 	const double sum = x[0] + x[1] + x[2] + x[3];
 	for (int c = 0; c < 3; c++) {
-		const double n = lone_get(&b->n[c], l);
-		row[c] += inv_mass * (n * sum + (lone_get(&b->t1[c], l) * x[4] + lone_get(&b->t2[c], l) * x[5]));
-		turn[c] = lone_get(&j[0][c], l) * x[0];
+		const double n = lanes_get(&b->n[c], l);
+		row[c] += inv_mass * (n * sum + (lanes_get(&b->t1[c], l) * x[4] + lanes_get(&b->t2[c], l) * x[5]));
+		turn[c] = lanes_get(&j[0][c], l) * x[0];
 		for (int i = 1; i < OB_POINTS; i++)
-			turn[c] += lone_get(&j[i][c], l) * x[i];
-		turn[c] += lone_get(&f1[c], l) * x[4] + lone_get(&f2[c], l) * x[5];
+			turn[c] += lanes_get(&j[i][c], l) * x[i];
+		turn[c] += lanes_get(&f1[c], l) * x[4] + lanes_get(&f2[c], l) * x[5];
 		turn[c] += n * x[6];
 	}
 	row[3] += k[0] * turn[0] + k[1] * turn[1] + k[2] * turn[2];
@@ -727,11 +646,11 @@ PER_KIND void solve_kind(ob_batch *b, ob_batch_kind kind, const ob_solver_iterat
 	memcpy(x, b->impulse, sizeof x);
 	b->slides = 0;
 	if (b->isolated) {
-		friction_state friction = { .v = v, .model = &b->model };
+		patch_search friction = { .v = v, .model = &b->model };
 		b->model.known =
 			iteration->first ? 0 : b->model.known; // made once in a substep; again if the slip turns
 		solve_block(b, kind, true, iteration, &friction, x, r);
-		b->slides = friction.search.slides & b->live;
+		b->slides = friction.slides & b->live;
 	} else {
 		solve_block(b, kind, false, iteration, NULL, x, r);
 	}
@@ -841,7 +760,7 @@ const ob_kernel OB_KERNEL = {
 	.friction_arms = friction_arms,
 	.prepare = prepare,
 	.solve = solve,
-	.solve_lone = solve_lone,
+	.solve_lone = OB_SOLVE_LONE,
 	.project = project,
 	.limit_prediction = limit_prediction,
 	.row_velocities = row_velocities,

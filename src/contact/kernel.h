@@ -1,5 +1,5 @@
-// Arithmetic that is compiled once per instruction set (kernel.c), for batch.h and manifold.h. Tests compare its bits,
-// which are the same for all.
+// Arithmetic that is compiled once per instruction set (kernel.c, lone.c), for batch.h and manifold.h. Tests compare its
+// bits, which are the same for all.
 #ifndef OB_CONTACT_KERNEL_H
 #define OB_CONTACT_KERNEL_H
 

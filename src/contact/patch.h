@@ -22,154 +22,204 @@
 // A disc is a regular polygon of twelve corners with the disc's second moment. It is turned so that it looks the same
 // along the slip whatever the axes are. For a distant centre of rotation four nodes suffice.
 //
-// Four lanes at a time; no operation mixes lanes. Unit load: everything here is for mu * (sum of normal impulses) = 1.
-// Symmetric matrices: 11 12 13 22 23 33.
+// Text compiled for one number (contact/lone.c) and for four in lanes (contact/patch_lanes.h). The including file first
+// includes elementary/real.h or elementary/real_lanes.h and names two types:
+//
+//      friction_pair   a contact: mu, radius (m), patch_e1 and patch_e2 (m, half edges of the patch from its centroid along
+//                      the tangents), friction_mass (inverse of A's block of friction and twist: 44 45 46 55 56 66)
+//      patch_model     as ob_patch_model (contact/batch.h)
+//
+// It defines the functions declared first, and patch_ends. Unit load: the limit surface here is that of mu * (sum of
+// normal impulses) = 1. Symmetric matrices: 11 12 13 22 23 33.
 #ifndef OB_CONTACT_PATCH_H
 #define OB_CONTACT_PATCH_H
 
+#include <stdbool.h>
 #include <string.h>
 
 #include "contact/batch.h"
+#include "contact/border.h"
+#include "contact/friction.h"
 
-enum { PATCH_CORNERS = 12 };
+// Rule by which a search for sliding friction ends. Lanes and single numbers differ on purpose: a lane's ellipsoid serves
+// a whole substep of a dense heap, a lone contact is iterated to the end.
+typedef struct patch_rule {
+	double turned; // cos^2 of the angle by which the slip may turn before its ellipsoid is renewed
+	double close; // relative to the bound, before the last step
+	bool follows; // keeps what a Newton step needs in which friction follows the load: spin and capped
+} patch_rule;
 
+static const patch_rule patch_ends;
+
+// Pressure and the loaded part of a patch. The caller sets "edges".
 typedef struct patch_load {
-	lanes pressure[2], edges[2]; // centre of pressure: m from the centroid; in half edges
-	lanes centre[2], e1[2], e2[2]; // m: centre of the loaded part, from the centroid; its half edges
-	lanes slope[2]; // 1/m: gradient of the relative pressure, which is 1 + slope x, with x from the centre
-	lanes radius; // m: radius of a loaded disc; 0: a parallelogram
-	lanes spread; // m^2: mean square distance from the centre of pressure
-	bool any_disc;
+	real edges[2], pressure[2]; // centre of pressure: in half edges; in m from the centroid
+	real centre[2], e1[2], e2[2]; // m: centre of the loaded part, from the centroid; its half edges
+	real slope[2]; // 1/m: gradient of the relative pressure, which is 1 + slope x, with x from the centre
+	real radius; // m: radius of a loaded disc; 0: a parallelogram
+	real spread; // m^2: mean square distance from the centre of pressure
 } patch_load;
 
-// D and its gradient at a slip u. bound: matrix with grad D(u) = bound u, the sum of all elements with their weights at
-// u. D^2 is nowhere more than D(u) times this quadratic form.
+// Search for friction that slides, and its state from one sweep to the next.
+typedef struct patch_search {
+	const ob_body_row *v; // velocities when the substep began, for patch_begin_slip
+	patch_model *model;
+	real start[3]; // impulses that would undo the slip at the substep's start
+	real slip[3]; // slip at the substep's start: m/s, rad/s
+	unsigned begun, slides; // lanes with a known start; lanes with friction at its limit
+	real spin; // rad/s: spin of the mean slip
+	mask capped; // friction is at the bound of its force; the ellipsoid permitted more
+} patch_search;
+
+// Power D and its gradient at a slip u. bound: matrix with grad D(u) = bound u, the sum of all elements with their weights
+// at u. D^2 is nowhere more than D(u) times this quadratic form.
 typedef struct patch_slip {
-	lanes power, grad[3], bound[6];
+	real power, grad[3], bound[6];
 } patch_slip;
+
+typedef struct patch_sums {
+	real force[2], power, weight; // integrals of p u/|u|, p |u|, p/|u|, each twice along the border
+} patch_sums;
+
+// ---- defined by the including file
+
+// Radius of a disc's patch (m); 0: a parallelogram.
+static inline real patch_disc(const friction_pair *b);
+// A's diagonal for the first tangent
+static inline real patch_response(const friction_pair *b);
+// Sets the slip at the substep's start.
+static void patch_begin_slip(const friction_pair *b, patch_search *f);
+// Adds the integrals along the border of the loaded part, about the centre of rotation. v, w: slip of the part's centre.
+// at, slope: relative pressure at the centre of rotation, and its gradient in u. Returns twice the area.
+static inline real patch_border(const patch_load *p, mask asked, const real *v, real w, real at, const real *slope,
+				patch_sums *o);
+// Nodes of an integral side by side: takes PATCH_NODES of them, and sums over these.
+static inline lanes patch_nodes(const double *from);
+static inline real patch_sum_nodes(lanes x);
+
+static inline void patch_move_to_pressure(const patch_load *p, real *m);
 
 // ---- arithmetic
 
-static inline lanes patch_dot(const lanes *a, const lanes *b)
+static inline real dot3(const real *a, const real *b)
 {
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static inline void patch_mul(const lanes *s, const lanes *x, lanes *o)
+static inline void sym_mul(const real *s, const real *x, real *o)
 {
 	o[0] = s[0] * x[0] + s[1] * x[1] + s[2] * x[2];
 	o[1] = s[1] * x[0] + s[3] * x[1] + s[4] * x[2];
 	o[2] = s[2] * x[0] + s[4] * x[1] + s[5] * x[2];
 }
 
-// x = (t a + s)^-1 y, by LDL^T
-static inline void patch_solve(lanes t, const lanes *a, const lanes *s, const lanes *y, lanes *x)
+// Factors L D L^T of t a + s
+typedef struct patch_factors {
+	real l1, l2, l3, i0, i1, i2;
+} patch_factors;
+
+static inline patch_factors patch_factor(real t, const real *a, const real *s)
 {
-	lanes m[6];
+	patch_factors f;
+	real m[6];
 	for (int i = 0; i < 6; i++)
 		m[i] = t * a[i] + s[i];
-	lanes i0 = 1 / m[0], l1 = m[1] * i0, l2 = m[2] * i0;
-	lanes i1 = 1 / (m[3] - l1 * m[1]), b = m[4] - l1 * m[2], l3 = b * i1;
-	lanes i2 = 1 / (m[5] - l2 * m[2] - l3 * b);
-	lanes y1 = y[1] - l1 * y[0], y2 = y[2] - l2 * y[0] - l3 * y1;
-	x[2] = y2 * i2;
-	x[1] = y1 * i1 - l3 * x[2];
-	x[0] = y[0] * i0 - l1 * x[1] - l2 * x[2];
+	f.i0 = 1 / m[0], f.l1 = m[1] * f.i0, f.l2 = m[2] * f.i0;
+	f.i1 = 1 / (m[3] - f.l1 * m[1]);
+	const real b = m[4] - f.l1 * m[2];
+	f.l3 = b * f.i1;
+	f.i2 = 1 / (m[5] - f.l2 * m[2] - f.l3 * b);
+	return f;
 }
 
-// ln((s + d) / (s - d)), with s - d as "down". Without libm: the same bits everywhere.
-static inline lanes patch_log(lanes d, lanes s, lanes down)
+static inline void patch_back(const patch_factors *f, const real *y, real *x)
 {
-	typedef uint64_t words __attribute__((vector_size(32)));
-	const double at_two_to_52 = 0x1p52 + 1023; // makes the exponent, as the low bits of a number, a number
-	lanes y = (s + d) / down;
-	words bits = (words)y;
-	lanes m = (lanes)((bits & 0xfffffffffffff) | 0x3ff0000000000000);
-	lanes e = (lanes)((bits >> 52) | 0x4330000000000000) - at_two_to_52;
-	lane_mask high = m > 1.4142135623730951, near = d < .1715 * s;
-	m = lanes_select(high, .5 * m, m);
-	e = lanes_where(~near, lanes_select(high, e + 1, e));
-	lanes f = lanes_select(near, d, m - 1) / lanes_select(near, s, m + 1), f2 = f * f, sum = lanes_of(1. / 19);
-	for (int k = 17; k > 0; k -= 2)
-		sum = sum * f2 + 1. / k;
-	return 2 * f * sum + e * 0.69314718055994531;
+	const real y1 = y[1] - f->l1 * y[0], y2 = y[2] - f->l2 * y[0] - f->l3 * y1;
+	x[2] = y2 * f->i2;
+	x[1] = y1 * f->i1 - f->l3 * x[2];
+	x[0] = y[0] * f->i0 - f->l1 * x[1] - f->l2 * x[2];
+}
+
+// Moves a matrix from one point to another: "centre" is the old one, seen from the new one.
+static inline void patch_move(const real *centre, real *m)
+{
+	const real x = -centre[1], y = centre[0];
+	m[5] += 2 * (x * m[2] + y * m[4]) + x * x * m[0] + 2 * x * y * m[1] + y * y * m[3];
+	m[2] += x * m[0] + y * m[1];
+	m[4] += x * m[1] + y * m[3];
 }
 
 // ---- the load
 
-static inline lanes patch_sign(lanes x)
+static inline real patch_sign(real x)
 {
-	return lanes_select(x < 0, lanes_of(-1), lanes_of(1));
+	return chosen(x < 0, real_of(-1), real_of(1));
 }
 
-// Sets the pressure under the normal impulses x. sum: total of the four.
-static inline void patch_load_set(const ob_batch *b, const lanes *x, lanes sum, patch_load *o)
+static inline void patch_set_pressure(const friction_pair *b, patch_load *o)
+{
+	for (int c = 0; c < 2; c++)
+		o->pressure[c] = o->edges[0] * b->patch_e1[c] + o->edges[1] * b->patch_e2[c];
+}
+
+// Puts a loaded disc in place of the parallelogram.
+static inline void patch_load_disc(const friction_pair *b, real smallest, real *ks, real *kt, patch_load *o)
+{
+	const double disc_kern = .244; // just below 1/4, for the polygon's corners
+	const real radius = patch_disc(b);
+	const mask disc = radius > 0;
+	if (!is_any(disc))
+		return;
+	real r = larger_of(radius, real_of(1e-300)), ir = 1 / r;
+	real off = root_of(o->pressure[0] * o->pressure[0] + o->pressure[1] * o->pressure[1]);
+	real k = smaller_of(off * ir, real_of(1)), kd = smaller_of(k, real_of(disc_kern));
+	real small = r * larger_of((1 - k) / (1 - kd), smallest), shrink = small * ir;
+	real along = 1 / larger_of(off, 1e-9 * r);
+	for (int c = 0; c < 2; c++) {
+		const real direction = o->pressure[c] * along;
+		o->slope[c] = chosen(disc, 4 * kd / small * direction, o->slope[c]);
+		o->e1[c] = chosen(disc, shrink * b->patch_e1[c], o->e1[c]);
+		o->e2[c] = chosen(disc, shrink * b->patch_e2[c], o->e2[c]);
+		o->centre[c] = chosen(disc, o->pressure[c] - kd * small * direction, o->centre[c]);
+	}
+	*ks = chosen(disc, real_of(disc_kern), *ks), *kt = chosen(disc, real_of(disc_kern), *kt);
+	o->radius = chosen(disc, small, real_of(0));
+}
+
+// Finds the loaded part under the pressure.
+static inline void patch_load_set(const friction_pair *b, patch_load *o)
 {
 	const double thinnest = .01, thin = .05; // width of a loaded part, relative to its length
-	const double kern = 1. / 3, disc_kern = .244; // just below 1/4, for the polygon's corners
-	const lanes one = lanes_of(1), smallest = lanes_of(.01);
-	lanes inverse = 1 / lanes_max(sum, lanes_of(1e-300));
-	lanes s = (x[0] * b->patch_s[0] + x[1] * b->patch_s[1] + x[2] * b->patch_s[2] + x[3] * b->patch_s[3]) * inverse;
-	lanes t = (x[0] * b->patch_t[0] + x[1] * b->patch_t[1] + x[2] * b->patch_t[2] + x[3] * b->patch_t[3]) * inverse;
-	const lanes *e1 = b->patch_e1, *e2 = b->patch_e2;
-	o->edges[0] = s, o->edges[1] = t;
-	lanes as = lanes_min(lanes_abs(s), one), at = lanes_min(lanes_abs(t), one);
-	lanes ks = lanes_min(as, lanes_of(kern)), kt = lanes_min(at, lanes_of(kern));
-	lanes within = lanes_min(one, kern / lanes_max(ks + kt, lanes_of(1e-300)));
+	const double kern = 1. / 3;
+	const real one = real_of(1), none = real_of(0), smallest = real_of(.01), s = o->edges[0], t = o->edges[1];
+	const real *e1 = b->patch_e1, *e2 = b->patch_e2;
+	real as = smaller_of(size_of(s), one), at = smaller_of(size_of(t), one);
+	real ks = smaller_of(as, real_of(kern)), kt = smaller_of(at, real_of(kern));
+	real within = smaller_of(one, kern / larger_of(ks + kt, real_of(1e-300)));
 	ks *= within, kt *= within;
-	lanes ls = lanes_max((1 - as) / (1 - ks), smallest), lt = lanes_max((1 - at) / (1 - kt), smallest);
-	lanes ratio = lanes_sqrt((e2[0] * e2[0] + e2[1] * e2[1]) / (e1[0] * e1[0] + e1[1] * e1[1]));
-	ls = lanes_max(ls, thinnest * ratio * lt), lt = lanes_max(lt, thinnest / ratio * ls);
+	real ls = larger_of((1 - as) / (1 - ks), smallest), lt = larger_of((1 - at) / (1 - kt), smallest);
+	real ratio = root_of((e2[0] * e2[0] + e2[1] * e2[1]) / (e1[0] * e1[0] + e1[1] * e1[1]));
+	ls = larger_of(ls, thinnest * ratio * lt), lt = larger_of(lt, thinnest / ratio * ls);
 	// Load is even across a thin part: the pressure is so steep there that rounding would show.
-	ks = lanes_where(ls >= thin * ratio * lt, ks * patch_sign(s));
-	kt = lanes_where(ratio * lt >= thin * ls, kt * patch_sign(t));
-	lanes det = e1[0] * e2[1] - e1[1] * e2[0], slope_s = 3 * ks / (ls * det), slope_t = 3 * kt / (lt * det);
+	ks = chosen(ls >= thin * ratio * lt, ks * patch_sign(s), none);
+	kt = chosen(ratio * lt >= thin * ls, kt * patch_sign(t), none);
+	real det = e1[0] * e2[1] - e1[1] * e2[0], slope_s = 3 * ks / (ls * det), slope_t = 3 * kt / (lt * det);
 	o->slope[0] = slope_s * e2[1] - slope_t * e1[1];
 	o->slope[1] = slope_t * e1[0] - slope_s * e2[0];
 	for (int c = 0; c < 2; c++) {
-		o->pressure[c] = s * e1[c] + t * e2[c];
 		o->e1[c] = ls * e1[c];
 		o->e2[c] = lt * e2[c];
 		o->centre[c] = o->pressure[c] - ks * o->e1[c] - kt * o->e2[c];
 	}
-	o->radius = lanes_of(0);
-	lane_mask disc = b->disc > 0;
-	o->any_disc = lanes_bits(disc);
-	if (o->any_disc) {
-		lanes r = lanes_max(b->disc, lanes_of(1e-300)), ir = 1 / r;
-		lanes off = lanes_sqrt(o->pressure[0] * o->pressure[0] + o->pressure[1] * o->pressure[1]);
-		lanes k = lanes_min(off * ir, one), kd = lanes_min(k, lanes_of(disc_kern));
-		lanes small = r * lanes_max((1 - k) / (1 - kd), smallest), shrink = small * ir;
-		lanes along = 1 / lanes_max(off, 1e-9 * r);
-		for (int c = 0; c < 2; c++) {
-			lanes direction = o->pressure[c] * along;
-			o->slope[c] = lanes_select(disc, 4 * kd / small * direction, o->slope[c]);
-			o->e1[c] = lanes_select(disc, shrink * e1[c], o->e1[c]);
-			o->e2[c] = lanes_select(disc, shrink * e2[c], o->e2[c]);
-			o->centre[c] = lanes_select(disc, o->pressure[c] - kd * small * direction, o->centre[c]);
-		}
-		ks = lanes_select(disc, lanes_of(disc_kern), ks), kt = lanes_select(disc, lanes_of(disc_kern), kt);
-		o->radius = lanes_select(disc, small, lanes_of(0));
-	}
-	lanes l1 = o->e1[0] * o->e1[0] + o->e1[1] * o->e1[1], l2 = o->e2[0] * o->e2[0] + o->e2[1] * o->e2[1];
-	lanes skew = o->e1[0] * o->e2[0] + o->e1[1] * o->e2[1];
+	o->radius = none;
+	patch_load_disc(b, smallest, &ks, &kt, o);
+	real l1 = o->e1[0] * o->e1[0] + o->e1[1] * o->e1[1], l2 = o->e2[0] * o->e2[0] + o->e2[1] * o->e2[1];
+	real skew = o->e1[0] * o->e2[0] + o->e1[1] * o->e2[1];
 	o->spread = l1 * (kern - ks * ks) + l2 * (kern - kt * kt) - 2 * ks * kt * skew;
 }
 
-// Computes the centre of pressure, in m from the centroid. Returns its shift since the ellipsoid was made, in half
-// edges.
-static inline lanes patch_pressure(const ob_batch *b, const lanes *x, lanes sum, const ob_patch_model *m, lanes *at)
-{
-	lanes inverse = 1 / lanes_max(sum, lanes_of(1e-300));
-	lanes s = (x[0] * b->patch_s[0] + x[1] * b->patch_s[1] + x[2] * b->patch_s[2] + x[3] * b->patch_s[3]) * inverse;
-	lanes t = (x[0] * b->patch_t[0] + x[1] * b->patch_t[1] + x[2] * b->patch_t[2] + x[3] * b->patch_t[3]) * inverse;
-	at[0] = s * b->patch_e1[0] + t * b->patch_e2[0];
-	at[1] = s * b->patch_e1[1] + t * b->patch_e2[1];
-	return lanes_abs(s - m->pressure[0]) + lanes_abs(t - m->pressure[1]);
-}
-
-// Slip that the wrench x would resist if all elements of the patch had the same weight.
-static inline void patch_first_slip(const patch_load *p, const lanes *x, lanes *d)
+// Finds the slip that the wrench x would resist if all elements of the patch had the same weight.
+static inline void patch_first_slip(const patch_load *p, const real *x, real *d)
 {
 	d[2] = (x[2] - p->pressure[0] * x[1] + p->pressure[1] * x[0]) / p->spread;
 	d[0] = x[0] + d[2] * p->pressure[1];
@@ -178,195 +228,68 @@ static inline void patch_first_slip(const patch_load *p, const lanes *x, lanes *
 
 // ---- the limit surface, about the centre of the loaded part
 
-typedef struct patch_sums {
-	lanes force[2], power, weight; // integrals of p u/|u|, p |u|, p/|u|
-} patch_sums;
-
-// Adds the edge from the corner u1 to u2, at distances r1 and r2 from the centre of rotation. at: relative pressure at
-// that centre; slope: its gradient in u.
-static inline void patch_add_edge(const lanes *u1, lanes r1, const lanes *u2, lanes r2, lanes at, const lanes *slope,
-				  patch_sums *o)
-{
-	lanes dx = u2[0] - u1[0], dy = u2[1] - u1[1], length = lanes_sqrt(dx * dx + dy * dy);
-	lanes inverse = 1 / (length + 1e-300), ex = dx * inverse, ey = dy * inverse; // edge; (ey, -ex) points outwards
-	lanes h = u1[0] * ey - u1[1] * ex, s1 = u1[0] * ex + u1[1] * ey, s2 = u2[0] * ex + u2[1] * ey, h2 = h * h;
-	lanes sum = r1 + r2 + 1e-30, down = lanes_max(sum - length, 1e-16 * sum);
-	lanes i0 = patch_log(length, sum, down), i1 = r2 - r1;
-	lanes span = s2 * r2 - s1 * r1, i2 = .5 * (span - h2 * i0), j0 = .5 * (span + h2 * i0);
-	lanes j1 = (r2 * r2 * r2 - r1 * r1 * r1) * (1. / 3);
-	lanes along = slope[0] * ex + slope[1] * ey, out = h * (slope[0] * ey - slope[1] * ex);
-	lanes a0 = .5 * at + out * (1. / 3), a1 = along * (1. / 3);
-	lanes fe = h * (a0 * i1 + a1 * i2), fn = h2 * (a0 * i0 + a1 * i1);
-	o->force[0] += fe * ex + fn * ey;
-	o->force[1] += fe * ey - fn * ex;
-	o->power += h * ((at * (1. / 3) + .25 * out) * j0 + .25 * along * j1);
-	lanes c0 = at + .5 * out, c1 = .5 * along;
-	o->weight += h * (c0 * i0 + c1 * i1);
-}
-
-// Computes the corners, counterclockwise. Returns their number. A disc's first corner is on the left of the slip.
-static inline int patch_corners(const patch_load *p, const lanes *v, lanes (*at)[2])
-{
-	static const double c[PATCH_CORNERS] = { 1,  0.86602540378443865,  .5,  0, -.5, -0.86602540378443865,
-						 -1, -0.86602540378443865, -.5, 0, .5,  0.86602540378443865 };
-	const double out = 1.0231039; // relative radius of a polygon with the disc's second moment
-	for (int k = 0; k < 2; k++) {
-		at[0][k] = -p->e1[k] - p->e2[k];
-		at[1][k] = p->e1[k] - p->e2[k];
-		at[2][k] = p->e1[k] + p->e2[k];
-		at[3][k] = p->e2[k] - p->e1[k];
-	}
-	if (!p->any_disc)
-		return 4;
-	lanes speed = lanes_sqrt(v[0] * v[0] + v[1] * v[1]);
-	lane_mask disc = p->radius > 0, moves = speed > 0;
-	lanes f = out * p->radius / lanes_select(moves, speed, lanes_of(1));
-	lanes x = -f * v[1], y = lanes_select(moves, f * v[0], out * p->radius);
-	for (int i = 0; i < PATCH_CORNERS; i++) {
-		const double cos = c[i], sin = c[(i + 9) % PATCH_CORNERS];
-		at[i][0] = lanes_select(disc, cos * x - sin * y, at[i < 4 ? i : 3][0]);
-		at[i][1] = lanes_select(disc, sin * x + cos * y, at[i < 4 ? i : 3][1]);
-	}
-	return PATCH_CORNERS;
-}
-
-// Computes the slip u at a corner x. Returns its magnitude.
-static inline lanes patch_slip_of(const lanes *v, lanes w, const lanes *x, lanes *u)
-{
-	u[0] = v[0] - w * x[1];
-	u[1] = v[1] + w * x[0];
-	return lanes_sqrt(u[0] * u[0] + u[1] * u[1]);
-}
-
-// Adds the integrals along the border. Returns twice the area.
-static inline lanes patch_sum_edges(const lanes (*corner)[2], int corners, const lanes *v, lanes w, lanes at,
-				    const lanes *slope, patch_sums *o)
-{
-	lanes u[PATCH_CORNERS][2], r[PATCH_CORNERS], area = lanes_of(0);
-	for (int i = 0; i < corners; i++) {
-		const lanes *x = corner[i], *next = corner[i + 1 < corners ? i + 1 : 0];
-		r[i] = patch_slip_of(v, w, x, u[i]);
-		area += x[0] * next[1] - x[1] * next[0];
-	}
-	for (int i = 0; i < corners; i++) {
-		int next = i + 1 < corners ? i + 1 : 0;
-		patch_add_edge(u[i], r[i], u[next], r[next], at, slope, o);
-	}
-	return area;
-}
-
-static inline lanes patch_add_all(lanes sum, lanes x)
-{
-	return lanes_of(sum[0] + x[0] + x[1] + x[2] + x[3]);
-}
-
-// As patch_sum_edges, for lane l alone, with four edges side by side: the same sums in the same order.
-static inline lanes patch_sum_edges_of(int l, const lanes (*corner)[2], int corners, const lanes *v, lanes w, lanes at,
-				       const lanes *slope, patch_sums *o)
-{
-	const lanes own_v[2] = { lanes_of(v[0][l]), lanes_of(v[1][l]) }, own_w = lanes_of(w[l]);
-	const lanes own_slope[2] = { lanes_of(slope[0][l]), lanes_of(slope[1][l]) };
-	lanes area = lanes_of(0);
-	for (int i = 0; i < corners; i += OB_LANES) {
-		const int end = i + OB_LANES < corners ? i + OB_LANES : 0;
-		patch_sums four = { 0 };
-		lanes x[2], next[2], u[2], un[2];
-		for (int c = 0; c < 2; c++) {
-			x[c] = (lanes){ corner[i][c][l], corner[i + 1][c][l], corner[i + 2][c][l],
-					corner[i + 3][c][l] };
-			next[c] = (lanes){ x[c][1], x[c][2], x[c][3], corner[end][c][l] };
-		}
-		const lanes r = patch_slip_of(own_v, own_w, x, u), rn = patch_slip_of(own_v, own_w, next, un);
-		patch_add_edge(u, r, un, rn, lanes_of(at[l]), own_slope, &four);
-		area = patch_add_all(area, x[0] * next[1] - x[1] * next[0]);
-		for (int c = 0; c < 2; c++)
-			o->force[c] = patch_add_all(o->force[c], four.force[c]);
-		o->power = patch_add_all(o->power, four.power);
-		o->weight = patch_add_all(o->weight, four.weight);
-	}
-	return area;
-}
-
 // Computes D and its derivatives for a centre of rotation nearby: w is not near 0. asked: lanes to compute.
-static inline void patch_slip_near(const patch_load *p, unsigned asked, const lanes *v, lanes w, patch_slip *o)
+static inline void patch_slip_near(const patch_load *p, mask asked, const real *v, real w, patch_slip *o)
 {
-	lanes corner[PATCH_CORNERS][2];
-	const int corners = patch_corners(p, v, corner);
-	const lanes iw = 1 / w, slope[2] = { -p->slope[1] * iw, p->slope[0] * iw };
-	const lanes at = 1 - slope[0] * v[0] - slope[1] * v[1];
+	const real iw = 1 / w, slope[2] = { -p->slope[1] * iw, p->slope[0] * iw };
+	const real at = 1 - slope[0] * v[0] - slope[1] * v[1];
 	patch_sums sum = { 0 };
-	const lanes area = lanes_count(asked) == 1
-				   ? patch_sum_edges_of(__builtin_ctz(asked), corner, corners, v, w, at, slope, &sum)
-				   : patch_sum_edges(corner, corners, v, w, at, slope, &sum);
-	const lanes scale = 2 * iw * iw / area;
+	const real area = patch_border(p, asked, v, w, at, slope, &sum), scale = 2 * iw * iw / area;
 	for (int c = 0; c < 2; c++)
 		o->grad[c] = scale * sum.force[c];
 	o->power = scale * sum.power;
 	o->grad[2] = (o->power - o->grad[0] * v[0] - o->grad[1] * v[1]) * iw;
-	lanes weight = scale * sum.weight, kx = (o->grad[0] - weight * v[0]) * iw,
-	      ky = (o->grad[1] - weight * v[1]) * iw;
-	lanes bound[6] = { weight, lanes_of(0), kx, weight, ky, (o->grad[2] - kx * v[0] - ky * v[1]) * iw };
-	for (int i = 0; i < 6; i++)
-		o->bound[i] = bound[i];
+	const real weight = scale * sum.weight, kx = (o->grad[0] - weight * v[0]) * iw,
+		   ky = (o->grad[1] - weight * v[1]) * iw;
+	const real bound[6] = { weight, real_of(0), kx, weight, ky, (o->grad[2] - kx * v[0] - ky * v[1]) * iw };
+	memcpy(o->bound, bound, sizeof bound);
 }
 
 // Computes them for a distant centre of rotation, by four nodes: exact for a cubic.
-static inline void patch_slip_far(const patch_load *p, const lanes *v, lanes w, patch_slip *o)
+static inline void patch_slip_far(const patch_load *p, const real *v, real w, patch_slip *o)
 {
-	const double at = 0.57735026918962576;
+	static const double at = 0.57735026918962576, along[2][4] = { { -at, at, -at, at }, { -at, -at, at, at } };
 	*o = (patch_slip){ 0 };
-	for (int i = 0; i < 4; i++) {
-		const double s = i & 1 ? at : -at, t = i & 2 ? at : -at;
-		lanes x = s * p->e1[0] + t * p->e2[0], y = s * p->e1[1] + t * p->e2[1];
-		lanes weight = .25 * (1 + p->slope[0] * x + p->slope[1] * y);
-		lanes a = v[0] - w * y, b = v[1] + w * x, inverse = 1 / (lanes_sqrt(a * a + b * b) + 1e-300);
-		lanes c = weight * inverse, fa = a * inverse, fb = b * inverse, ft = x * fb - y * fa;
-		o->grad[0] += weight * fa;
-		o->grad[1] += weight * fb;
-		o->grad[2] += weight * ft;
-		lanes m[6] = { c, lanes_of(0), -c * y, c, c * x, c * (x * x + y * y) };
-		for (int k = 0; k < 6; k++)
-			o->bound[k] += m[k];
+	for (int i = 0; i < 4; i += PATCH_NODES) {
+		const lanes s = patch_nodes(along[0] + i), t = patch_nodes(along[1] + i);
+		const lanes x = s * p->e1[0] + t * p->e2[0], y = s * p->e1[1] + t * p->e2[1];
+		const lanes weight = .25 * (1 + p->slope[0] * x + p->slope[1] * y);
+		const lanes a = v[0] - w * y, b = v[1] + w * x, inverse = 1 / (lanes_sqrt(a * a + b * b) + 1e-300);
+		const lanes c = weight * inverse, fa = a * inverse, fb = b * inverse, ft = x * fb - y * fa;
+		o->grad[0] += patch_sum_nodes(weight * fa);
+		o->grad[1] += patch_sum_nodes(weight * fb);
+		o->grad[2] += patch_sum_nodes(weight * ft);
+		o->bound[0] += patch_sum_nodes(c);
+		o->bound[2] -= patch_sum_nodes(c * y);
+		o->bound[4] += patch_sum_nodes(c * x);
+		o->bound[5] += patch_sum_nodes(c * (x * x + y * y));
 	}
+	o->bound[3] = o->bound[0];
 	o->power = o->grad[0] * v[0] + o->grad[1] * v[1] + o->grad[2] * w;
 }
 
-// Moves a matrix from the loaded part's centre to the patch's centroid.
-static inline void patch_move(const lanes *centre, lanes *m)
-{
-	lanes x = -centre[1], y = centre[0];
-	m[5] += 2 * (x * m[2] + y * m[4]) + x * x * m[0] + 2 * x * y * m[1] + y * y * m[3];
-	m[2] += x * m[0] + y * m[1];
-	m[4] += x * m[1] + y * m[3];
-}
-
 // Computes D and its derivatives at the slip d in the lanes "asked". Scales d to the order of 1 (D is homogeneous).
-static inline void patch_slip_at(const patch_load *p, lane_mask asked, lanes *d, patch_slip *o)
+static inline void patch_slip_at(const patch_load *p, mask asked, real *d, patch_slip *o)
 {
 	const double far_share = .02; // share of rotation in the slip
-	lanes size = lanes_abs(p->e1[0]) + lanes_abs(p->e1[1]) + lanes_abs(p->e2[0]) + lanes_abs(p->e2[1]);
-	lanes v[2] = { d[0] - d[2] * p->centre[1], d[1] + d[2] * p->centre[0] };
-	lanes moves = lanes_abs(v[0]) + lanes_abs(v[1]), turns = lanes_abs(d[2]) * size,
-	      scale = 1 / (moves + turns + 1e-300);
+	real size = size_of(p->e1[0]) + size_of(p->e1[1]) + size_of(p->e2[0]) + size_of(p->e2[1]);
+	real v[2] = { d[0] - d[2] * p->centre[1], d[1] + d[2] * p->centre[0] };
+	real moves = size_of(v[0]) + size_of(v[1]), turns = size_of(d[2]) * size, scale = 1 / (moves + turns + 1e-300);
 	for (int c = 0; c < 3; c++)
 		d[c] *= scale;
 	v[0] *= scale, v[1] *= scale;
-	lane_mask far = turns < far_share * moves;
-	if (lanes_bits(asked & ~far))
-		patch_slip_near(p, lanes_bits(asked & ~far), v, lanes_select(far, 1 / size, d[2]), o);
+	const mask far = turns < far_share * moves, near = both_of(asked, not_of(far)), distant = both_of(asked, far);
+	if (is_any(near))
+		patch_slip_near(p, near, v, chosen(far, 1 / size, d[2]), o);
 	else
 		*o = (patch_slip){ 0 };
-	if (lanes_bits(asked & far)) {
-		patch_slip at_far;
-		patch_slip_far(p, v, d[2], &at_far);
-		o->power = lanes_select(far, at_far.power, o->power);
-		for (int i = 0; i < 3; i++)
-			o->grad[i] = lanes_select(far, at_far.grad[i], o->grad[i]);
-		for (int i = 0; i < 6; i++)
-			o->bound[i] = lanes_select(far, at_far.bound[i], o->bound[i]);
-	}
-	o->grad[2] += p->centre[0] * o->grad[1] - p->centre[1] * o->grad[0];
-	patch_move(p->centre, o->bound);
+	if (!is_any(distant))
+		return;
+	patch_slip at_far;
+	patch_slip_far(p, v, d[2], &at_far);
+	o->power = chosen(far, at_far.power, o->power);
+	for (int i = 0; i < 6; i++)
+		o->bound[i] = chosen(far, at_far.bound[i], o->bound[i]);
 }
 
 // ---- friction
@@ -374,113 +297,175 @@ static inline void patch_slip_at(const patch_load *p, lane_mask asked, lanes *d,
 // Makes the ellipsoid about the centre of pressure that touches C at the wrench of "slip", with the same normal. It is
 // as near to C as a quadratic form comes there (D(u)^2 <= u Q u, equal along the slip). A dense heap can afford the
 // integrals once in a substep; in all its sweeps and iterations the ellipsoid takes the place of C. to: lanes to set.
-static inline void patch_model_set(const patch_load *p, lane_mask to, const lanes *slip, ob_patch_model *o)
+static inline void patch_model_set(const patch_load *p, mask to, const real *slip, patch_model *o)
 {
-	lanes d[3] = { slip[0], slip[1], slip[2] }, q[6], c[6];
+	real d[3] = { slip[0], slip[1], slip[2] }, q[6], c[6];
 	patch_slip at;
 	patch_slip_at(p, to, d, &at);
-	const lanes from[2] = { -p->pressure[0], -p->pressure[1] };
-	patch_move(from, at.bound);
+	patch_move_to_pressure(p, at.bound);
 	d[0] -= d[2] * p->pressure[1];
 	d[1] += d[2] * p->pressure[0];
 	for (int i = 0; i < 6; i++)
 		q[i] = at.bound[i] * at.power;
 	c[0] = q[3] * q[5] - q[4] * q[4], c[1] = q[2] * q[4] - q[1] * q[5], c[2] = q[1] * q[4] - q[2] * q[3];
 	c[3] = q[0] * q[5] - q[2] * q[2], c[4] = q[1] * q[2] - q[0] * q[4], c[5] = q[0] * q[3] - q[1] * q[1];
-	lanes inverse = 1 / (q[0] * c[0] + q[1] * c[1] + q[2] * c[2]), power = 1 / at.power;
+	const real inverse = 1 / (q[0] * c[0] + q[1] * c[1] + q[2] * c[2]), power = 1 / at.power;
 	for (int i = 0; i < 6; i++) {
-		o->surface[i] = lanes_select(to, q[i], o->surface[i]);
-		o->inverse[i] = lanes_select(to, c[i] * inverse, o->inverse[i]);
+		o->surface[i] = chosen(to, q[i], o->surface[i]);
+		o->inverse[i] = chosen(to, c[i] * inverse, o->inverse[i]);
 	}
 	for (int i = 0; i < 3; i++)
-		o->slip[i] = lanes_select(to, d[i] * power, o->slip[i]);
+		o->slip[i] = chosen(to, d[i] * power, o->slip[i]);
 	for (int i = 0; i < 2; i++)
-		o->pressure[i] = lanes_select(to, p->edges[i], o->pressure[i]);
-	o->known |= lanes_bits(to);
+		o->pressure[i] = chosen(to, p->edges[i], o->pressure[i]);
+	o->known |= bits_of(to);
 }
 
-// Input of friction beyond the block, and state of the search from one sweep to the next.
-typedef struct patch_search {
-	lanes start[3]; // impulses that would undo the slip at the substep's start
-	lanes slip[3]; // slip at the substep's start: m/s, rad/s
-	unsigned begun, slides; // lanes with a known start; lanes with friction at its limit
-} patch_search;
+// Renews the ellipsoid of the lanes "due", for the direction of the substep's mean slip. If this is too small to tell,
+// it is the direction that the impulses "hold" resist.
+static inline void patch_renew(const friction_pair *b, patch_load *load, real bound, mask due, const real *slip,
+			       const patch_search *f, const real *hold, patch_model *m)
+{
+	const double telling = 1e-4; // relative to the change that friction can make in the substep
+	const real stay[3] = { -hold[0], -hold[1], -hold[2] };
+	real mean[3], resisted[3];
+	patch_load_set(b, load);
+	for (int c = 0; c < 3; c++)
+		mean[c] = slip[c] + f->slip[c];
+	const real speed = size_of(mean[0]) + size_of(mean[1]) + b->radius * size_of(mean[2]);
+	const mask tells = both_of(speed > telling * bound * patch_response(b), dot3(mean, stay) > 0);
+	patch_first_slip(load, stay, resisted);
+	for (int c = 0; c < 3; c++)
+		mean[c] = chosen(tells, mean[c], resisted[c]);
+	patch_model_set(load, due, mean, m);
+}
+
+// Finds t, Q z and |lambda| of patch_project in the lanes "slides", where load and surface are set.
+static inline void patch_stretch(const friction_pair *b, const real *surface, const real *load, real bound, mask slides,
+				 patch_model *m, patch_search *search, real *qz, real *length2, real *length)
+{
+	enum { MOST = 8 };
+	const real ib = 1 / larger_of(bound, real_of(1e-300));
+	real t = m->stretch;
+	mask goes = slides;
+	*length2 = bound * bound, *length = bound;
+	for (int c = 0; c < 3; c++)
+		qz[c] = *length2;
+	for (int k = 0; k < MOST && is_any(goes); k++) {
+		const patch_factors f = patch_factor(t, b->friction_mass, surface);
+		real z[3], mz[3], change[3], next[3];
+		patch_back(&f, load, z);
+		sym_mul(b->friction_mass, z, mz);
+		patch_back(&f, mz, change);
+		sym_mul(surface, z, next);
+		const real now2 = dot3(z, next), now = root_of(now2), off = now * ib - 1;
+		if (patch_ends.follows)
+			search->spin = chosen(goes, t * z[2], search->spin);
+		t = chosen(goes, larger_of(t + off * now2 / dot3(next, change), real_of(0)), t);
+		*length2 = chosen(goes, now2, *length2);
+		*length = chosen(goes, now, *length);
+		for (int c = 0; c < 3; c++)
+			qz[c] = chosen(goes, next[c], qz[c]);
+		goes = both_of(goes, size_of(off) > patch_ends.close);
+	}
+	m->stretch = chosen(slides, t, m->stretch);
+}
 
 // Finds the impulse within the limit surface that leaves the least slip: the projection of "hold", which leaves none,
-// in the metric of the masses. mass: inverse of A for these rows. Lanes that are not in "outside" keep theirs.
+// in the metric of the masses. Lanes that are not in "outside" keep theirs.
 //
 // A lane that slides has lambda = -grad D(w), with w the mean of its slip before and after. So friction takes as much
 // energy as its work says, and the error is of second order. With D = sqrt(u Q u): (t A^-1 + Q) z = load, lambda = -Q
 // z. Newton's method in 1/|lambda| finds t; this function is a straight line if A^-1 and Q are in proportion.
 // Returns the lanes whose slip has left the direction in which the ellipsoid touches.
-static inline lane_mask patch_project(ob_patch_model *m, const lanes *pressure, lanes bound, const lanes *mass,
-				      lane_mask outside, patch_search *search, lanes *hold)
+static inline mask patch_project(const friction_pair *b, patch_model *m, const real *pressure, real bound, mask outside,
+				 patch_search *search, real *hold)
 {
-	enum { MOST = 8 };
-	// cos^2 of some .02 rad; relative to the bound, before the last step
-	const double turned = 1 - 4e-4, close = 1e-9;
-	lanes stay[3], load[3], y[3], against = lanes_of(0), b2 = bound * bound,
-				      ib = 1 / lanes_max(bound, lanes_of(1e-300));
-	for (int c = 0; c < 3; c++) {
-		stay[c] = -hold[c];
-		against += stay[c] * search->slip[c];
-	}
+	const real stay[3] = { -hold[0], -hold[1], -hold[2] };
 	// Moves the ellipsoid with the centre of pressure.
-	const lanes here[3] = { stay[0], stay[1], stay[2] - pressure[0] * stay[1] + pressure[1] * stay[0] };
-	patch_mul(m->inverse, here, y);
-	lanes size2 = patch_dot(here, y), along = patch_dot(m->slip, here), surface[6];
-	lane_mask slides = outside & (size2 > b2), goes_on = against > 0;
-	lane_mask away = outside & ~slides & (along * along < turned * size2);
-	search->slides |= lanes_bits(slides);
-	if (!lanes_bits(slides))
+	const real here[3] = { stay[0], stay[1], stay[2] - pressure[0] * stay[1] + pressure[1] * stay[0] };
+	real y[3], load[3], surface[6], qz[3], n2, n;
+	sym_mul(m->inverse, here, y);
+	const real size2 = dot3(here, y);
+	real along = dot3(m->slip, here);
+	const mask slides = both_of(outside, size2 > bound * bound), goes_on = dot3(stay, search->slip) > 0;
+	const mask away = both_of(both_of(outside, not_of(slides)), along * along < patch_ends.turned * size2);
+	search->slides |= bits_of(slides);
+	if (!is_any(slides))
 		return away;
-	lanes z[3], qz[3] = { b2, b2, b2 }, mz[3], change[3], t = m->stretch, n2 = b2, n = bound;
-	lane_mask goes = slides;
 	memcpy(surface, m->surface, sizeof surface);
 	patch_move(pressure, surface);
 	for (int c = 0; c < 3; c++)
-		load[c] = stay[c] + lanes_where(goes_on, search->start[c]);
-	for (int k = 0; k < MOST && lanes_bits(goes); k++) {
-		patch_solve(t, mass, surface, load, z);
-		patch_mul(mass, z, mz);
-		patch_solve(t, mass, surface, mz, change);
-		lanes next[3];
-		patch_mul(surface, z, next);
-		lanes now2 = patch_dot(z, next), now = lanes_sqrt(now2), off = now * ib - 1;
-		t = lanes_where(goes, lanes_max(t + off * now2 / patch_dot(next, change), lanes_of(0))) +
-		    lanes_where(~goes, t);
-		n2 = lanes_select(goes, now2, n2);
-		n = lanes_select(goes, now, n);
-		for (int c = 0; c < 3; c++)
-			qz[c] = lanes_select(goes, next[c], qz[c]);
-		goes &= lanes_abs(off) > close;
-	}
-	m->stretch = lanes_select(slides, t, m->stretch);
-	along = patch_dot(m->slip, qz) + m->slip[2] * (pressure[1] * qz[0] - pressure[0] * qz[1]);
-	lanes scale = bound / n, force = lanes_sqrt(qz[0] * qz[0] + qz[1] * qz[1]) * scale;
-	lanes within = scale * bound / lanes_max(force, bound);
+		load[c] = stay[c] + chosen(goes_on, search->start[c], real_of(0));
+	patch_stretch(b, surface, load, bound, slides, m, search, qz, &n2, &n);
+	along = dot3(m->slip, qz) + m->slip[2] * (pressure[1] * qz[0] - pressure[0] * qz[1]);
+	const real scale = bound / n, force = root_of(qz[0] * qz[0] + qz[1] * qz[1]) * scale;
+	const real within = scale * bound / larger_of(force, bound);
+	if (patch_ends.follows)
+		search->capped = force > bound;
 	for (int c = 0; c < 3; c++)
-		hold[c] = lanes_select(slides, -qz[c] * (c < 2 ? within : scale), hold[c]);
-	return away | (slides & (along * along < turned * n2));
+		hold[c] = chosen(slides, -qz[c] * (c < 2 ? within : scale), hold[c]);
+	return away | both_of(slides, along * along < patch_ends.turned * n2);
 }
 
 // Returns lanes whose friction is certainly within the limit surface. Takes the same weight for all elements of the
 // patch: |force| + |twist about the centre of pressure| reach / spread <= bound. A bound on this, exact where it
 // matters, saves a root.
-static inline lane_mask patch_holds(const ob_batch *b, const lanes *x, lanes sum, lanes bound, const lanes *hold)
+static inline mask patch_holds(const friction_pair *b, const patch_load *load, real bound, const real *hold)
 {
 	const double kern = .28;
-	lanes inverse = 1 / lanes_max(sum, lanes_of(1e-300));
-	lanes s = (x[0] * b->patch_s[0] + x[1] * b->patch_s[1] + x[2] * b->patch_s[2] + x[3] * b->patch_s[3]) * inverse;
-	lanes t = (x[0] * b->patch_t[0] + x[1] * b->patch_t[1] + x[2] * b->patch_t[2] + x[3] * b->patch_t[3]) * inverse;
-	const lanes *e1 = b->patch_e1, *e2 = b->patch_e2;
-	lanes l1 = e1[0] * e1[0] + e1[1] * e1[1], l2 = e2[0] * e2[0] + e2[1] * e2[1];
-	lanes skew = e1[0] * e2[0] + e1[1] * e2[1], as = lanes_abs(s), at = lanes_abs(t), fs = 1 + as, ft = 1 + at;
-	lanes spread = l1 * (1. / 3 - s * s) + l2 * (1. / 3 - t * t) - 2 * s * t * skew;
-	lanes reach2 = fs * fs * l1 + ft * ft * l2 + 2 * fs * ft * lanes_abs(skew);
-	lanes twist = hold[2] - (s * e1[0] + t * e2[0]) * hold[1] + (s * e1[1] + t * e2[1]) * hold[0];
-	lanes f2 = hold[0] * hold[0] + hold[1] * hold[1], b2 = bound * bound, room = (b2 - f2) * spread;
-	return (f2 <= b2) & (4 * b2 * twist * twist * reach2 <= room * room) & ((as + at <= kern) | (l1 == 0));
+	const real *e1 = b->patch_e1, *e2 = b->patch_e2, s = load->edges[0], t = load->edges[1];
+	const real l1 = e1[0] * e1[0] + e1[1] * e1[1], l2 = e2[0] * e2[0] + e2[1] * e2[1];
+	const real skew = e1[0] * e2[0] + e1[1] * e2[1], as = size_of(s), at = size_of(t), fs = 1 + as, ft = 1 + at;
+	const real spread = l1 * (1. / 3 - s * s) + l2 * (1. / 3 - t * t) - 2 * s * t * skew;
+	const real reach2 = fs * fs * l1 + ft * ft * l2 + 2 * fs * ft * size_of(skew);
+	const real twist = hold[2] - load->pressure[0] * hold[1] + load->pressure[1] * hold[0];
+	const real f2 = hold[0] * hold[0] + hold[1] * hold[1], b2 = bound * bound, room = (b2 - f2) * spread;
+	const mask within = both_of(f2 <= b2, 4 * b2 * twist * twist * reach2 <= room * room);
+	return both_of(within, (as + at <= kern) | (l1 == 0));
+}
+
+// Limits "hold" in the lanes "outside", where it exceeds the limit surface: they slip. slip: the present one.
+static __attribute__((noinline)) void patch_let_slip(const friction_pair *b, mask outside, patch_load *load, real sum,
+						     const real *slip, patch_search *f, real *hold)
+{
+	const double same_pressure = 1e-9; // half edges: a smaller shift of the centre of pressure counts as none
+	const real bound = b->mu * sum;
+	patch_model *m = f->model;
+	const mask none = both_of(outside, not_of(bound > 0));
+	f->slides |= bits_of(none);
+	for (int c = 0; c < 3; c++)
+		hold[c] = chosen(none, real_of(0), hold[c]);
+	outside = both_of(outside, not_of(none));
+	if (!is_any(outside))
+		return;
+	if (!f->begun) {
+		patch_begin_slip(b, f);
+		sym_mul(b->friction_mass, f->slip, f->start);
+		f->begun = 1;
+	}
+	const real shift = size_of(load->edges[0] - m->pressure[0]) + size_of(load->edges[1] - m->pressure[1]);
+	const mask due = both_of(outside, (shift > same_pressure) | not_of(mask_of(m->known)));
+	if (is_any(due))
+		patch_renew(b, load, bound, due, slip, f, hold, m);
+	m->known &= ~bits_of(patch_project(b, m, load->pressure, bound, outside, f, hold));
+}
+
+// Finds friction and twist of patches together: impulses that hold, or those that the limit surface permits. missing:
+// m/s, rad/s: change of the slip that would end it; x: present impulses; load: with the centre of pressure in half edges.
+static inline void patch_friction(const friction_pair *b, mask patch, patch_load *load, real sum, const real *missing,
+				  const real *x, patch_search *f, real *next)
+{
+	sym_mul(b->friction_mass, missing, next);
+	for (int c = 0; c < 3; c++)
+		next[c] += x[c];
+	patch_set_pressure(b, load);
+	const mask outside = both_of(patch, not_of(patch_holds(b, load, b->mu * sum, next)));
+	f->slides &= ~bits_of(patch);
+	if (is_any(outside)) {
+		const real slip[3] = { -missing[0], -missing[1], -missing[2] };
+		patch_let_slip(b, outside, load, sum, slip, f, next);
+	}
 }
 
 #endif

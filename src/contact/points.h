@@ -4,7 +4,7 @@
 #define OB_CONTACT_POINTS_H
 
 #include "contact/batch.h"
-#include "contact/patch.h"
+#include "contact/patch_lanes.h"
 
 // Vectors from one centre to the points.
 typedef struct arms {
@@ -45,7 +45,7 @@ static inline void find_friction(const arms *of_a, const arms *of_b, ob_vec3 n, 
 	lanes xa[3], xb[3];
 	points_from(of_a, of_a->middle, xa);
 	points_from(of_b, of_b->middle, xb);
-	const lanes far = lanes_max(patch_dot(xa, xa), patch_dot(xb, xb)); // symmetric in a and b
+	const lanes far = lanes_max(dot3(xa, xa), dot3(xb, xb)); // symmetric in a and b
 	const double reach = near * __builtin_sqrt(lanes_largest(lanes_where(gap < INFINITY, far)));
 	const lanes share = lanes_select(above <= 0, lanes_of(1), lanes_where(above < reach, 1 - above / reach));
 	lanes sum = lanes_of(0), of[OB_POINTS] = { share, share * points_along(xa, n), share * points_along(xb, n) };

@@ -4,8 +4,11 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "elementary/real.h"
 #include "solver/budget.h"
 #include "solver/relative_speed.h"
+
+#include "contact/friction.h" // for one number
 
 enum { ROOT = UINT32_MAX, UNREACHED = ROOT - 1 }; // values of parent_contact[]
 
@@ -313,12 +316,10 @@ static void project_on_cone(const ob_batch *b, int l, double *x)
 	double sum = 0;
 	for (int j = 0; j < OB_POINTS; j++)
 		sum += x[j] = ob_max(0, x[j]);
-	double bound = b->mu[l] * sum, friction = length(x[4], x[5]);
-	if (friction > bound) {
-		x[4] *= bound / friction;
-		x[5] *= bound / friction;
-	}
-	x[6] = ob_max(-bound * b->radius[l], ob_min(bound * b->radius[l], x[6]));
+	const double bound = b->mu[l] * sum, share = disc_share(bound, x[4] * x[4] + x[5] * x[5]);
+	x[4] *= share;
+	x[5] *= share;
+	x[6] = twist_within(-bound * b->radius[l], bound * b->radius[l], x[6]);
 }
 
 // Projects the share alpha of the solution on the cones: finds the changes of impulses, and of velocities in w->delta.

@@ -1,0 +1,58 @@
+// Coulomb's law of friction of a pair: its force f is at most mu times the load x, and opposes the slip.
+//
+//      |f| <= mu x                at a point, and at the centroid of a contact in a stack or heap: a disc
+//      |twist| <= mu radius x     about the normal, at that centroid
+//      (f, twist) in C(x)         of an area between two bodies that touch nothing else: contact/patch.h
+//
+// The law stands here and in contact/patch.h alone, as a text compiled for one number and for four in lanes. Sweeps and
+// Newton steps of the contact solver call it for four pairs side by side (contact/kernel.c) and for one (contact/lone.c).
+// Two callers have other equations, of which the bound alone is the same:
+//
+// - An impact (contact/impact.c) finds load and friction of all points together, as velocities jump. So the bound moves
+//   with the unknown load. A single point that slides has one unknown, the direction of its slip afterwards; several
+//   have the derivative of the projection on this disc (Alart and Curnier 1991).
+// - A direct solve (solver/direct_solver.c) takes friction within the bound for rows that hold, a linear system. It
+//   projects the solution on this disc.
+//
+// The including file first includes elementary/real.h or elementary/real_lanes.h.
+#ifndef OB_CONTACT_FRICTION_H
+#define OB_CONTACT_FRICTION_H
+
+// Returns the factor that brings a force of this squared length to the disc: 1 within it.
+static inline real disc_share(real bound, real length2)
+{
+	return bound / root_of(larger_of(length2, bound * bound) + 1e-300);
+}
+
+// Limits a twist, or the change of one, to an interval.
+static inline real twist_within(real low, real high, real twist)
+{
+	return larger_of(low, smaller_of(high, twist));
+}
+
+// Finds the friction x of points that slide, to the end: the one within the disc that leaves the least slip. Such a
+// point has (A + t) x = load, |x| = bound, t = slip over impulse: Newton's method in 1/|x|. a: A, as 11 12 22. Changes x
+// in the lanes "slides" alone. Returns t.
+static inline real point_slide(mask slides, real bound, const real *a, const real *load, real *x)
+{
+	enum { MOST = 16 };
+	const double close = 1e-13; // relative to the bound
+	const real m = a[1];
+	real t = real_of(0);
+	mask goes = both_of(slides, bound > 0);
+	for (int k = 0; k < MOST && is_any(goes); k++) {
+		const real p = a[0] + t, q = a[2] + t, inverse = 1 / (p * q - m * m);
+		const real y[2] = { (q * load[0] - m * load[1]) * inverse, (p * load[1] - m * load[0]) * inverse };
+		const real n2 = y[0] * y[0] + y[1] * y[1], n = root_of(n2), off = n / bound - 1;
+		const real falls = (q * y[0] * y[0] - 2 * m * y[0] * y[1] + p * y[1] * y[1]) * inverse;
+		for (int i = 0; i < 2; i++)
+			x[i] = chosen(goes, y[i] * (bound / n), x[i]);
+		t = chosen(goes, t + off * n2 / falls, t);
+		goes = both_of(goes, size_of(off) > close);
+	}
+	for (int i = 0; i < 2; i++)
+		x[i] = chosen(both_of(slides, not_of(bound > 0)), real_of(0), x[i]);
+	return t;
+}
+
+#endif
