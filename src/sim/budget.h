@@ -21,9 +21,6 @@
 // Begins a share. object: named as the cause if the budget is exceeded or the worker dies in this share.
 void ob_budget_begin_share(ob_sim *s, uint32_t object);
 
-// Adds work done elsewhere on this object. Returns true if the budget is spent; then the step has failed.
-bool ob_budget_add(ob_universe *u, uint64_t work, uint32_t object);
-
 // The solver's account (ob_island_calls.spend) of this worker: adds work to the share's object. Returns true if the budget
 // is spent or the run was stopped; then the step has failed.
 bool ob_budget_spend(void *sim, uint64_t work);

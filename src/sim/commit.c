@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/budget.h"
-#include "sim/calendar.h"
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
+#include "schedule/work.h"
 #include "sim/halo.h"
-#include "sim/pair_rank.h"
 #include "table/home.h"
 
 enum { NONE = UINT32_MAX };
@@ -442,7 +442,7 @@ static void note_end(ob_universe *u, const ob_mail_record *r)
 	else if (why)
 		ob_step_fail(u, why, object);
 	else
-		ob_budget_add(u, end->work, end->worked_on);
+		ob_work_add(u, end->work, end->worked_on);
 }
 
 // Reads the last record of every simulator, which says if it has failed. Returns true if any has: then results may be

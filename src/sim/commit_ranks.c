@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schedule/pair_checks.h"
 #include "sim/committer.h"
 #include "sim/digest.h"
-#include "sim/island_builder.h"
-#include "sim/pair_rank.h"
+#include "schedule/involved.h"
 #include "table/home.h"
 
 bool ob_committer_share(ob_committer *c, const ob_universe *u)
@@ -245,7 +245,7 @@ void ob_commit_involve_links_across(ob_committer *c, ob_universe *u)
 		const ob_pair_key *k = &data->pair[pair_at(&c->links_across, i)];
 		for (int side = 0; side < 2; side++)
 			if (ob_home_rank(u, side ? k->b : k->a) == c->rank)
-				ob_islands_involve(u, side ? k->b : k->a);
+				ob_involve_due(u, side ? k->b : k->a);
 	}
 }
 

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schedule/pair_checks.h"
 #include "sim/digest.h"
-#include "sim/pair_rank.h"
 #include "table/home.h"
 
 enum { ALL = 0 }; // a holder

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 #include "base/sanitizer.h"
+#include "schedule/calendar.h"
 #include "shape/shape.h"
 #include "sim/broadphase.h"
-#include "sim/calendar.h"
 #include "sim/pairs.h"
 #include "table/home.h"
 

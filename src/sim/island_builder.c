@@ -2,8 +2,9 @@
 
 #include <string.h>
 
-#include "sim/calendar.h"
-#include "sim/pair_rank.h"
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
+#include "schedule/work.h"
 #include "sim/pairs.h"
 #include "sim/prefetch.h"
 #include "sim/sort_ids.h"
@@ -11,107 +12,65 @@
 #include "table/home.h"
 
 enum { NONE = UINT32_MAX };
-enum { LINKED_AT_ONCE = 64 }; // bodies in a task, for the same reason
-// Work of a chunk, some us: for less the gate costs more than another worker gains. If that leaves
-// CHUNKS_ABREAST chunks for each worker, a chunk has the work of as many flights as are followed side by side.
-enum { CHUNK_WORK_MIN = 48, CHUNK_WORK_ABREAST = 160, CHUNKS_ABREAST = 4 };
+enum { LINKED_AT_ONCE = 64 }; // bodies in a task: for fewer the gate costs more than another worker gains
+// A chunk has OB_WORK_WORTH_A_WORKER. If that leaves CHUNKS_ABREAST chunks for each worker, it has the work of as many
+// flights as are followed side by side.
+enum { CHUNK_WORK_ABREAST = 160, CHUNKS_ABREAST = 4 };
 
-// Data for building islands: the bodies involved, and a union-find forest of them, in which the root of a tree is its
-// lowest id. No array that is as long as there are objects, or pairs, is cleared each step. But where many objects
-// move, so that several workers find links, each object is made a root before.
-typedef struct builder {
-	ob_universe *u;
-	ob_step_data *data;
-	uint32_t ids;
-	// [bodies], ascending when all are found; while several workers look for them, ob_object_involve alone counts
-	// them
-	uint32_t *body;
-	uint32_t bodies;
-	uint32_t *place; // [id], when islands are merged: index in body[], valid where body[] has the id there
-	uint32_t *parent; // [id], for bodies (table/forest.h)
-	uint32_t *island_of; // [root]
-	bool merges; // islands that were solved apart are merged; else those of a new step are built
-	bool alone; // there is but this rank, so all bodies are its own
-	uint64_t step; // step for which the islands are built
-} builder;
-
-static bool is_dynamic(const builder *p, uint32_t id)
+static bool is_dynamic(const ob_involved *p, uint32_t id)
 {
 	return ob_schedule_is_dynamic(&p->data->schedule[id]);
 }
 
 // True for a body that this rank solves.
-static bool is_own(const builder *p, uint32_t id)
+static bool is_own(const ob_involved *p, uint32_t id)
 {
 	return is_dynamic(p, id) && (p->alone || ob_worker_is_here(p->u, ob_home_of(p->u, id)));
 }
 
 // True, when islands are merged, if it is in an island that was solved; valid until members are listed anew.
-static bool was_solved(const builder *p, uint32_t id)
+static bool was_solved(const ob_involved *p, uint32_t id)
 {
 	return p->data->result_island[id] != NONE;
 }
 
 // True if it is in no island unless it is woken. False for bodies that have fallen asleep in this step.
-static bool is_asleep(const builder *p, uint32_t id)
+static bool is_asleep(const ob_involved *p, uint32_t id)
 {
 	return p->data->schedule[id].state >= OB_SCHEDULE_ASLEEP && !was_solved(p, id);
 }
 
-static bool is_in_range(const builder *p, const ob_pair_key *k)
+static bool is_in_range(const ob_involved *p, const ob_pair_key *k)
 {
 	return ob_object_in_range(p->data, k->a) && ob_object_in_range(p->data, k->b);
 }
 
 // ---- bodies involved, when islands are merged
 
-static bool is_involved(const builder *p, uint32_t id)
-{
-	const uint32_t i = p->place[id];
-	return i < p->bodies && p->body[i] == id;
-}
-
-static void involve(builder *p, uint32_t id)
-{
-	if (is_involved(p, id) || p->bodies == p->ids)
-		return;
-	p->place[id] = p->bodies;
-	p->body[p->bodies++] = id;
-	p->parent[id] = id;
-}
-
-// Involves both and joins their trees.
-static void join(builder *p, uint32_t i, uint32_t j)
-{
-	involve(p, i);
-	involve(p, j);
-	ob_forest_join(p->parent, i, j);
-}
-
 // Involves both bodies of a link, so that they are solved in this step.
-static void involve_link(builder *p, const ob_pair_key *k)
+static void involve_link(ob_involved *p, const ob_pair_key *k)
 {
 	if (is_own(p, k->a) && is_own(p, k->b))
-		join(p, k->a, k->b);
+		ob_involve_joined(p, k->a, k->b);
 	else if (is_own(p, k->a) || is_own(p, k->b))
-		involve(p, is_own(p, k->a) ? k->a : k->b);
+		ob_involve_again(p, is_own(p, k->a) ? k->a : k->b);
 }
 
 // True if the pair links its bodies. Sleepers that are woken within a step wake the bodies that they touch; expected
 // contacts concern the coming step then. Links to another rank's body are known to that rank, too (rank_islands.h).
 // Most pairs link nothing, so their objects are tested last.
-static bool is_link(const builder *p, const ob_pair_key *k)
+static bool is_link(const ob_involved *p, const ob_pair_key *k)
 {
 	return (p->merges ? k->active : k->active | k->expected) && is_in_range(p, k) && is_own(p, k->a) &&
 	       is_own(p, k->b) && (!p->merges || (is_asleep(p, k->a) && is_asleep(p, k->b)));
 }
 
 // Involves all bodies of the object's island, which is solved again as a whole.
-static void involve_island_of(builder *p, uint32_t id)
+static void involve_island_of(ob_involved *p, uint32_t id)
 {
 	const uint32_t island = p->data->result_island[id];
 	if (island == NONE) {
-		involve(p, id);
+		ob_involve_again(p, id);
 		return;
 	}
 	ob_island *is = &p->data->island[island];
@@ -119,13 +78,13 @@ static void involve_island_of(builder *p, uint32_t id)
 	if (!is->solved)
 		return;
 	is->solved = 0;
-	involve(p, member[0]);
+	ob_involve_again(p, member[0]);
 	for (uint32_t k = 1; k < is->members; k++)
-		join(p, member[0], member[k]);
+		ob_involve_joined(p, member[0], member[k]);
 }
 
 // Involves the islands of bodies with late contacts in this step. The solutions of all other islands stand.
-static void involve_late(builder *p)
+static void involve_late(ob_involved *p)
 {
 	const ob_step_data *data = p->data;
 	for (uint32_t i = 0; i < data->count->islands; i++)
@@ -142,7 +101,7 @@ static void involve_late(builder *p)
 }
 
 // Involves linked bodies; the list grows while the loop runs: breadth first.
-static void involve_linked(builder *p)
+static void involve_linked(ob_involved *p)
 {
 	const ob_step_data *data = p->data;
 	for (uint32_t i = 0; i < p->bodies; i++) {
@@ -153,40 +112,29 @@ static void involve_linked(builder *p)
 		     link = ob_pair_next(data, at)) {
 			data->count->visits++;
 			if (is_link(p, &data->pair[at.pair]))
-				join(p, data->pair[at.pair].a, data->pair[at.pair].b);
+				ob_involve_joined(p, data->pair[at.pair].a, data->pair[at.pair].b);
 		}
 	}
 }
 
 // ---- bodies involved in a new step
 
-// Involves a body. true: it was in no island before. If each object is a root, several workers may call it, and
-// another may have joined it to a tree since; else it becomes a root.
-static bool involve_new(const builder *p, uint32_t id)
-{
-	if (!ob_object_involve(p->u, id))
-		return false;
-	if (!p->data->count->rooted)
-		p->parent[id] = id;
-	return true;
-}
-
 // Involves both bodies of a pair that touches, or is expected to, if one of them moves.
-static void involve_pair(const builder *p, const ob_pair_key *k)
+static void involve_pair(const ob_involved *p, const ob_pair_key *k)
 {
 	if (!(k->active | k->expected) || !is_in_range(p, k) ||
 	    (!ob_schedule_moves(&p->data->schedule[k->a]) && !ob_schedule_moves(&p->data->schedule[k->b])))
 		return;
 	const bool a = is_own(p, k->a), b = is_own(p, k->b);
 	if (a)
-		involve_new(p, k->a);
+		ob_involve(p, k->a);
 	if (b)
-		involve_new(p, k->b);
+		ob_involve(p, k->b);
 	if (a && b)
 		ob_forest_join(p->parent, k->a, k->b);
 }
 
-static void make_roots(const builder *p, uint32_t due)
+static void make_roots(const ob_involved *p, uint32_t due)
 {
 	p->data->count->rooted = due >= OB_ISLANDS_MANY && due >= p->ids / 16;
 	for (uint32_t i = 0; p->data->count->rooted && i < p->ids; i++)
@@ -207,7 +155,7 @@ static void prefetch_due_pair(const ob_step_data *data, uint32_t i, uint32_t end
 }
 
 // Involves the bodies that are due in this step, and those of linked pairs that are due for a check.
-static void involve_due(const builder *p)
+static void involve_due(const ob_involved *p)
 {
 	const ob_step_data *data = p->data;
 	const ob_calendar solve = ob_calendar_of_objects(p->u), look = ob_calendar_of_pairs(p->u);
@@ -216,7 +164,7 @@ static void involve_due(const builder *p)
 	const uint32_t n = ob_calendar_list(&solve, p->step, due, p->ids);
 	make_roots(p, n);
 	for (uint32_t i = 0; i < n; i++)
-		involve_new(p, due[i]);
+		ob_involve(p, due[i]);
 	for (uint32_t i = 0; i < pairs; i++) {
 		prefetch_due_pair(data, i, pairs);
 		involve_pair(p, &data->pair[data->check[i]]);
@@ -226,7 +174,7 @@ static void involve_due(const builder *p)
 
 // Joins the body to its linked bodies. Each body that is new goes on the caller's stack, through place[]: the task that
 // has found it follows its links.
-static void follow_links(const builder *p, uint32_t id, uint32_t *stack, uint64_t *visits)
+static void follow_links(const ob_involved *p, uint32_t id, uint32_t *stack, uint64_t *visits)
 {
 	const ob_step_data *data = p->data;
 	ob_pair_place at;
@@ -236,7 +184,7 @@ static void follow_links(const builder *p, uint32_t id, uint32_t *stack, uint64_
 		++*visits;
 		if (!is_link(p, k))
 			continue;
-		if (involve_new(p, other)) {
+		if (ob_involve(p, other)) {
 			p->place[other] = *stack;
 			*stack = other;
 		}
@@ -244,20 +192,8 @@ static void follow_links(const builder *p, uint32_t id, uint32_t *stack, uint64_
 	}
 }
 
-// Finds the root of each body. Returns the number of roots.
-static uint32_t count_trees(const builder *p)
-{
-	uint32_t n = 0;
-	for (uint32_t i = 0; i < p->bodies; i++) {
-		const uint32_t id = p->body[i];
-		p->parent[id] = ob_forest_root(p->parent, id);
-		n += p->parent[id] == id;
-	}
-	return n;
-}
-
 // Numbers the trees by their lowest id, as the first islands, and lists their members in ascending order, as the first.
-static void list_members(builder *p)
+static void list_members(ob_involved *p)
 {
 	ob_step_data *data = p->data;
 	uint32_t n = 0, total = 0;
@@ -287,7 +223,7 @@ static void list_members(builder *p)
 
 // Moves the standing islands behind the first `unsolved` places, without a gap. Few have to be moved, as the members of
 // each would have to be updated. Returns the end of the islands.
-static uint32_t move_standing(const builder *p, uint32_t unsolved)
+static uint32_t move_standing(const ob_involved *p, uint32_t unsolved)
 {
 	ob_step_data *data = p->data;
 	const uint32_t before = data->count->islands;
@@ -310,7 +246,7 @@ static uint32_t move_standing(const builder *p, uint32_t unsolved)
 
 // Moves the members of standing islands behind those of the others, and their pairs to the front. Scratch: place[] and
 // ob_step_data.check, which have been read.
-static void move_lists_of_standing(const builder *p, uint32_t first, uint32_t end)
+static void move_lists_of_standing(const ob_involved *p, uint32_t first, uint32_t end)
 {
 	ob_step_data *data = p->data;
 	uint32_t members = 0, pairs = 0, *member = p->place, *pair = data->check;
@@ -332,7 +268,7 @@ static void move_lists_of_standing(const builder *p, uint32_t first, uint32_t en
 
 // Returns the island that solves a pair: pairs of its members, and of a member and a body that does not move; NONE if
 // they cannot touch in this step. Results of a check within the step are void if the island is solved again.
-static uint32_t island_of_pair(const builder *p, ob_pair_key *k)
+static uint32_t island_of_pair(const ob_involved *p, ob_pair_key *k)
 {
 	const uint32_t ia = p->data->result_island[k->a], ib = p->data->result_island[k->b], i = ia != NONE ? ia : ib;
 	if (p->merges)
@@ -365,7 +301,7 @@ static void sort_pairs(const ob_step_data *data, uint32_t *pair, uint32_t n)
 
 // Estimates an island's work: the cost of its members in the last step, and at least the usual one for its size. On
 // several ranks its pairs are listed after islands are dealt.
-static uint32_t estimated_work(const builder *p, const ob_island *is)
+static uint32_t estimated_work(const ob_involved *p, const ob_island *is)
 {
 	uint32_t sum = 1 + is->members + 8 * is->pairs;
 	for (uint32_t k = 0; (is->pairs || !p->alone) && k < is->members; k++)
@@ -382,14 +318,14 @@ typedef struct listing {
 
 // True if the pair is listed with the body on this side. A pair of two members is listed with a, if a is solved; so one
 // island's task alone lists and writes it.
-static bool is_listed_with(const builder *p, const ob_pair_key *k, uint32_t side)
+static bool is_listed_with(const ob_involved *p, const ob_pair_key *k, uint32_t side)
 {
 	return is_in_range(p, k) && (!side || !ob_is_to_be_solved(p->data, k->a));
 }
 
 // Lists the pairs of a body. in_island holds from here to the next islands. All pairs of the body, in an island or not,
 // are checked after the solve (late_contacts.h).
-static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listing *to)
+static void list_pairs_of(const ob_involved *p, uint32_t id, uint32_t island, listing *to)
 {
 	ob_step_data *data = p->data;
 	const ob_calendar look = ob_calendar_of_pairs(p->u);
@@ -418,7 +354,7 @@ static void list_pairs_of(const builder *p, uint32_t id, uint32_t island, listin
 }
 
 // Lists the pairs of a large island again, when their number is known.
-static void list_all_again(const builder *p, const ob_island *is)
+static void list_all_again(const ob_involved *p, const ob_island *is)
 {
 	const ob_step_data *data = p->data;
 	uint32_t n = 0;
@@ -432,7 +368,7 @@ static void list_all_again(const builder *p, const ob_island *is)
 	}
 }
 
-static void list_pairs_of_island(const builder *p, uint32_t island, listing *to)
+static void list_pairs_of_island(const ob_involved *p, uint32_t island, listing *to)
 {
 	ob_step_data *data = p->data;
 	ob_island *is = &data->island[island];
@@ -450,7 +386,7 @@ static void list_pairs_of_island(const builder *p, uint32_t island, listing *to)
 	sort_pairs(data, data->island_pair + is->first_pair, is->pairs);
 }
 
-static void list_pairs(const builder *p, uint32_t first, uint32_t end)
+static void list_pairs(const ob_involved *p, uint32_t first, uint32_t end)
 {
 	listing found;
 	found.visits = 0;
@@ -464,7 +400,7 @@ static void list_pairs(const builder *p, uint32_t first, uint32_t end)
 }
 
 // Lists the pairs of dealt islands, on several ranks, in the order of member[].
-static void list_dealt_pairs(const builder *p, ob_halo *halo)
+static void list_dealt_pairs(const ob_involved *p, ob_halo *halo)
 {
 	ob_step_data *data = p->data;
 	listing found;
@@ -480,7 +416,7 @@ static void list_dealt_pairs(const builder *p, ob_halo *halo)
 
 // Ends the islands of the step before: their pairs are in no island any more, and those that touch no longer lose their
 // record. Pairs lie anywhere, and the worker that solved them has written them last.
-static void end_islands(const builder *p)
+static void end_islands(const ob_involved *p)
 {
 	enum { AHEAD = 16 };
 	ob_step_data *data = p->data;
@@ -517,7 +453,7 @@ static void permute_islands(ob_island *island, uint32_t *from, uint32_t n)
 
 // Sorts the islands to be solved by work, largest first, stable. A radix sort: there may be tens of thousands of
 // islands, and work has no more than two or three digits.
-static void sort_by_work(builder *p)
+static void sort_by_work(ob_involved *p)
 {
 	enum { BITS = 8, DIGITS = 1 << BITS };
 	const ob_island *island = p->data->island;
@@ -549,12 +485,12 @@ uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers)
 							  : CHUNK_WORK_ABREAST;
 	if (workers == 1)
 		return UINT64_MAX;
-	return share > CHUNK_WORK_MIN ? share : CHUNK_WORK_MIN;
+	return share > OB_WORK_WORTH_A_WORKER ? share : OB_WORK_WORTH_A_WORKER;
 }
 
 // Makes chunks, largest first, so that no worker starts on a large island when the others are done; small islands share
 // one.
-static void make_chunks(builder *p, uint64_t total)
+static void make_chunks(ob_involved *p, uint64_t total)
 {
 	ob_step_data *data = p->data;
 	const uint32_t unsolved = data->count->unsolved;
@@ -584,7 +520,7 @@ typedef struct shares {
 } shares;
 
 // Returns the simulator that is to solve the object: on several ranks that of its region; else the last that got it.
-static uint32_t home_of(const builder *p, const shares *s, uint32_t id)
+static uint32_t home_of(const ob_involved *p, const shares *s, uint32_t id)
 {
 	const uint32_t home = s->regions ? ob_regions_at(s->regions, id) : ob_home_of(p->u, id),
 		       place = home - s->first;
@@ -592,7 +528,7 @@ static uint32_t home_of(const builder *p, const shares *s, uint32_t id)
 }
 
 // Returns the home of most members.
-static uint32_t preferred_owner(const builder *p, const shares *s, const ob_island *is)
+static uint32_t preferred_owner(const ob_involved *p, const shares *s, const ob_island *is)
 {
 	const ob_step_data *data = p->data;
 	const uint32_t *member = data->member + is->first_member;
@@ -610,7 +546,7 @@ static uint32_t preferred_owner(const builder *p, const shares *s, const ob_isla
 }
 
 // Returns the simulator to which a member is pinned, the first of several; UINT32_MAX: none is.
-static uint32_t pin_of(const builder *p, const shares *s, const ob_island *is)
+static uint32_t pin_of(const ob_involved *p, const shares *s, const ob_island *is)
 {
 	const ob_step_data *data = p->data;
 	for (uint32_t k = 0; s->pins && k < is->members; k++) {
@@ -629,7 +565,7 @@ static uint32_t least_loaded(const shares *s)
 	return best;
 }
 
-static void ask_for(builder *p, shares *s, uint32_t island)
+static void ask_for(ob_involved *p, shares *s, uint32_t island)
 {
 	const ob_island *is = &p->data->island[island];
 	const uint32_t pin = pin_of(p, s, is);
@@ -638,7 +574,7 @@ static void ask_for(builder *p, shares *s, uint32_t island)
 }
 
 // Moves an island from an overloaded simulator to the one that finishes first.
-static void give_island(builder *p, shares *s, uint32_t island)
+static void give_island(ob_involved *p, shares *s, uint32_t island)
 {
 	const ob_step_data *data = p->data;
 	const ob_island *is = &data->island[island];
@@ -663,16 +599,9 @@ static uint32_t least_of(uint32_t a, uint32_t b)
 	return a < b ? a : b;
 }
 
-uint64_t ob_islands_share(uint64_t total, uint32_t count)
-{
-	enum { SLACK = 10, WORTH_SHARING = 16 * CHUNK_WORK_MIN };
-	const uint64_t share = total / count + total / (count * SLACK) + 1;
-	return share > WORTH_SHARING ? share : WORTH_SHARING;
-}
-
 // Makes a chunk for each simulator from the islands of its region, or those that it solved before. If a simulator would
 // get a tenth more than its share, others take islands, the largest first.
-static void make_shares(builder *p, uint64_t total, ob_regions *regions)
+static void make_shares(ob_involved *p, uint64_t total, ob_regions *regions)
 {
 	ob_step_data *data = p->data;
 	const uint32_t all = least_of(ob_universe_simulators(p->u), data->objects_max),
@@ -691,7 +620,7 @@ static void make_shares(builder *p, uint64_t total, ob_regions *regions)
 	data->count->chunks = all;
 	if (!s.count) // a rank with more simulators than there can be objects
 		return;
-	s.most = (uint32_t)(ob_islands_share(total, s.count) >> s.shift);
+	s.most = (uint32_t)(ob_work_share(total, s.count) >> s.shift);
 	memset(s.load, 0, s.count * sizeof *s.load);
 	memset(s.votes, 0, s.count * sizeof *s.votes);
 	for (uint32_t i = 0; i < unsolved; i++)
@@ -709,7 +638,7 @@ static void make_shares(builder *p, uint64_t total, ob_regions *regions)
 }
 
 // Sets the order in which islands are solved, and the worker of each.
-static void deal_islands(builder *p, ob_regions *regions)
+static void deal_islands(ob_involved *p, ob_regions *regions)
 {
 	ob_step_data *data = p->data;
 	const uint32_t n = data->count->unsolved;
@@ -729,37 +658,12 @@ static void deal_islands(builder *p, ob_regions *regions)
 
 // ---- calls in their order
 
-static builder builder_of(ob_universe *u, bool merges)
-{
-	ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t ids = ob_universe_ids(u);
-	return (builder){ .u = u,
-			  .data = data,
-			  .ids = ids,
-			  .body = data->scratch,
-			  .place = data->scratch + ids,
-			  .parent = data->scratch + 2 * (size_t)ids,
-			  .island_of = data->scratch + 3 * (size_t)ids,
-			  .merges = merges,
-			  .alone = ob_universe_ranks(u) < 2,
-			  .step = ob_step_count(u) };
-}
-
-// Makes the builder when all bodies are involved.
-static builder builder_of_all(ob_universe *u)
-{
-	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
-	builder p = builder_of(u, count->merged);
-	p.bodies = count->involved < p.ids ? count->involved : p.ids;
-	return p;
-}
-
 void ob_islands_begin(ob_universe *u)
 {
 	struct ob_step_counts *count = ob_universe_step_data(u)->count;
 	count->merged = 0;
 	count->involved = 0;
-	const builder p = builder_of(u, false);
+	const ob_involved p = ob_involved_begin(u, false);
 	end_islands(&p);
 	involve_due(&p);
 }
@@ -776,7 +680,7 @@ uint32_t ob_islands_link_tasks(const ob_universe *u)
 
 void ob_islands_link(ob_universe *u, uint32_t task)
 {
-	const builder p = builder_of(u, false);
+	const ob_involved p = ob_involved_begin(u, false);
 	const uint32_t end = end_of_task(task, LINKED_AT_ONCE, p.data->count->due);
 	uint64_t visits = 0;
 	uint32_t stack = NONE;
@@ -794,10 +698,10 @@ void ob_islands_link(ob_universe *u, uint32_t task)
 
 void ob_islands_list_members(ob_universe *u)
 {
-	builder p = builder_of_all(u);
+	ob_involved p = ob_involved_all(u);
 	ob_sort_ids(p.body, p.bodies, p.ids, p.place); // place is scratch now
 	p.data->count->visits += p.bodies;
-	const uint32_t unsolved = count_trees(&p), end = p.merges ? move_standing(&p, unsolved) : unsolved;
+	const uint32_t unsolved = ob_involved_roots(&p), end = p.merges ? move_standing(&p, unsolved) : unsolved;
 	if (p.merges)
 		move_lists_of_standing(&p, unsolved, end);
 	list_members(&p);
@@ -813,13 +717,13 @@ uint32_t ob_islands_list_tasks(const ob_universe *u)
 void ob_islands_list_pairs(ob_universe *u, uint32_t task)
 {
 	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
-	const builder p = builder_of(u, count->merged);
+	const ob_involved p = ob_involved_begin(u, count->merged);
 	list_pairs(&p, task * OB_ISLANDS_AT_ONCE, end_of_task(task, OB_ISLANDS_AT_ONCE, count->unsolved));
 }
 
 void ob_islands_deal(ob_universe *u, ob_regions *regions)
 {
-	builder p = builder_of(u, ob_universe_step_data(u)->count->merged);
+	ob_involved p = ob_involved_begin(u, ob_universe_step_data(u)->count->merged);
 	for (uint32_t i = 0; !p.alone && i < p.data->count->unsolved; i++)
 		p.data->island[i].work = estimated_work(&p, &p.data->island[i]);
 	deal_islands(&p, regions);
@@ -827,65 +731,16 @@ void ob_islands_deal(ob_universe *u, ob_regions *regions)
 
 void ob_islands_list_dealt_pairs(ob_universe *u, ob_halo *halo)
 {
-	const builder p = builder_of(u, ob_universe_step_data(u)->count->merged);
+	const ob_involved p = ob_involved_begin(u, ob_universe_step_data(u)->count->merged);
 	list_dealt_pairs(&p, halo);
 }
 
 void ob_islands_merge(ob_universe *u)
 {
 	struct ob_step_counts *count = ob_universe_step_data(u)->count;
-	builder p = builder_of(u, true);
+	ob_involved p = ob_involved_begin(u, true);
 	count->merged = 1;
 	involve_late(&p);
 	involve_linked(&p);
 	count->involved = p.bodies;
-}
-
-// ---- several ranks
-
-void ob_islands_involve(ob_universe *u, uint32_t id)
-{
-	struct ob_step_counts *count = ob_universe_step_data(u)->count;
-	const builder p = builder_of(u, false);
-	involve_new(&p, id);
-	count->due = count->involved;
-}
-
-uint32_t ob_islands_bodies(ob_universe *u, const uint32_t **body, const uint32_t **root)
-{
-	const builder p = builder_of_all(u);
-	count_trees(&p);
-	*body = p.body;
-	*root = p.parent;
-	return p.bodies;
-}
-
-void ob_islands_drop(ob_universe *u, const uint8_t *leaves)
-{
-	builder p = builder_of_all(u);
-	uint32_t n = 0;
-	for (uint32_t i = 0; i < p.bodies; i++) {
-		const uint32_t id = p.body[i];
-		if (leaves[ob_forest_root(p.parent, id)]) {
-			p.data->result_island[id] = NONE;
-			continue;
-		}
-		p.place[id] = n;
-		p.body[n++] = id;
-	}
-	p.data->count->involved = n;
-}
-
-void ob_islands_join(ob_universe *u, uint32_t a, uint32_t b)
-{
-	struct ob_step_counts *count = ob_universe_step_data(u)->count;
-	builder p = builder_of_all(u);
-	if (p.merges) {
-		join(&p, a, b);
-		count->involved = p.bodies;
-		return;
-	}
-	involve_new(&p, a);
-	involve_new(&p, b);
-	ob_forest_join(p.parent, a, b);
 }

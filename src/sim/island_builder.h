@@ -3,6 +3,7 @@
 #ifndef OB_SIM_ISLAND_BUILDER_H
 #define OB_SIM_ISLAND_BUILDER_H
 
+#include "schedule/involved.h"
 #include "sim/halo.h"
 #include "sim/regions.h"
 
@@ -35,20 +36,6 @@ void ob_islands_list_dealt_pairs(ob_universe *u, ob_halo *halo);
 // solutions, their lists, and the state of pairs that are not concerned. The chunks hold the islands to be solved
 // again.
 void ob_islands_merge(ob_universe *u);
-
-// ---- several ranks: before members are listed
-
-// Adds a body of this rank's to the islands, due or not, before linked bodies are found.
-void ob_islands_involve(ob_universe *u, uint32_t id);
-// Lists the bodies in islands, in no order; returns their number. root: [object], for these, the body that names its
-// island. Both hold until islands are dropped or joined.
-uint32_t ob_islands_bodies(ob_universe *u, const uint32_t **body, const uint32_t **root);
-// Drops the islands that another rank solves. leaves: [object], not 0 = the island of this root
-void ob_islands_drop(ob_universe *u, const uint8_t *leaves);
-// Joins the islands of two bodies of this rank's; a == b: adds the body.
-void ob_islands_join(ob_universe *u, uint32_t a, uint32_t b);
-// Work of a full share when "count" simulators divide the total: others get the excess.
-uint64_t ob_islands_share(uint64_t total, uint32_t count);
 
 // Work at which a chunk is closed, when so many workers share the total.
 uint64_t ob_islands_chunk_work(uint64_t total, uint32_t workers);

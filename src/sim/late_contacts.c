@@ -4,17 +4,17 @@
 
 #include "contact/manifold.h"
 #include "motion/flight.h"
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
-#include "sim/calendar.h"
 #include "sim/flight.h"
-#include "solver/narrowphase.h"
 #include "sim/now.h"
-#include "sim/pair_rank.h"
 #include "sim/pairs.h"
 #include "sim/prefetch.h"
-#include "solver/relative_speed.h"
 #include "sim/results.h"
+#include "solver/narrowphase.h"
+#include "solver/relative_speed.h"
 
 static const double contact_gap = 2e-4; // m: a forecast takes bodies this near to be touching,
 static const double contact_gap_share = .05; // but no nearer than this share of the thinner one's thickness

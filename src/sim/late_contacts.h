@@ -11,7 +11,7 @@
 
 #include "sim/state.h"
 
-// Lists the due pairs (sim/calendar.h) in ob_step_data.check, ascending. The scheduling worker calls it before pairs
+// Lists the due pairs (schedule/calendar.h) in ob_step_data.check, ascending. The scheduling worker calls it before pairs
 // are checked. Pairs of solved objects are among them: the worker that listed their islands' pairs has entered them
 // (island_builder.c). solved: a step has been solved and is not yet committed.
 void ob_late_contacts_begin(ob_universe *u, bool solved);

@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
 #include "shape/shape.h"
 #include "sim/broadphase.h"
-#include "sim/calendar.h"
 #include "sim/now.h"
-#include "sim/pair_rank.h"
 #include "sim/prefetch.h"
 #include "sim/results.h"
 #include "sim/sort_ids.h"
@@ -75,17 +75,6 @@ static void drop_pair(ob_universe *u, uint32_t pair)
 	put_aside(data, pair);
 }
 
-// Enters the pair for a check in this step. On several ranks one rank enters it, and all know that.
-static void enter_check(ob_universe *u, uint32_t pair, uint64_t step)
-{
-	ob_step_data *data = ob_universe_step_data(u);
-	const ob_pair_key *k = &data->pair[pair];
-	const ob_calendar look = ob_calendar_of_pairs(u);
-	if (step < data->count->next_due)
-		data->count->next_due = (uint32_t)step;
-	ob_calendar_set(&look, pair, ob_pair_is_checked_here(u, k) ? step : UINT32_MAX);
-}
-
 // Takes a pair that is not in use. false: there is none, and the step has failed.
 static bool take_pair(ob_universe *u, uint32_t *pair)
 {
@@ -129,26 +118,10 @@ void ob_pairs_link(ob_universe *u)
 			continue;
 		}
 		link_pair(u, i);
-		enter_check(u, i, step);
+		ob_pair_enter_check(u, i, step);
 		if (k->in_island || k->record != OB_NO_RECORD)
 			data->island_pair[data->count->island_pairs++] = i;
 	}
-}
-
-void ob_pairs_look(ob_universe *u, uint32_t id)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	ob_pair_place at;
-	for (uint32_t link = data->first_pair[id], n = 0; ob_pair_at(data, link, &at) && n < data->objects_max;
-	     link = ob_pair_next(data, at), n++)
-		enter_check(u, at.pair, 0);
-}
-
-void ob_pair_release_record(ob_universe *u, ob_pair_key *k)
-{
-	if (k->record != OB_NO_RECORD)
-		ob_record_give_back(u, k->record);
-	k->record = OB_NO_RECORD;
 }
 
 // Drops all pairs of an object. The host calls it, too, and for static objects: so it searches all pairs.
@@ -225,7 +198,7 @@ static void add_pair(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps
 		return;
 	data->pair[pair] = (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = NAN };
 	link_pair(u, pair);
-	enter_check(u, pair, steps); // check at once
+	ob_pair_enter_check(u, pair, steps); // check at once
 	if (data->count->checks < data->pairs_max)
 		data->check[data->count->checks++] = pair;
 }

@@ -36,12 +36,8 @@ void ob_pairs_measure(ob_universe *u, uint64_t steps);
 double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t steps);
 // Drops all pairs of an object that is removed.
 void ob_pairs_drop(ob_universe *u, uint32_t id);
-// Schedules a check of all pairs of the object before its next step, as its motion changes.
-void ob_pairs_look(ob_universe *u, uint32_t id);
 // Rebuilds the data that follow from schedule[] and pair[], which the caller has filled: all lists, both calendars
-// (sim/calendar.h), and the list of pairs in the last step's islands. Takes the records of those that touch no more.
+// (schedule/calendar.h), and the list of pairs in the last step's islands. Takes the records of those that touch no more.
 void ob_pairs_link(ob_universe *u);
-// Frees the pair's record, if it has one. Between steps: data written in a step may be read until its end.
-void ob_pair_release_record(ob_universe *u, ob_pair_key *k);
 
 #endif

@@ -6,10 +6,8 @@
 #include <string.h>
 
 #include "elementary/elementary.h"
-#include "sim/broadphase.h"
-#include "sim/calendar.h"
+#include "schedule/calendar.h"
 #include "sim/digest.h"
-#include "sim/late_contacts.h"
 #include "table/home.h"
 
 static const uint64_t LEAVING = UINT64_MAX; // in place of a phase

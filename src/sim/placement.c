@@ -3,9 +3,10 @@
 
 #include "contact/batch.h"
 #include "motion/flight.h"
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
 #include "shape/shape.h"
 #include "sim/broadphase.h"
-#include "sim/calendar.h"
 #include "sim/now.h"
 #include "sim/pairs.h"
 #include "sim/publish.h"

@@ -3,9 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/calendar.h"
-#include "sim/island_builder.h"
-#include "sim/pairs.h"
+#include "schedule/calendar.h"
+#include "schedule/involved.h"
+#include "schedule/work.h"
+#include "schedule/pair_checks.h"
 #include "table/forest.h"
 #include "table/home.h"
 
@@ -147,7 +148,7 @@ static void add_body(island *is, const ob_universe *u, const ob_regions *regions
 static void find_islands(ob_rank_islands *s, ob_universe *u, const ob_regions *regions)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t *body, *root, n = ob_islands_bodies(u, &body, &root);
+	const uint32_t *body, *root, n = ob_involved_bodies(u, &body, &root);
 	s->islands = 0;
 	for (uint32_t i = 0; i < n; i++)
 		if (root[body[i]] == body[i]) {
@@ -175,7 +176,7 @@ static bool add_ends(ob_rank_islands *s, ob_universe *u, const uint32_t *pair, u
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t *body, *root;
 	bool fits = true;
-	ob_islands_bodies(u, &body, &root);
+	ob_involved_bodies(u, &body, &root);
 	for (uint32_t i = 0; i < pairs; i++) {
 		const uint32_t id = own_end(u, &data->pair[pair[i]], s->rank);
 		if (id == NONE)
@@ -384,7 +385,7 @@ static bool add_up(ob_rank_islands *s, ob_universe *u, const ob_peers *p, const 
 	t->moves |= join_islands(s, pairs);
 	for (uint32_t r = 0; r < s->ranks; r++)
 		work += s->load[r];
-	t->most = ob_islands_share(work, s->ranks);
+	t->most = ob_work_share(work, s->ranks);
 	for (uint32_t r = 0; r < s->ranks && !is_merging(u); r++) {
 		summary of;
 		read_summary(all, at, r, &of);
@@ -456,7 +457,7 @@ static int by_island(const void *a, const void *b)
 // Lists bodies of islands that another rank solves, island by island; returns their number.
 static uint32_t list_leaving(ob_rank_islands *s, ob_universe *u)
 {
-	const uint32_t *body, *root, bodies = ob_islands_bodies(u, &body, &root);
+	const uint32_t *body, *root, bodies = ob_involved_bodies(u, &body, &root);
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < s->islands; i++) {
 		island *is = &s->island[i];
@@ -520,7 +521,7 @@ static bool pack(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts,
 			rehome(s, u, parts->halo, s->leaving[k].id, to);
 		fits &= put_homes(s, u, s->leaving + i, k - i, to, true);
 	}
-	ob_islands_drop(u, s->leaves);
+	ob_involved_drop(u, s->leaves);
 	for (uint32_t i = 0; i < fliers; i++) {
 		const leaving one = { .id = flier[i] };
 		const uint32_t to = ob_regions_at(parts->regions, flier[i]);
@@ -556,7 +557,7 @@ static bool take_homes(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *
 		ob_regions_take(parts->regions, id, h.simulator);
 		first = first == NONE ? id : first;
 		if (h.solved)
-			ob_islands_join(u, first, id);
+			ob_involved_join(u, first, id);
 	}
 	return true;
 }
@@ -636,7 +637,7 @@ bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, cons
 	for (uint32_t i = 0; i < pairs; i++) {
 		const ob_pair_key *k = &data->pair[pair[i]];
 		if (ob_home_rank(u, k->a) == s->rank && ob_home_rank(u, k->b) == s->rank)
-			ob_islands_join(u, k->a, k->b);
+			ob_involved_join(u, k->a, k->b);
 	}
 	return is_merging(u) || ob_regions_renew(parts->regions, u, p, &t.work);
 }

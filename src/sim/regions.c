@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/calendar.h"
-#include "sim/pairs.h"
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
 #include "table/forest.h"
 #include "table/home.h"
 

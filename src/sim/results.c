@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "sim/calendar.h"
+#include "schedule/calendar.h"
 #include "sim/records.h"
 
 // ---- in place

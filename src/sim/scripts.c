@@ -2,9 +2,10 @@
 
 #include <string.h>
 
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
-#include "sim/calendar.h"
 #include "sim/now.h"
 #include "sim/ode_baseline.h"
 #include "sim/pairs.h"

@@ -44,9 +44,9 @@
 // of contained simulators, and where each object has a worker; there it publishes, too: see the open_ functions.
 #include <stdio.h>
 
+#include "schedule/calendar.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
-#include "sim/calendar.h"
 #include "sim/commit.h"
 #include "sim/critical_path.h"
 #include "sim/fault.h"

@@ -271,6 +271,13 @@ void ob_record_give_back(ob_universe *u, uint32_t record)
 	ex->count->records_free = free + 1;
 }
 
+void ob_pair_release_record(ob_universe *u, ob_pair_key *k)
+{
+	if (k->record != OB_NO_RECORD)
+		ob_record_give_back(u, k->record);
+	k->record = OB_NO_RECORD;
+}
+
 uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t id, uint32_t count)
 {
 	uint64_t at = __atomic_fetch_add(&u->control->neighbours_used, count, __ATOMIC_RELAXED);

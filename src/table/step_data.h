@@ -74,7 +74,7 @@ typedef struct ob_pair_links {
 	uint32_t next[2], before[2];
 } ob_pair_links;
 
-// A calendar (sim/calendar.h), of objects or of pairs: urgency of each, and the maximum of 64 and of 4096.
+// A calendar (schedule/calendar.h), of objects or of pairs: urgency of each, and the maximum of 64 and of 4096.
 typedef struct ob_calendar_levels {
 	uint32_t *one, *of_64, *of_4096;
 } ob_calendar_levels;

@@ -246,6 +246,8 @@ void ob_step_break(ob_universe *u, const char *what);
 uint32_t ob_record_take(ob_universe *u);
 // Only for the scheduler.
 void ob_record_give_back(ob_universe *u, uint32_t record);
+// Frees the pair's record, if it has one. Between steps: data written in a step may be read until its end.
+void ob_pair_release_record(ob_universe *u, ob_pair_key *k);
 // Reserves count words in the arena of neighbours, for object id. Returns the offset, or UINT32_MAX if it is full,
 // which is a failure of the step.
 uint32_t ob_neighbours_reserve(ob_universe *u, uint32_t id, uint32_t count);

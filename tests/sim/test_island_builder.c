@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "little_universe.h"
-#include "sim/calendar.h"
+#include "schedule/calendar.h"
 #include "sim/island_builder.h"
 #include "sim/pairs.h"
 #include "table/layout.h"

@@ -8,11 +8,11 @@
 #include <string.h>
 
 #include "motion/random.h"
-#include "sim/calendar.h"
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
 #include "sim/island_builder.h"
 #include "sim/little_ranks.h"
 #include "sim/little_universe.h"
-#include "sim/pair_rank.h"
 #include "sim/pairs.h"
 #include "sim/rank_islands.h"
 #include "table/home.h"
@@ -192,7 +192,7 @@ static void build(rank *r)
 		const ob_pair_key *k = &ob_universe_step_data(r->u)->pair[pair[i]];
 		for (int side = 0; side < 2; side++)
 			if (ob_home_rank(r->u, side ? k->b : k->a) == r->p.rank)
-				ob_islands_involve(r->u, side ? k->b : k->a);
+				ob_involve_due(r->u, side ? k->b : k->a);
 	}
 	for (uint32_t i = 0; i < ob_islands_link_tasks(r->u); i++)
 		ob_islands_link(r->u, i);

@@ -1,8 +1,8 @@
-#include "sim/pair_rank.h"
+#include "schedule/pair_checks.h"
 
 #include <math.h>
 
-#include "sim/calendar.h"
+#include "schedule/calendar.h"
 #include "table/home.h"
 
 static bool lives_here(const ob_universe *u, uint32_t id)
@@ -27,6 +27,25 @@ bool ob_pair_is_across(const ob_universe *u, const ob_pair_key *k)
 	const ob_step_data *data = ob_universe_step_data(u);
 	return ob_schedule_is_dynamic(&data->schedule[k->a]) && ob_schedule_is_dynamic(&data->schedule[k->b]) &&
 	       ob_home_rank(u, k->a) != ob_home_rank(u, k->b);
+}
+
+void ob_pair_enter_check(ob_universe *u, uint32_t pair, uint64_t step)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_pair_key *k = &data->pair[pair];
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	if (step < data->count->next_due)
+		data->count->next_due = (uint32_t)step;
+	ob_calendar_set(&look, pair, ob_pair_is_checked_here(u, k) ? step : UINT32_MAX);
+}
+
+void ob_pairs_look(ob_universe *u, uint32_t id)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[id], n = 0; ob_pair_at(data, link, &at) && n < data->objects_max;
+	     link = ob_pair_next(data, at), n++)
+		ob_pair_enter_check(u, at.pair, 0);
 }
 
 void ob_pairs_follow(ob_universe *u, uint32_t id)

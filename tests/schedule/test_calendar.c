@@ -6,7 +6,7 @@
 #include "check.h"
 #include "little_universe.h"
 #include "motion/random.h"
-#include "sim/calendar.h"
+#include "schedule/calendar.h"
 
 enum { OBJECTS = 2000 };
 

@@ -15,8 +15,8 @@
 // Calendars lie in the universe, among the areas that a checkpoint holds; after a restart from a file they are rebuilt
 // (sim/pairs.h). Only the scheduling worker uses them, or the host at a pause. Exception: any worker may set entries of
 // objects that it has solved and of pairs that it has checked.
-#ifndef OB_SIM_CALENDAR_H
-#define OB_SIM_CALENDAR_H
+#ifndef OB_SCHEDULE_CALENDAR_H
+#define OB_SCHEDULE_CALENDAR_H
 
 #include "table/table.h"
 

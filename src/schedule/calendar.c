@@ -1,4 +1,4 @@
-#include "sim/calendar.h"
+#include "schedule/calendar.h"
 
 #include <string.h>
 
