@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cluster/halo.h"
 #include "schedule/calendar.h"
 #include "schedule/pair_checks.h"
 #include "schedule/work.h"
-#include "sim/halo.h"
 #include "table/home.h"
 
 enum { NONE = UINT32_MAX };

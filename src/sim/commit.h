@@ -11,8 +11,8 @@
 #ifndef OB_SIM_COMMIT_H
 #define OB_SIM_COMMIT_H
 
-#include "sim/halo.h"
-#include "sim/peers.h"
+#include "cluster/halo.h"
+#include "cluster/peers.h"
 #include "sim/state.h"
 #include "table/outbox.h"
 

@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cluster/digest.h"
+#include "schedule/involved.h"
 #include "schedule/pair_checks.h"
 #include "sim/committer.h"
-#include "sim/digest.h"
-#include "schedule/involved.h"
 #include "table/home.h"
 
 bool ob_committer_share(ob_committer *c, const ob_universe *u)

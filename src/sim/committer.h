@@ -3,8 +3,8 @@
 #ifndef OB_SIM_COMMITTER_H
 #define OB_SIM_COMMITTER_H
 
+#include "cluster/rank_islands.h"
 #include "sim/commit.h"
-#include "sim/rank_islands.h"
 #include "sim/records.h"
 
 // Reader of a mail's records. It reads some ahead, to prefetch the scattered memory that they will be compared with or

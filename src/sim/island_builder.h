@@ -3,9 +3,9 @@
 #ifndef OB_SIM_ISLAND_BUILDER_H
 #define OB_SIM_ISLAND_BUILDER_H
 
+#include "cluster/halo.h"
+#include "cluster/regions.h"
 #include "schedule/involved.h"
-#include "sim/halo.h"
-#include "sim/regions.h"
 
 enum { OB_ISLANDS_MANY = 256 }; // due bodies; with fewer the gate costs more than other workers gain
 enum { OB_ISLANDS_AT_ONCE = 32 }; // islands listed, or published, by one task: some ten us

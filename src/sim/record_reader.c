@@ -2,8 +2,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "cluster/digest.h"
 #include "sim/committer.h"
-#include "sim/digest.h"
 
 enum { NONE = UINT32_MAX };
 

@@ -8,6 +8,7 @@
 
 #include <ob/motion.h>
 
+#include "cluster/peers.h"
 #include "motion/path.h"
 #include "table/table.h"
 
@@ -21,19 +22,6 @@ void ob_sim_destroy(ob_sim *s);
 typedef uint64_t (*ob_script_run)(void *runner, ob_script_turn *turn, ob_script_cell *cell);
 void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner);
 
-// Connection of a rank's arranger to the others (peers.h). gather: exchanges n bytes of each rank; returns those of all
-// in the order of ranks; at: offset of each, and the end. NULL: no memory.
-typedef struct ob_peers {
-	uint32_t rank, ranks;
-	const char *(*gather)(void *wire, const void *mine, size_t n, const size_t **at);
-	// The same with another message for each rank: bytes[r] at mine[r] are sent to rank r
-	const char *(*deal)(void *wire, const void *const *mine, const size_t *bytes, const size_t **at);
-	void *wire;
-	bool parted; // a rank has left, and all know it
-	uint64_t look; // first step at which some rank needs all motions (halo.h), as all ranks know it
-	uint32_t islands; // number on all ranks, when those of a step are solved
-	uint64_t move; // requested on rank 0, as table/home.h; made before the next step's islands are built
-} ob_peers;
 // Connects the arranger with the others before its first step. false and e, on all ranks: one of them has other
 // workers, objects or settings, or computes other bits.
 bool ob_sim_join(ob_sim *s, const ob_peers *p, ob_error *e);

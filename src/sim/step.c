@@ -44,6 +44,8 @@
 // of contained simulators, and where each object has a worker; there it publishes, too: see the open_ functions.
 #include <stdio.h>
 
+#include "cluster/peers.h"
+#include "cluster/regions.h"
 #include "schedule/calendar.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
@@ -56,11 +58,9 @@
 #include "sim/late_contacts.h"
 #include "sim/ode_baseline.h"
 #include "sim/pairs.h"
-#include "sim/peers.h"
 #include "sim/prefetch.h"
 #include "sim/profile.h"
 #include "sim/publish.h"
-#include "sim/regions.h"
 #include "sim/results.h"
 #include "sim/scripts.h"
 #include "sim/sim.h"

@@ -1,10 +1,10 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
+#include "cluster/peers.h"
 #include "sim/commit.h"
 #include "sim/islands.h"
 #include "sim/ode_baseline.h"
-#include "sim/peers.h"
 #include "sim/sim.h"
 #include "sim/state.h"
 

@@ -25,7 +25,7 @@ void ob_move_make(ob_universe *u, uint64_t move)
 		return;
 	u->control->pins += u->step_data.pin[object] == 0;
 	u->step_data.pin[object] = pin;
-	// on several ranks, the home also determines which rank has the object (sim/halo.h): it changes when that rank
+	// on several ranks, the home also determines which rank has the object (cluster/halo.h): it changes when that rank
 	// solves it
 	if (u->ranks == 1)
 		ob_home_set(u, object, pin - 1);

@@ -44,7 +44,7 @@ typedef struct ob_universe_setup {
 	uint32_t capacity; // object slots
 	uint32_t workers; // >= 1
 	uint32_t hulls; // maximum of hulls, of the scene and created
-	uint32_t rank, ranks; // this rank, and their number (sim/peers.h); ranks 0 or 1: a single one
+	uint32_t rank, ranks; // this rank, and their number (cluster/peers.h); ranks 0 or 1: a single one
 	bool shares_contacts; // of several ranks: as ob_universe_shares_contacts, the same on each
 	const char *isolation; // "thread" | "process": shown by readers
 	ob_run_settings run;
@@ -112,7 +112,7 @@ bool ob_universe_is_read(const ob_universe *u);
 // True if a rank needs the contact state of all pairs at any time, not only at the steps of ob_contacts_want.
 bool ob_universe_shares_contacts(const ob_universe *u);
 // Host, paused, alike on each rank: when so many steps are complete, this rank needs the contact state of all pairs,
-// even those found by others (sim/holdings.h). Without several ranks it always has.
+// even those found by others (cluster/holdings.h). Without several ranks it always has.
 void ob_contacts_want(ob_universe *u, uint64_t step);
 uint64_t ob_contacts_wanted(const ob_universe *u); // the last such step
 // Measures against faulty simulators: bits, 1 << ob_harden_measure.

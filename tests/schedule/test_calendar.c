@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "little_universe.h"
+#include "sim/little_universe.h"
 #include "motion/random.h"
 #include "schedule/calendar.h"
 

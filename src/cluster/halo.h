@@ -22,10 +22,10 @@
 // next, and so is the digest that the sender of a motion had.
 //
 // Thread-safety: the arranger alone calls these functions.
-#ifndef OB_SIM_HALO_H
-#define OB_SIM_HALO_H
+#ifndef OB_CLUSTER_HALO_H
+#define OB_CLUSTER_HALO_H
 
-#include "sim/peers.h"
+#include "cluster/peers.h"
 
 typedef struct ob_halo ob_halo;
 

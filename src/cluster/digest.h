@@ -1,6 +1,6 @@
 // Digests of whole words, which ranks compare (peers.h, holdings.h).
-#ifndef OB_SIM_DIGEST_H
-#define OB_SIM_DIGEST_H
+#ifndef OB_CLUSTER_DIGEST_H
+#define OB_CLUSTER_DIGEST_H
 
 #include <stddef.h>
 #include <stdint.h>

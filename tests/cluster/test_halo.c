@@ -3,9 +3,9 @@
 // gathering all. Damage to them is detected.
 #include "check.h"
 
+#include "cluster/halo.h"
 #include "motion/random.h"
-#include "sim/halo.h"
-#include "sim/little_ranks.h"
+#include "cluster/little_ranks.h"
 #include "sim/little_universe.h"
 #include "sim/pairs.h"
 #include "table/home.h"

@@ -1,11 +1,11 @@
-#include "sim/holdings.h"
+#include "cluster/holdings.h"
 
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cluster/digest.h"
 #include "schedule/pair_checks.h"
-#include "sim/digest.h"
 #include "table/home.h"
 
 enum { ALL = 0 }; // a holder

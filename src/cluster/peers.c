@@ -1,14 +1,15 @@
-#include "sim/peers.h"
+#include "cluster/peers.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cluster/digest.h"
 #include "elementary/elementary.h"
 #include "schedule/calendar.h"
-#include "sim/digest.h"
 #include "table/home.h"
+#include "table/trace.h"
 
 static const uint64_t LEAVING = UINT64_MAX; // in place of a phase
 

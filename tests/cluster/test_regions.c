@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "check.h"
+#include "cluster/regions.h"
 #include "motion/random.h"
 #include "sim/little_universe.h"
 #include "sim/pairs.h"
-#include "sim/regions.h"
 #include "table/home.h"
 #include "table/layout.h"
 

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cluster/holdings.h"
 #include "ode/ode_body.h"
-#include "sim/holdings.h"
 #include "sim/little_universe.h"
 #include "table/home.h"
 #include "table/layout.h"

@@ -16,12 +16,12 @@
 // The bits of a run do not depend on any of it.
 //
 // Thread-safety: the arranger alone calls these functions.
-#ifndef OB_SIM_RANK_ISLANDS_H
-#define OB_SIM_RANK_ISLANDS_H
+#ifndef OB_CLUSTER_RANK_ISLANDS_H
+#define OB_CLUSTER_RANK_ISLANDS_H
 
-#include "sim/halo.h"
-#include "sim/holdings.h"
-#include "sim/regions.h"
+#include "cluster/halo.h"
+#include "cluster/holdings.h"
+#include "cluster/regions.h"
 
 typedef struct ob_rank_islands ob_rank_islands;
 

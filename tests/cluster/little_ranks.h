@@ -1,12 +1,12 @@
 // Several ranks for tests, each a thread: they exchange messages by an ob_peers whose wire is a little_wire.
-#ifndef OB_TESTS_SIM_LITTLE_RANKS_H
-#define OB_TESTS_SIM_LITTLE_RANKS_H
+#ifndef OB_TESTS_CLUSTER_LITTLE_RANKS_H
+#define OB_TESTS_CLUSTER_LITTLE_RANKS_H
 
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "sim/sim.h"
+#include "cluster/peers.h"
 
 enum { LITTLE_RANKS = 3 };
 

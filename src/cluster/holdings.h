@@ -11,10 +11,10 @@
 // their digest beside them, in memory that simulators do not reach: so damage is found before it becomes a result.
 //
 // Thread-safety: the arranger alone calls these functions.
-#ifndef OB_SIM_HOLDINGS_H
-#define OB_SIM_HOLDINGS_H
+#ifndef OB_CLUSTER_HOLDINGS_H
+#define OB_CLUSTER_HOLDINGS_H
 
-#include "sim/peers.h"
+#include "cluster/peers.h"
 
 typedef struct ob_holdings ob_holdings;
 

@@ -1,12 +1,12 @@
-#include "sim/rank_islands.h"
+#include "cluster/rank_islands.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "schedule/calendar.h"
 #include "schedule/involved.h"
-#include "schedule/work.h"
 #include "schedule/pair_checks.h"
+#include "schedule/work.h"
 #include "table/forest.h"
 #include "table/home.h"
 

@@ -1,4 +1,4 @@
-#include "sim/regions.h"
+#include "cluster/regions.h"
 
 #include <math.h>
 #include <stdlib.h>

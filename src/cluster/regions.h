@@ -16,10 +16,10 @@
 // balance, and the cost of bodies since the last cut exceeds that of a new one many times.
 //
 // Thread-safety: the arranger alone calls these functions.
-#ifndef OB_SIM_REGIONS_H
-#define OB_SIM_REGIONS_H
+#ifndef OB_CLUSTER_REGIONS_H
+#define OB_CLUSTER_REGIONS_H
 
-#include "sim/peers.h"
+#include "cluster/peers.h"
 
 typedef struct ob_regions ob_regions;
 

@@ -19,11 +19,24 @@
 // With its mail each rank sends its position: step, phase, and a digest of the state before the phase and all earlier
 // ones. If two ranks differ, all find out at which object, and the run ends. An arranger whose run is over, for any
 // reason, sends that in place of a mail, so no rank waits for it.
-#ifndef OB_SIM_PEERS_H
-#define OB_SIM_PEERS_H
+#ifndef OB_CLUSTER_PEERS_H
+#define OB_CLUSTER_PEERS_H
 
-#include "sim/sim.h"
 #include "table/outbox.h"
+
+// Connection of a rank's arranger to the others (drawing above). gather: exchanges n bytes of each rank; returns
+// those of all in the order of ranks; at: offset of each, and the end. NULL: no memory.
+typedef struct ob_peers {
+	uint32_t rank, ranks;
+	const char *(*gather)(void *wire, const void *mine, size_t n, const size_t **at);
+	// The same with another message for each rank: bytes[r] at mine[r] are sent to rank r
+	const char *(*deal)(void *wire, const void *const *mine, const size_t *bytes, const size_t **at);
+	void *wire;
+	bool parted; // a rank has left, and all know it
+	uint64_t look; // first step at which some rank needs all motions (halo.h), as all ranks know it
+	uint32_t islands; // number on all ranks, when those of a step are solved
+	uint64_t move; // requested on rank 0, as table/home.h; made before the next step's islands are built
+} ob_peers;
 
 // Head of each message.
 typedef struct ob_peers_head {

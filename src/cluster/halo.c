@@ -1,11 +1,11 @@
-#include "sim/halo.h"
+#include "cluster/halo.h"
 
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cluster/digest.h"
 #include "schedule/pair_checks.h"
-#include "sim/digest.h"
 #include "table/home.h"
 
 // Digest of the motion published as this version of the body's; version 0: none is known.
