@@ -2,11 +2,11 @@
 
 #include "contact/impact.h"
 #include "contact/manifold.h"
+#include "exchange/touches.h"
 #include "motion/flight.h"
 #include "sim/budget.h"
 #include "solver/ghost.h"
 #include "solver/narrowphase.h"
-#include "sim/touches.h"
 
 static const double least_approach = 1e-6; // m/s: the contact solver treats slower approaches
 static const double points_margin = 1e-6; // m: margin of contact points; those of them as near as the first are hit

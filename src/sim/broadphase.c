@@ -8,12 +8,11 @@
 #include <ob/motion.h>
 
 #include "base/cpu.h"
+#include "exchange/results.h"
 #include "motion/drift.h"
 #include "shape/shape.h"
 #include "sim/now.h"
-#include "sim/publish.h"
 #include "solver/relative_speed.h"
-#include "sim/results.h"
 
 // ---- spatial index
 

@@ -3,13 +3,14 @@
 #include "contact/facets.h"
 #include "contact/impact.h"
 #include "contact/polytope.h"
+#include "exchange/results.h"
+#include "exchange/touches.h"
 #include "motion/flight.h"
 #include "shape/shape.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
 #include "sim/now.h"
 #include "sim/publish.h"
-#include "sim/touches.h"
 
 // ---- impacts on planes
 

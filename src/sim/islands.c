@@ -3,14 +3,13 @@
 #include <stdlib.h>
 
 #include "base/allocate.h"
+#include "exchange/results.h"
+#include "exchange/touches.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
 #include "sim/now.h"
 #include "sim/pairs.h"
 #include "sim/profile.h"
-#include "sim/publish.h"
-#include "sim/results.h"
-#include "sim/touches.h"
 
 // ---- the solver's input
 
@@ -77,7 +76,7 @@ static const ob_island_input *read_island(ob_sim *s, const ob_island *is)
 				   .pairs = is->pairs,
 				   .object = x->object,
 				   .pair = x->pair,
-				   .feels = ob_touches_are_felt(s, is) };
+				   .feels = ob_touches_are_felt(s->u, is) };
 	for (uint32_t i = 0; i < is->members; i++) {
 		const uint32_t id = s->data->member[is->first_member + i];
 		x->index_of[id] = i;
@@ -113,7 +112,7 @@ static void begin_attempt(void *sim)
 {
 	ob_sim *s = sim;
 	if (s->scratch.in.feels)
-		ob_touches_begin(s, s->scratch.island);
+		ob_touches_begin(s->u, s->scratch.island);
 }
 
 static void note_touch(void *sim, uint32_t a, uint32_t b, double impulse, ob_vec3 point)
@@ -128,7 +127,7 @@ static void fail(void *sim, uint32_t object)
 
 static void hand_over_contact(void *sim, const ob_found_contact *c)
 {
-	ob_commit_contact(sim, c);
+	ob_commit_contact(((ob_sim *)sim)->u, c);
 }
 
 static void publish_body(void *sim, const ob_island_object *object, ob_motion *m, bool free)
@@ -169,7 +168,7 @@ static uint64_t cost_so_far(const ob_sim *s)
 static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 {
 	const uint64_t share = cost / s->data->island[island].members;
-	ob_commit_effort(s, island, (uint32_t)(share < UINT32_MAX ? share : UINT32_MAX));
+	ob_commit_effort(s->u, island, (uint32_t)(share < UINT32_MAX ? share : UINT32_MAX));
 }
 
 // ---- ballistic advance
@@ -203,7 +202,7 @@ static void end_contacts(ob_sim *s, const ob_island *is)
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const uint32_t pair = s->data->island_pair[is->first_pair + i];
 		if (s->data->pair[pair].active)
-			ob_commit_contact(s, &(ob_found_contact){ .pair = pair, .limit = -INFINITY });
+			ob_commit_contact(s->u, &(ob_found_contact){ .pair = pair, .limit = -INFINITY });
 	}
 }
 
@@ -212,7 +211,7 @@ static bool advance_pair(ob_sim *s, const ob_island *is)
 	if (is->members != 2 || !may_advance_ballistically(s, is))
 		return false;
 	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
-	ob_touches_begin(s, is);
+	ob_touches_begin(s->u, is);
 	if (!ob_ballistic_pair_advance(s, s->data->member + is->first_member))
 		return false;
 	end_contacts(s, is);
@@ -232,7 +231,7 @@ void ob_islands_fly(ob_sim *s, uint32_t first, uint32_t n, bool *flown)
 		flown[k] = false;
 		if (is->members != 1 || !may_advance_ballistically(s, is))
 			continue;
-		ob_touches_begin(s, is);
+		ob_touches_begin(s->u, is);
 		lone[fly] = k, id[fly++] = data->member[is->first_member];
 	}
 	ob_ballistic_advance(s, id, fly, done);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "contact/manifold.h"
+#include "exchange/results.h"
 #include "motion/flight.h"
 #include "schedule/calendar.h"
 #include "schedule/pair_checks.h"
@@ -12,7 +13,6 @@
 #include "sim/now.h"
 #include "sim/pairs.h"
 #include "sim/prefetch.h"
-#include "sim/results.h"
 #include "solver/narrowphase.h"
 #include "solver/relative_speed.h"
 

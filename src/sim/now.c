@@ -1,7 +1,7 @@
 #include "sim/now.h"
 
+#include "exchange/results.h"
 #include "motion/flight.h"
-#include "sim/results.h"
 
 const ob_motion *ob_result_of(const ob_universe *u, uint32_t id)
 {

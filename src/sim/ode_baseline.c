@@ -7,10 +7,10 @@
 #include <ob/motion.h>
 
 #include "base/allocate.h"
+#include "exchange/touches.h"
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
 #include "sim/publish.h"
-#include "sim/touches.h"
 #include "table/trace.h"
 
 struct held_object { // the object that the world holds for a slot, if any

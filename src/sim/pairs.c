@@ -5,13 +5,13 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "exchange/results.h"
 #include "schedule/calendar.h"
 #include "schedule/pair_checks.h"
 #include "shape/shape.h"
 #include "sim/broadphase.h"
 #include "sim/now.h"
 #include "sim/prefetch.h"
-#include "sim/results.h"
 #include "sim/sort_ids.h"
 
 // ---- lists

@@ -9,8 +9,8 @@
 #include "sim/broadphase.h"
 #include "sim/now.h"
 #include "sim/pairs.h"
-#include "sim/publish.h"
 #include "sim/sim.h"
+#include "solver/solver.h"
 #include "table/home.h"
 #include "table/trace.h"
 

@@ -1,26 +1,13 @@
 #include "sim/publish.h"
 
-#include "sim/commit.h"
-#include "sim/results.h"
-
-static bool is_sane(ob_vec3 v)
-{
-	const double most = 1e15;
-	return fabs(v.x) < most && fabs(v.y) < most && fabs(v.z) < most; // false for NaN
-}
-
-bool ob_state_is_sane(const ob_state *s)
-{
-	const ob_quat q = s->pose.q;
-	const double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-	return is_sane(s->pose.p) && is_sane(s->v) && is_sane(s->w) && norm2 > .5 && norm2 < 2;
-}
+#include "exchange/commit.h"
+#include "exchange/results.h"
 
 void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m, uint32_t state, uint32_t due)
 {
 	if (!ob_state_is_sane(&(ob_state){ { m->p, m->q }, m->v, m->w }) || !isfinite(m->path))
 		ob_step_fail(s->u, OB_STEP_DIVERGED, id);
-	ob_commit_result(s, &(ob_found_result){ .id = id, .state = state, .due = due, .motion = *m });
+	ob_commit_result(s->u, &(ob_found_result){ .id = id, .state = state, .due = due, .motion = *m });
 }
 
 static void trace_state_change(ob_sim *s, uint32_t id, const ob_motion *next)

@@ -15,8 +15,6 @@
 #include "sim/state.h"
 #include "table/table.h"
 
-// True if all values are numbers of plausible size: below 1e15 m, m/s, rad/s.
-bool ob_state_is_sane(const ob_state *s);
 // Stages the motion m and writes the object's schedule record; the island's solver calls it. state: OB_SCHEDULE_*; due:
 // the step (from 0) that must solve the object, if nothing comes near before. An insane motion fails the step.
 void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m, uint32_t state, uint32_t due);

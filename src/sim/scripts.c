@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "exchange/results.h"
 #include "schedule/calendar.h"
 #include "schedule/pair_checks.h"
 #include "sim/broadphase.h"
@@ -10,8 +11,6 @@
 #include "sim/ode_baseline.h"
 #include "sim/pairs.h"
 #include "sim/profile.h"
-#include "sim/publish.h"
-#include "sim/results.h"
 
 // ---- scripts that run
 
@@ -38,7 +37,7 @@ static uint64_t run(ob_sim *s, uint32_t cell)
 	s->scripts.turn = data->script_turn[cell];
 	s->scripts.cell = data->script_cell[cell];
 	const uint64_t instructions = s->scripts.run(s->scripts.runner, &s->scripts.turn, &s->scripts.cell);
-	ob_hand_over_script(s, cell, &s->scripts.turn, &s->scripts.cell);
+	ob_hand_over_script(s->u, cell, &s->scripts.turn, &s->scripts.cell);
 	return instructions;
 }
 

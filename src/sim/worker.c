@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "cluster/peers.h"
-#include "sim/commit.h"
+#include "exchange/commit.h"
 #include "sim/islands.h"
 #include "sim/ode_baseline.h"
 #include "sim/sim.h"

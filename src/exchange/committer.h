@@ -1,11 +1,11 @@
 // State of the arranger for the commit of simulators' records (commit.h): the tasks that each was given, and the
 // exchange among several ranks. Used by commit.c, which checks and writes, and commit_ranks.c, which exchanges.
-#ifndef OB_SIM_COMMITTER_H
-#define OB_SIM_COMMITTER_H
+#ifndef OB_EXCHANGE_COMMITTER_H
+#define OB_EXCHANGE_COMMITTER_H
 
 #include "cluster/rank_islands.h"
-#include "sim/commit.h"
-#include "sim/records.h"
+#include "exchange/commit.h"
+#include "exchange/records.h"
 
 // Reader of a mail's records. It reads some ahead, to prefetch the scattered memory that they will be compared with or
 // written to.

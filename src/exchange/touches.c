@@ -1,6 +1,6 @@
-#include "sim/touches.h"
+#include "exchange/touches.h"
 
-#include "sim/results.h"
+#include "exchange/results.h"
 
 // True for a body whose script has an on_contact.
 static bool feels(const ob_step_data *data, uint32_t id)
@@ -10,22 +10,22 @@ static bool feels(const ob_step_data *data, uint32_t id)
 	       data->script_turn[cell - 1].flags & OB_SCRIPT_FEELS;
 }
 
-bool ob_touches_are_felt(const ob_sim *s, const ob_island *is)
+bool ob_touches_are_felt(const ob_universe *u, const ob_island *is)
 {
-	const ob_step_data *data = s->data;
+	const ob_step_data *data = ob_universe_step_data(u);
 	bool felt = false;
 	for (uint32_t i = 0; data->script_of && i < is->members && !felt; i++)
 		felt = feels(data, data->member[is->first_member + i]);
 	return felt;
 }
 
-void ob_touches_begin(ob_sim *s, const ob_island *is)
+void ob_touches_begin(ob_universe *u, const ob_island *is)
 {
-	const ob_step_data *data = s->data;
+	const ob_step_data *data = ob_universe_step_data(u);
 	for (uint32_t i = 0; data->script_of && i < is->members; i++) {
 		const uint32_t id = data->member[is->first_member + i];
 		if (feels(data, id))
-			ob_commit_touch(s->u, id, OB_NO_OBJECT, 0, ob_v3(0, 0, 0));
+			ob_commit_touch(u, id, OB_NO_OBJECT, 0, ob_v3(0, 0, 0));
 	}
 }
 

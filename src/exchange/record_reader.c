@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cluster/digest.h"
-#include "sim/committer.h"
+#include "exchange/committer.h"
 
 enum { NONE = UINT32_MAX };
 

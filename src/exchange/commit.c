@@ -1,4 +1,4 @@
-#include "sim/committer.h"
+#include "exchange/committer.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -8,12 +8,11 @@
 // A simulator that hands over anything else is to blame (ob_step_blame): nothing of the phase is used, and all
 // simulators are restarted from the checkpoint. These checks cannot detect a miscalculated result that is within the
 // bounds.
-#ifndef OB_SIM_COMMIT_H
-#define OB_SIM_COMMIT_H
+#ifndef OB_EXCHANGE_COMMIT_H
+#define OB_EXCHANGE_COMMIT_H
 
 #include "cluster/halo.h"
 #include "cluster/peers.h"
-#include "sim/state.h"
 #include "table/outbox.h"
 
 typedef struct ob_committer ob_committer;

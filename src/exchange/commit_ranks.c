@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "cluster/digest.h"
+#include "exchange/committer.h"
 #include "schedule/involved.h"
 #include "schedule/pair_checks.h"
-#include "sim/committer.h"
 #include "table/home.h"
 
 bool ob_committer_share(ob_committer *c, const ob_universe *u)

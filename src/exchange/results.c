@@ -1,9 +1,22 @@
-#include "sim/results.h"
+#include "exchange/results.h"
 
 #include <string.h>
 
+#include "exchange/records.h"
 #include "schedule/calendar.h"
-#include "sim/records.h"
+
+static bool is_sane(ob_vec3 v)
+{
+	const double most = 1e15;
+	return fabs(v.x) < most && fabs(v.y) < most && fabs(v.z) < most; // false for NaN
+}
+
+bool ob_state_is_sane(const ob_state *s)
+{
+	const ob_quat q = s->pose.q;
+	const double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+	return is_sane(s->pose.p) && is_sane(s->v) && is_sane(s->w) && norm2 > .5 && norm2 < 2;
+}
 
 // ---- in place
 
@@ -158,12 +171,12 @@ static void hand_over_result(ob_universe *u, const ob_found_result *r)
 	ob_outbox_put(u, OB_RECORD_RESULT, &steady, sizeof steady, NULL, 0);
 }
 
-void ob_commit_result(ob_sim *s, const ob_found_result *r)
+void ob_commit_result(ob_universe *u, const ob_found_result *r)
 {
-	if (ob_universe_contained(s->u))
-		hand_over_result(s->u, r);
+	if (ob_universe_contained(u))
+		hand_over_result(u, r);
 	else
-		ob_write_result(s->u, r);
+		ob_write_result(u, r);
 }
 
 void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6])
@@ -177,15 +190,15 @@ void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6])
 	ob_outbox_put(u, OB_RECORD_BOUNDS, &r, sizeof r, NULL, 0);
 }
 
-void ob_commit_effort(ob_sim *s, uint32_t island, uint32_t share)
+void ob_commit_effort(ob_universe *u, uint32_t island, uint32_t share)
 {
 	const ob_effort_record r = { island, share < OB_MOST_EFFORT
 						     ? share
 						     : OB_MOST_EFFORT }; // so that sums stay within bounds
-	if (ob_universe_contained(s->u))
-		ob_outbox_put(s->u, OB_RECORD_EFFORT, &r, sizeof r, NULL, 0);
+	if (ob_universe_contained(u))
+		ob_outbox_put(u, OB_RECORD_EFFORT, &r, sizeof r, NULL, 0);
 	else
-		ob_write_effort(s->u, island, r.share);
+		ob_write_effort(u, island, r.share);
 }
 
 size_t ob_contact_bytes(const ob_found_contact *c)
@@ -195,12 +208,12 @@ size_t ob_contact_bytes(const ob_found_contact *c)
 			      : offsetof(ob_found_contact, impulse_b);
 }
 
-void ob_commit_contact(ob_sim *s, const ob_found_contact *c)
+void ob_commit_contact(ob_universe *u, const ob_found_contact *c)
 {
-	if (ob_universe_contained(s->u))
-		ob_outbox_put(s->u, OB_RECORD_CONTACT, c, ob_contact_bytes(c), NULL, 0);
+	if (ob_universe_contained(u))
+		ob_outbox_put(u, OB_RECORD_CONTACT, c, ob_contact_bytes(c), NULL, 0);
 	else
-		write_contact(s->u, c);
+		write_contact(u, c);
 }
 
 void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse, ob_vec3 point)
@@ -212,7 +225,7 @@ void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse
 		ob_write_touch(u, &r);
 }
 
-void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, const ob_script_cell *c)
+void ob_hand_over_script(ob_universe *u, uint32_t cell, const ob_script_turn *turn, const ob_script_cell *c)
 {
 	ob_script_record r = { .cell = cell,
 			       .flags = turn->flags,
@@ -228,11 +241,11 @@ void ob_hand_over_script(ob_sim *s, uint32_t cell, const ob_script_turn *turn, c
 	memcpy(r.random, c->random, sizeof r.random);
 	memcpy(r.colour, c->colour, sizeof r.colour);
 	memcpy(r.error, c->error, sizeof r.error);
-	ob_outbox_put(s->u, OB_RECORD_SCRIPT, &r, sizeof r, c->state, ob_in_words(c->state_bytes));
+	ob_outbox_put(u, OB_RECORD_SCRIPT, &r, sizeof r, c->state, ob_in_words(c->state_bytes));
 	for (uint32_t first = 0; first < c->outbox_bytes; first += OB_POSTS_AT_ONCE) {
 		const uint32_t left = c->outbox_bytes - first, n = left < OB_POSTS_AT_ONCE ? left : OB_POSTS_AT_ONCE;
 		const ob_posts_record part = { cell, first, n, 0 };
-		ob_outbox_put(s->u, OB_RECORD_POSTS, &part, sizeof part, c->outbox + first, n);
+		ob_outbox_put(u, OB_RECORD_POSTS, &part, sizeof part, c->outbox + first, n);
 	}
 }
 

@@ -1,10 +1,10 @@
 // Records in which contained simulators hand over their results, and the writing of these into the universe.
-#ifndef OB_SIM_RECORDS_H
-#define OB_SIM_RECORDS_H
+#ifndef OB_EXCHANGE_RECORDS_H
+#define OB_EXCHANGE_RECORDS_H
 
 #include <stddef.h>
 
-#include "sim/results.h"
+#include "exchange/results.h"
 
 typedef enum ob_record_kind {
 	OB_RECORD_END = OB_OUTBOX_END,
