@@ -2,13 +2,13 @@
 
 #include <string.h>
 
+#include "baseline/ode_baseline.h"
 #include "exchange/results.h"
 #include "schedule/calendar.h"
 #include "schedule/pair_checks.h"
 #include "sim/broadphase.h"
 #include "sim/budget.h"
 #include "sim/now.h"
-#include "sim/ode_baseline.h"
 #include "sim/pairs.h"
 #include "sim/profile.h"
 

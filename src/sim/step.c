@@ -44,6 +44,7 @@
 // of contained simulators, and where each object has a worker; there it publishes, too: see the open_ functions.
 #include <stdio.h>
 
+#include "baseline/ode_baseline.h"
 #include "cluster/peers.h"
 #include "cluster/regions.h"
 #include "exchange/commit.h"
@@ -57,7 +58,6 @@
 #include "sim/island_builder.h"
 #include "sim/islands.h"
 #include "sim/late_contacts.h"
-#include "sim/ode_baseline.h"
 #include "sim/pairs.h"
 #include "sim/prefetch.h"
 #include "sim/profile.h"

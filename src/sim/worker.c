@@ -1,10 +1,10 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
+#include "baseline/ode_baseline.h"
 #include "cluster/peers.h"
 #include "exchange/commit.h"
 #include "sim/islands.h"
-#include "sim/ode_baseline.h"
 #include "sim/sim.h"
 #include "sim/state.h"
 

@@ -1,8 +1,8 @@
 // The baseline architecture: one simulator, an ODE world, owns every object and publishes all their motions each step.
 // It reads passports and first motions from the universe, so that objects come and go as they do for object
 // simulators. Its one worker calls it; no other worker of the universe runs an object.
-#ifndef OB_SIM_ODE_BASELINE_H
-#define OB_SIM_ODE_BASELINE_H
+#ifndef OB_BASELINE_ODE_BASELINE_H
+#define OB_BASELINE_ODE_BASELINE_H
 
 #include "table/table.h"
 

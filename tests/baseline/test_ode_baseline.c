@@ -3,8 +3,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "baseline/ode_baseline.h"
 #include "ode/ode_body.h"
-#include "sim/ode_baseline.h"
 
 #include "../check.h"
 

@@ -1,4 +1,4 @@
-#include "sim/ode_baseline.h"
+#include "baseline/ode_baseline.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "exchange/touches.h"
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
-#include "sim/publish.h"
+#include "exchange/results.h"
 #include "table/trace.h"
 
 struct held_object { // the object that the world holds for a slot, if any
