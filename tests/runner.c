@@ -1,4 +1,4 @@
-// Runs one test of a module: "sim_tests pairs" calls main of sim/test_pairs.c with what follows. The build makes the table
+// Runs one test of a module: "step_tests pairs" calls main of step/test_pairs.c with what follows. The build makes the table
 // TESTS and renames each main to main_of_TOPIC.
 #include <stdio.h>
 #include <string.h>

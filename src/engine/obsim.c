@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include "engine/engines.h"
-#include "sim/now.h"
-#include "sim/sim.h"
+#include "step/now.h"
+#include "step/sim.h"
 #include "table/table.h"
 
 struct ob_engine {

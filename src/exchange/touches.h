@@ -1,5 +1,5 @@
 // Contacts that begin in a step, noted for the scripts of their bodies: on_contact is called before the next step
-// (sim/scripts.h). The solver of a body's island notes them (results.h), or the one ODE world.
+// (step/scripts.h). The solver of a body's island notes them (results.h), or the one ODE world.
 #ifndef OB_EXCHANGE_TOUCHES_H
 #define OB_EXCHANGE_TOUCHES_H
 

@@ -10,14 +10,14 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/interrupt.h"
 #include "base/log.h"
 #include "host/accounting.h"
 #include "host/host_state.h"
-#include "base/interrupt.h"
 #include "host/restart.h"
 #include "ode/ode_body.h"
 #include "scene/object_limits.h"
-#include "sim/sim.h"
+#include "step/sim.h"
 
 enum { POOL_SPARE = 64, WORKERS_MAX = 100000 };
 static const double default_patience = 60; // s

@@ -16,10 +16,10 @@
 #define OB_HOST_HOST_H
 
 #include "host/death.h"
+#include "host/population.h"
 #include "host/timeline.h"
 #include "ranks/ranks.h"
 #include "scene/scene.h"
-#include "host/population.h"
 #include "table/saved.h"
 
 // Saved run at a step boundary: all that it needs to go on, beside its scene and its settings. The arrays belong to
@@ -52,7 +52,7 @@ typedef struct ob_host_config {
 	uint32_t harden; // measures that confine processes (confine.h): bits, 1 << ob_harden_measure; 0 = none
 	ob_on_death on_death; // policy for deaths of simulators; a monolith's end ends the run in any case
 	ob_restart_limit limit;
-	bool check; // checks the state that simulators share after each step (sim/invariants.h)
+	bool check; // checks the state that simulators share after each step (step/invariants.h)
 	const char *trace; // file for the timeline of workers and host (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
 	ob_request_log *log; // input from outside; NULL = none. It must outlive the host
@@ -67,7 +67,7 @@ typedef struct ob_host_times {
 	double step_p50_s, step_p90_s, step_p99_s, step_max_s; // wall per step, pauses left out, to 1 %
 	double critical_s; // if timed: critical path of all steps: the longest worker in each phase, and scheduling (CPU)
 	double alone_s; // of that, scheduling
-	double simulated_s; // likewise, of OB_SIMULATED_WORKERS workers (sim/critical_path.h); NaN: unmeasured
+	double simulated_s; // likewise, of OB_SIMULATED_WORKERS workers (step/critical_path.h); NaN: unmeasured
 	double elapsed_s; // from the first go that stepped to the last pause, pauses included
 	uint32_t deaths; // times that simulators died, stalled, or failed
 	uint32_t frozen; // objects that stay in place because of that

@@ -6,13 +6,13 @@
 #include <urcu/wfcqueue.h>
 
 #include "base/log.h"
+#include "exchange/results.h"
 #include "host/journal.h"
 #include "host/rcu_tsan.h"
 #include "ode/ode_body.h"
 #include "scene/object_limits.h"
 #include "scene/random.h"
-#include "sim/publish.h"
-#include "sim/sim.h"
+#include "step/sim.h"
 
 // An entry of the timetable.
 typedef struct event {

@@ -11,7 +11,7 @@
 #include "base/log.h"
 #include "host/accounting.h"
 #include "host/host_state.h"
-#include "sim/sim.h"
+#include "step/sim.h"
 
 enum { QUICK_ATTEMPTS = 3 }; // without progress are made at once
 static const double faults_timeout = 10; // s, for further attempts after the first fault

@@ -9,7 +9,7 @@
 #include "host/host_state.h"
 #include "host/restart.h"
 #include "host/stall.h"
-#include "sim/sim.h"
+#include "step/sim.h"
 
 static const double poll_interval = .05; // s, between checks of a run that does not pause
 enum { LOOKS_PER_POLL = 5 }; // checks for Ctrl-C in each of these intervals

@@ -1,4 +1,4 @@
-// Stalls: neither a step nor a share of one (sim/budget.h) is completed for longer than the run's patience. Where objects
+// Stalls: neither a step nor a share of one (step/budget.h) is completed for longer than the run's patience. Where objects
 // may be frozen each share has a budget of its own, so a step of many hard islands takes longer than one share may.
 //
 // Only time in which the run could have gone on counts. Time in which this process stood still does not (base/clock.h),

@@ -11,7 +11,7 @@
 #include "ode/ode_body.h"
 #include "ranks/ranks.h"
 #include "script/script.h"
-#include "sim/sim.h"
+#include "step/sim.h"
 
 static _Thread_local jmp_buf no_memory;
 

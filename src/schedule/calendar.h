@@ -5,7 +5,7 @@
 //   one        urgency, urgency, ..                  of each entry: larger if sooner; 0: no entry
 //
 // One calendar holds the step in which each object must be solved (ob_schedule.due), another that in which each pair
-// must be checked (sim/late_contacts.h). Each rank enters only its own. A search descends only where the level above is
+// must be checked (step/late_contacts.h). Each rank enters only its own. A search descends only where the level above is
 // urgent enough. It reads some cache lines for each entry found, and one word in 4096 of the rest. An urgency that is
 // too large, because an entry was put off, is corrected by the next search that descends there.
 //
@@ -13,7 +13,7 @@
 // check of most pairs. Here, due entries are found in ascending order, as they lie in memory.
 //
 // Calendars lie in the universe, among the areas that a checkpoint holds; after a restart from a file they are rebuilt
-// (sim/pairs.h). Only the scheduling worker uses them, or the host at a pause. Exception: any worker may set entries of
+// (step/pairs.h). Only the scheduling worker uses them, or the host at a pause. Exception: any worker may set entries of
 // objects that it has solved and of pairs that it has checked.
 #ifndef OB_SCHEDULE_CALENDAR_H
 #define OB_SCHEDULE_CALENDAR_H

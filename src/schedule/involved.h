@@ -1,5 +1,5 @@
 // Bodies that a step involves, and the union-find forest (table/forest.h) whose trees are their islands. The step finds
-// bodies and joins them (sim/island_builder.h). Of several ranks, each does so with its own bodies, and trees move
+// bodies and joins them (step/island_builder.h). Of several ranks, each does so with its own bodies, and trees move
 // between ranks before their members are listed (cluster/rank_islands.h).
 //
 // Thread-safety: the scheduling worker. Several workers may call ob_involve at the same time where each object is a root

@@ -1,4 +1,4 @@
-// Work of a step: its limit, and fair shares of it. Work is counted, never timed; unit: sim/budget.h.
+// Work of a step: its limit, and fair shares of it. Work is counted, never timed; unit: step/budget.h.
 #ifndef OB_SCHEDULE_WORK_H
 #define OB_SCHEDULE_WORK_H
 

@@ -8,7 +8,7 @@
 // A script that fails (an error, an endless loop, too much memory) is stopped, and its requests of this step are
 // dropped; others run on.
 //
-// Thread-safety: one thread per runner, within the phase in which scripts run (sim/scripts.h).
+// Thread-safety: one thread per runner, within the phase in which scripts run (step/scripts.h).
 #ifndef OB_SCRIPT_SCRIPT_H
 #define OB_SCRIPT_SCRIPT_H
 
@@ -22,7 +22,7 @@ typedef struct ob_script_runner ob_script_runner;
 
 ob_script_runner *ob_script_runner_create(ob_universe *u); // NULL: no memory
 void ob_script_runner_destroy(ob_script_runner *r); // NULL is allowed
-// Makes the due calls of a script, and writes results only to its turn and its cell. An ob_script_run of sim/sim.h.
+// Makes the due calls of a script, and writes results only to its turn and its cell. An ob_script_run of step/sim.h.
 uint64_t ob_script_runner_run(void *runner, ob_script_turn *turn, ob_script_cell *cell);
 
 #endif

@@ -2,7 +2,7 @@
 // or rank: a function from what it may read (ob_island_input) to what it reports (ob_island_calls).
 //
 //                       ob_island_input                                     ob_island_calls
-//   src/sim/islands.c  ────────────────>  ob_island_solve (island_solver.c)  ────────────────>  src/sim/islands.c
+//   src/step/islands.c  ────────────────>  ob_island_solve (island_solver.c)  ────────────────>  src/step/islands.c
 //   reads the universe   bodies, pairs,                                       motions, contacts,   hands results over
 //                        contacts of the step before                          touches, work
 //

@@ -5,7 +5,7 @@
 //   any thread              the scheduler                            workers
 //   ob_move_ask  ---------> ob_move_take, between two steps
 //                           ob_move_make: the object has a pin
-//                           deals islands (sim/island_builder.h) --> solve their islands: ob_home_set
+//                           deals islands (step/island_builder.h) --> solve their islands: ob_home_set
 //
 // On several ranks, rank 0 takes the requests and sends them to the others with its next message (cluster/peers.h).
 #ifndef OB_TABLE_HOME_H

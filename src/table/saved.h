@@ -5,7 +5,7 @@
 //   passports         of those that exist                   the same bytes
 //   motions           the newest of each                    published: the first version
 //   schedule, bounds  of those that exist                   the same bytes
-//   neighbours        how many the last query found         the same: flights are computed so far ahead (sim/flight.c)
+//   neighbours        how many the last query found         the same: flights are computed so far ahead (step/flight.c)
 //   pairs, planes     all, in their order                   the same bytes; a record's number is that of its pair
 //   pair records      the newest version                    the first of two versions
 //   scripts           cells, texts                      the same bytes; texts are compared

@@ -1,5 +1,5 @@
 // Shared data of one universe's object simulators within a step. Plain data in shared memory; the gate orders every
-// access: the phase determines each worker's access rights (the table above sim/step.c).
+// access: the phase determines each worker's access rights (the table above step/step.c).
 #ifndef OB_TABLE_STEP_DATA_H
 #define OB_TABLE_STEP_DATA_H
 
@@ -67,7 +67,7 @@ static inline int ob_pairs_by_ids(const void *x, const void *y)
 	return a->a != b->a ? (a->a < b->a ? -1 : 1) : a->b < b->b ? -1 : a->b > b->b;
 }
 
-// A pair's place in the lists of pairs of its two objects (sim/pairs.h): [0] in that of a, [1] in that of b. Links are
+// A pair's place in the lists of pairs of its two objects (step/pairs.h): [0] in that of a, [1] in that of b. Links are
 // 1 + 2 times the next pair's index, plus 1 if the list is that of its b; 0 ends. next[0] of an unused pair is 1 + the
 // next unused one.
 typedef struct ob_pair_links {
@@ -178,7 +178,7 @@ typedef struct ob_step_data {
 		int32_t level_low[64][3], level_high[64][3]; // bounds of all their cells
 		uint32_t planes;
 		uint64_t failure; // object << 32 | ob_step_failure, from ob_step_fail; 0 = none
-		uint64_t work; // in the step so far (sim/budget.h)
+		uint64_t work; // in the step so far (step/budget.h)
 		uint32_t culprit; // 1 + the worker to blame for damage; 0 = unknown
 		char blamed_for[OB_STEP_BLAME_MAX];
 	} * count;
@@ -236,7 +236,7 @@ typedef enum ob_step_failure {
 	OB_STEP_OVERWORKED, // the step's budget of work is spent
 	OB_STEP_LEFT, // the run was stopped meanwhile
 	OB_STEP_MEMORY_FULL, // the memory file system has no more pages
-	OB_STEP_BROKEN, // shared data breaks an invariant (sim/invariants.h)
+	OB_STEP_BROKEN, // shared data breaks an invariant (step/invariants.h)
 	OB_STEP_DAMAGED, // this and beyond: an id or index is out of its range, a stray write
 } ob_step_failure;
 

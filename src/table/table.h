@@ -19,7 +19,7 @@
 #include "table/counters.h"
 #include "table/step_data.h"
 
-// Phase that the gate opens with. The phases of a step in their order; sim/step.c describes the workers' actions in
+// Phase that the gate opens with. The phases of a step in their order; step/step.c describes the workers' actions in
 // each.
 typedef enum ob_phase {
 	OB_PHASE_NONE,
@@ -49,7 +49,7 @@ typedef struct ob_universe_setup {
 	const char *isolation; // "thread" | "process": shown by readers
 	ob_run_settings run;
 	bool traced; // with rings for a trace (trace.h)
-	bool checked; // shared data is checked after each step (sim/invariants.h)
+	bool checked; // shared data is checked after each step (step/invariants.h)
 	uint32_t harden; // bits, 1 << ob_harden_measure; with OUTBOX the last of the workers is the arranger (outbox.h)
 	uint32_t script_cells; // objects that can have a script at the same time (script_data.h); 0: none
 	uint32_t script_bytes; // size of the scripts' texts: an ob_script_directory, and the data that it refers to
@@ -168,7 +168,7 @@ const ob_latency *ob_step_latency(const ob_universe *u);
 //
 // The same for OB_SIMULATED_WORKERS, with any actual number. Each worker records the time of each task (any worker; in
 // a phase with more tasks than objects some are combined), and its time outside of tasks. The scheduling code
-// distributes the tasks (sim/critical_path.h): it takes the phase's tasks and the time beside them.
+// distributes the tasks (step/critical_path.h): it takes the phase's tasks and the time beside them.
 enum { OB_SIMULATED_WORKERS = 16 };
 void ob_task_took(ob_universe *u, uint32_t task, uint32_t ns);
 uint32_t ob_task_take_time(ob_universe *u, uint32_t task); // ns; resets it to 0

@@ -4,10 +4,10 @@
 #include "check.h"
 
 #include "cluster/halo.h"
-#include "motion/random.h"
 #include "cluster/little_ranks.h"
-#include "sim/little_universe.h"
-#include "sim/pairs.h"
+#include "motion/random.h"
+#include "step/little_universe.h"
+#include "step/pairs.h"
 #include "table/home.h"
 #include "table/layout.h"
 
@@ -111,7 +111,7 @@ static bool is_true(const rank *r, uint32_t id)
 	return memcmp(ob_newest_motion(r->u, id), &r->s->now[id], sizeof(ob_motion)) == 0;
 }
 
-// The view of the rank that lists its pairs (sim/island_builder.c).
+// The view of the rank that lists its pairs (step/island_builder.c).
 static void note_border(rank *r, uint32_t id)
 {
 	const ob_step_data *data = ob_universe_step_data(r->u);

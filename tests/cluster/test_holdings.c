@@ -7,7 +7,7 @@
 
 #include "cluster/holdings.h"
 #include "ode/ode_body.h"
-#include "sim/little_universe.h"
+#include "step/little_universe.h"
 #include "table/home.h"
 #include "table/layout.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cluster/peers.h"
-#include "sim/little_universe.h"
+#include "step/little_universe.h"
 
 enum { CRATE = 1, DIGEST_OF_CRATE = 1 + (2 * CRATE + 1) * sizeof(uint64_t) }; // 1 + the place of a byte of it
 

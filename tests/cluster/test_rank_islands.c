@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cluster/little_ranks.h"
 #include "cluster/rank_islands.h"
 #include "motion/random.h"
 #include "schedule/calendar.h"
 #include "schedule/pair_checks.h"
-#include "sim/island_builder.h"
-#include "cluster/little_ranks.h"
-#include "sim/little_universe.h"
-#include "sim/pairs.h"
+#include "step/island_builder.h"
+#include "step/little_universe.h"
+#include "step/pairs.h"
 #include "table/home.h"
 #include "table/layout.h"
 

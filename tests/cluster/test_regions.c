@@ -8,8 +8,8 @@
 #include "check.h"
 #include "cluster/regions.h"
 #include "motion/random.h"
-#include "sim/little_universe.h"
-#include "sim/pairs.h"
+#include "step/little_universe.h"
+#include "step/pairs.h"
 #include "table/home.h"
 #include "table/layout.h"
 

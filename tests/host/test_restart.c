@@ -9,7 +9,7 @@
 #include "host/restart.h"
 #include "host/stall.h"
 #include "little_scene.h"
-#include "sim/now.h"
+#include "step/now.h"
 #include "workers.h"
 
 #ifdef __SANITIZE_THREAD__

@@ -1,6 +1,6 @@
 // Random lives: objects are created and removed by the timetable, by scripts and on request, messages are sent, objects
 // freeze, runs stand still, are put down and resumed, and simulators are killed. All ways to run a life end in the same
-// bits, and what simulators share keeps its invariants (sim/invariants.h).
+// bits, and what simulators share keeps its invariants (step/invariants.h).
 //   lives [--seeds A..B] [--way N] [--verbose 1] [--kept FILE] [--print SEED]
 // A life that fails is shrunk and printed: as a line for kept/lives.txt, and as its scene. Exits with 1 if any failed.
 // --print: the scene alone, for ranks.py. --verbose names lives whose scene asks for too much, which end early, alike

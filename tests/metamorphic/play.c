@@ -8,7 +8,7 @@
 #include "hull/hull.h"
 #include "measure/measure.h"
 #include "ode/ode_body.h"
-#include "sim/sim.h"
+#include "step/sim.h"
 #include "world/world.h"
 
 enum { MOST_WORKERS = 8 };

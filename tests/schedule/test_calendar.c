@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "sim/little_universe.h"
 #include "motion/random.h"
 #include "schedule/calendar.h"
+#include "step/little_universe.h"
 
 enum { OBJECTS = 2000 };
 

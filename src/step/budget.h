@@ -1,0 +1,28 @@
+// Work budget of a step: the run ends when a step exceeds it, and names the objects on which the work was spent. So no
+// scene hangs, however thin, fast or stiff its objects. Work is counted, never timed: a run ends in the same step on
+// any machine, with any number of workers. Unit: the cost of a pair in an iteration of the contact solver, some 30 ns.
+// Frequent operations that cost more are noted as several units.
+//
+// The budget is checked wherever a scene determines the number of repetitions. These are collision tests (narrowphase.c
+// reports no more contacts afterwards), iterations, impacts, and planes that end a flight. So a step ends soon after
+// its budget is spent or the run is stopped.
+//
+// A share is the work that one worker does as a whole: an island, or a batch of pairs. Shares are counted in grains.
+// The rest at a share's end is dropped, so that the sum does not depend on the distribution among workers.
+//
+// If failing objects are frozen (ob_run_settings.freezes), each share has the whole budget for itself. All shares of
+// the phase are finished even if one has failed. So the same objects fail in every run.
+#ifndef OB_STEP_BUDGET_H
+#define OB_STEP_BUDGET_H
+
+#include "solver/budget.h"
+#include "step/state.h"
+
+// Begins a share. object: named as the cause if the budget is exceeded or the worker dies in this share.
+void ob_budget_begin_share(ob_sim *s, uint32_t object);
+
+// The solver's account (ob_island_calls.spend) of this worker: adds work to the share's object. Returns true if the budget
+// is spent or the run was stopped; then the step has failed.
+bool ob_budget_spend(void *sim, uint64_t work);
+
+#endif

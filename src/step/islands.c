@@ -1,0 +1,257 @@
+#include "step/islands.h"
+
+#include <stdlib.h>
+
+#include "base/allocate.h"
+#include "exchange/results.h"
+#include "exchange/touches.h"
+#include "step/broadphase.h"
+#include "step/budget.h"
+#include "step/now.h"
+#include "step/pairs.h"
+#include "step/profile.h"
+
+// ---- the solver's input
+
+static void read_object(ob_sim *s, ob_island_object *to, uint32_t id, bool member)
+{
+	const ob_passport *p = ob_passport_of(s->u, id);
+	const ob_motion *m = ob_newest_motion(s->u, id);
+	const uint64_t step = s->scratch.in.step;
+	*to = (ob_island_object){ .id = id,
+				  .passport = p,
+				  .hull = ob_hull_of(s->u, p),
+				  .motion = m,
+				  .now = ob_ballistic_state(s, id, m, (double)step * s->settings->step_length),
+				  .path = ob_path_now(m, step) };
+	if (member)
+		to->torque = ob_script_torque(s->data, id);
+}
+
+// Reads pair "pair" of the universe. The objects of the island that it names for the first time are read, too.
+static void read_pair(ob_sim *s, ob_island_pair *to, uint32_t pair)
+{
+	ob_island_scratch *x = &s->scratch;
+	const ob_pair_key *k = &s->data->pair[pair];
+	const uint32_t fixed = !ob_schedule_is_dynamic(&s->data->schedule[k->a])   ? k->a
+			       : !ob_schedule_is_dynamic(&s->data->schedule[k->b]) ? k->b
+										   : UINT32_MAX;
+	if (fixed != UINT32_MAX) {
+		const uint32_t at = x->index_of[fixed];
+		if (at >= x->in.objects || at < x->in.members || x->object[at].id != fixed) {
+			x->index_of[fixed] = x->in.objects;
+			read_object(s, &x->object[x->in.objects++], fixed, false);
+		}
+	}
+	const ob_pair_state *before = ob_pair_state_before(s->u, k);
+	*to = (ob_island_pair){ .pair = pair,
+				.a = x->index_of[k->a],
+				.b = x->index_of[k->b],
+				.fixed = fixed == UINT32_MAX ? OB_NO_FIXED : x->index_of[fixed],
+				.limit = k->limit,
+				.kept = k->record != OB_NO_RECORD,
+				.before = before };
+	if (before) {
+		const ob_pair_record *r = &s->data->record[k->record];
+		to->newest = r->stamp[before - r->version] == x->in.step + 1;
+		to->impulse_b = s->data->impulse_b ? s->data->impulse_b[k->record][before - r->version] : NULL;
+	}
+}
+
+static const ob_island_input *read_island(ob_sim *s, const ob_island *is)
+{
+	ob_island_scratch *x = &s->scratch;
+	const uint32_t objects = is->members + is->pairs; // at most one that is fixed per pair
+	if (objects > x->objects_max) {
+		x->objects_max = objects + objects / 2;
+		x->object = ob_reallocate(x->object, x->objects_max * sizeof *x->object);
+	}
+	if (is->pairs > x->pairs_max) {
+		x->pairs_max = is->pairs + is->pairs / 2;
+		x->pair = ob_reallocate(x->pair, x->pairs_max * sizeof *x->pair);
+	}
+	x->in = (ob_island_input){ .step = ob_step_count(s->u),
+				   .members = is->members,
+				   .objects = is->members,
+				   .pairs = is->pairs,
+				   .object = x->object,
+				   .pair = x->pair,
+				   .feels = ob_touches_are_felt(s->u, is) };
+	for (uint32_t i = 0; i < is->members; i++) {
+		const uint32_t id = s->data->member[is->first_member + i];
+		x->index_of[id] = i;
+		read_object(s, &x->object[i], id, true);
+	}
+	for (uint32_t i = 0; i < is->pairs; i++)
+		read_pair(s, &x->pair[i], s->data->island_pair[is->first_pair + i]);
+	x->island = is;
+	return &x->in;
+}
+
+bool ob_island_scratch_create(ob_sim *s)
+{
+	s->scratch.index_of = calloc(ob_universe_capacity(s->u), sizeof *s->scratch.index_of);
+	return s->scratch.index_of;
+}
+
+void ob_island_scratch_finish(ob_sim *s)
+{
+	free(s->scratch.index_of);
+	free(s->scratch.object);
+	free(s->scratch.pair);
+}
+
+// ---- requests and reports of the solver
+
+static void enter_section(void *sim, ob_profile_section section)
+{
+	ob_profile_change(sim, section);
+}
+
+static void begin_attempt(void *sim)
+{
+	ob_sim *s = sim;
+	if (s->scratch.in.feels)
+		ob_touches_begin(s->u, s->scratch.island);
+}
+
+static void note_touch(void *sim, uint32_t a, uint32_t b, double impulse, ob_vec3 point)
+{
+	ob_touches_note(((ob_sim *)sim)->u, a, b, impulse, point);
+}
+
+static void fail(void *sim, uint32_t object)
+{
+	ob_step_fail(((ob_sim *)sim)->u, OB_STEP_ENGINE, object);
+}
+
+static void hand_over_contact(void *sim, const ob_found_contact *c)
+{
+	ob_commit_contact(((ob_sim *)sim)->u, c);
+}
+
+static void publish_body(void *sim, const ob_island_object *object, ob_motion *m, bool free)
+{
+	ob_sim *s = sim;
+	ob_state end = { { m->p, m->q }, m->v, m->w };
+	if (free && s->settings->integrator == OB_INTEGRATOR_EXACT) { // the substeps only searched for impacts
+		const ob_motion flight = ob_ballistic_flight(s, object->id);
+		end = ob_ballistic_state(s, object->id, &flight, m->t0);
+		m->t0 = flight.t0, m->valid_until = flight.valid_until;
+		m->p = flight.p, m->q = flight.q, m->v = flight.v, m->w = flight.w;
+	}
+	ob_body_publish(s, object->id, m, &end);
+}
+
+ob_island_calls ob_island_calls_of(ob_sim *s)
+{
+	return (ob_island_calls){ .with = s,
+				  .spend = ob_budget_spend,
+				  .enter = enter_section,
+				  .attempt = begin_attempt,
+				  .touch = note_touch,
+				  .fail = fail,
+				  .contact = hand_over_contact,
+				  .motion = publish_body };
+}
+
+// ---- what it costs
+
+// Returns the cost in solves of a pair; a collision test costs as much as a few.
+static uint64_t cost_so_far(const ob_sim *s)
+{
+	enum { OF_A_TEST = 4 };
+	return s->solver.counters.pair_solves + OF_A_TEST * s->solver.counters.narrowphase_tests;
+}
+
+// Notes each member's share of the cost, by which the scheduler begins expensive islands first.
+static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
+{
+	const uint64_t share = cost / s->data->island[island].members;
+	ob_commit_effort(s->u, island, (uint32_t)(share < UINT32_MAX ? share : UINT32_MAX));
+}
+
+// ---- ballistic advance
+
+// True for a body near planes only, or two near each other and planes, with no resting contact, and no late contact in
+// this step: a ballistic advance may suffice. A contact rests if it carried a load, or if the body has been slow.
+static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
+{
+	const ob_step_data *data = s->data;
+	const uint32_t *id = data->member + is->first_member;
+	if (is->members > 2 || (is->pairs && (data->count->merged || s->settings->integrator == OB_INTEGRATOR_ODE)))
+		return false;
+	for (uint32_t i = 0; data->script_of && i < is->members; i++)
+		if (ob_norm2(ob_script_torque(data, id[i])) > 0)
+			return false;
+	for (uint32_t i = 0; i < is->pairs; i++) {
+		const ob_pair_key *k = &data->pair[data->island_pair[is->first_pair + i]];
+		const bool a = data->schedule[k->a].state == OB_SCHEDULE_PLANE,
+			   b = data->schedule[k->b].state == OB_SCHEDULE_PLANE;
+		const bool met = data->result_island[k->a] == data->result_island[k->b];
+		if ((!a && !b && !met) || (k->active && (ob_newest_motion(s->u, a ? k->b : k->a)->rest_time > 0 ||
+							 ob_pair_carried_load(ob_pair_state_before(s->u, k)))))
+			return false;
+	}
+	return true;
+}
+
+// Ends the island's contacts; the next solver tests their geometry anew.
+static void end_contacts(ob_sim *s, const ob_island *is)
+{
+	for (uint32_t i = 0; i < is->pairs; i++) {
+		const uint32_t pair = s->data->island_pair[is->first_pair + i];
+		if (s->data->pair[pair].active)
+			ob_commit_contact(s->u, &(ob_found_contact){ .pair = pair, .limit = -INFINITY });
+	}
+}
+
+static bool advance_pair(ob_sim *s, const ob_island *is)
+{
+	if (is->members != 2 || !may_advance_ballistically(s, is))
+		return false;
+	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
+	ob_touches_begin(s->u, is);
+	if (!ob_ballistic_pair_advance(s, s->data->member + is->first_member))
+		return false;
+	end_contacts(s, is);
+	s->solver.counters.ballistic_advances += is->members;
+	return true;
+}
+
+void ob_islands_fly(ob_sim *s, uint32_t first, uint32_t n, bool *flown)
+{
+	const ob_step_data *data = s->data;
+	uint32_t lone[OB_ISLANDS_ABREAST], id[OB_ISLANDS_ABREAST], fly = 0;
+	bool done[OB_ISLANDS_ABREAST];
+	ob_budget_begin_share(s, data->member[data->island[first].first_member]);
+	ob_profile_enter(s, OB_PROFILE_BALLISTIC);
+	for (uint32_t k = 0; k < n; k++) {
+		const ob_island *is = &data->island[first + k];
+		flown[k] = false;
+		if (is->members != 1 || !may_advance_ballistically(s, is))
+			continue;
+		ob_touches_begin(s->u, is);
+		lone[fly] = k, id[fly++] = data->member[is->first_member];
+	}
+	ob_ballistic_advance(s, id, fly, done);
+	for (uint32_t i = 0; i < fly; i++)
+		if ((flown[lone[i]] = done[i])) {
+			end_contacts(s, &data->island[first + lone[i]]);
+			s->solver.counters.ballistic_advances++;
+		}
+}
+
+// ---- the step
+
+void ob_island_advance(ob_sim *s, uint32_t i)
+{
+	const ob_island *is = &s->data->island[i];
+	ob_budget_begin_share(s, s->data->member[is->first_member]);
+	if (advance_pair(s, is))
+		return;
+	const uint64_t before = cost_so_far(s);
+	ob_profile_enter(s, OB_PROFILE_LOAD);
+	ob_island_solve(&s->solver, read_island(s, is));
+	note_effort(s, i, cost_so_far(s) - before);
+}

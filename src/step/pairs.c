@@ -1,0 +1,366 @@
+#include "step/pairs.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/allocate.h"
+#include "exchange/results.h"
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
+#include "shape/shape.h"
+#include "step/broadphase.h"
+#include "step/now.h"
+#include "step/prefetch.h"
+#include "step/sort_ids.h"
+
+// ---- lists
+
+// Writes a link where it belongs: into the place before it, or at the start of the list.
+static void put_link(ob_step_data *data, uint32_t id, uint32_t before, uint32_t link)
+{
+	ob_pair_place at;
+	if (ob_pair_at(data, before, &at))
+		data->pair_links[at.pair].next[at.side] = link;
+	else
+		data->first_pair[id] = link;
+}
+
+static void link_side(ob_step_data *data, uint32_t pair, uint32_t side, uint32_t id)
+{
+	const uint32_t first = data->first_pair[id], link = 1 + 2 * pair + side;
+	ob_pair_place at;
+	data->pair_links[pair].next[side] = first;
+	data->pair_links[pair].before[side] = 0;
+	if (ob_pair_at(data, first, &at))
+		data->pair_links[at.pair].before[at.side] = link;
+	data->first_pair[id] = link;
+}
+
+static void unlink_side(ob_step_data *data, uint32_t pair, uint32_t side, uint32_t id)
+{
+	const uint32_t next = data->pair_links[pair].next[side], before = data->pair_links[pair].before[side];
+	ob_pair_place at;
+	if (ob_pair_at(data, next, &at))
+		data->pair_links[at.pair].before[at.side] = before;
+	put_link(data, id, before, next);
+}
+
+static void link_pair(ob_universe *u, uint32_t pair)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_pair_key *k = &data->pair[pair];
+	for (uint32_t side = 0; side < 2; side++)
+		if (ob_has_pairs(data, side ? k->b : k->a))
+			link_side(data, pair, side, side ? k->b : k->a);
+}
+
+static void put_aside(ob_step_data *data, uint32_t pair)
+{
+	data->pair[pair] = (ob_pair_key){ .record = OB_NO_RECORD };
+	data->pair_links[pair] = (ob_pair_links){ .next = { data->count->first_idle } };
+	data->count->first_idle = 1 + pair;
+	data->count->pairs_idle++;
+}
+
+static void drop_pair(ob_universe *u, uint32_t pair)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	const ob_pair_key *k = &data->pair[pair];
+	for (uint32_t side = 0; side < 2; side++)
+		if (ob_has_pairs(data, side ? k->b : k->a))
+			unlink_side(data, pair, side, side ? k->b : k->a);
+	ob_calendar_set(&look, pair, UINT32_MAX);
+	put_aside(data, pair);
+}
+
+// Takes a pair that is not in use. false: there is none, and the step has failed.
+static bool take_pair(ob_universe *u, uint32_t *pair)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	if (data->count->first_idle) {
+		*pair = data->count->first_idle - 1;
+		if (*pair < data->pairs_max) {
+			data->count->first_idle = data->pair_links[*pair].next[0];
+			data->count->pairs_idle--;
+			return true;
+		}
+		data->count->failure = OB_STEP_DAMAGED;
+		return false;
+	}
+	*pair = data->count->pairs;
+	if (*pair >= data->pairs_max)
+		ob_step_fail(u, OB_STEP_PAIRS_FULL, 0);
+	else if (!ob_reserve_pairs(u, *pair, 1))
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+	else
+		return data->count->pairs++, true;
+	return false;
+}
+
+void ob_pairs_link(ob_universe *u)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint64_t step = ob_step_count(u);
+	const uint32_t ids = ob_universe_ids(u);
+	const ob_calendar solve = ob_calendar_of_objects(u), look = ob_calendar_of_pairs(u);
+	ob_calendar_clear(&solve);
+	ob_calendar_clear(&look);
+	data->count->first_idle = data->count->pairs_idle = data->count->island_pairs = data->count->checks = 0;
+	memset(data->first_pair, 0, ids * sizeof *data->first_pair);
+	for (uint32_t id = 0; id < ids; id++)
+		ob_calendar_enter_due(u, id);
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		const ob_pair_key *k = &data->pair[i];
+		if (k->a == k->b) {
+			put_aside(data, i);
+			continue;
+		}
+		link_pair(u, i);
+		ob_pair_enter_check(u, i, step);
+		if (k->in_island || k->record != OB_NO_RECORD)
+			data->island_pair[data->count->island_pairs++] = i;
+	}
+}
+
+// Drops all pairs of an object. The host calls it, too, and for static objects: so it searches all pairs.
+void ob_pairs_drop(ob_universe *u, uint32_t id)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		ob_pair_key *k = &data->pair[i];
+		if (k->a == k->b || (k->a != id && k->b != id) || !ob_object_in_range(data, k->a) ||
+		    !ob_object_in_range(data, k->b))
+			continue;
+		ob_pair_release_record(u, k);
+		drop_pair(u, i);
+	}
+}
+
+// ---- new pairs
+
+static double plane_distance(const ob_universe *u, uint32_t plane, ob_vec3 at, double sphere)
+{
+	const ob_motion *m = ob_newest_motion(u, plane);
+	ob_mat3 r = ob_quat_matrix(m->q);
+	return ob_dot(ob_column(&r, 2), ob_sub(at, m->p)) - sphere;
+}
+
+// Lower bound of the distance between two objects (m): from their boxes and bounding spheres, or a sphere and a plane.
+static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
+{
+	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
+	const ob_motion *ma = ob_result_of(u, a), *mb = ob_result_of(u, b);
+	bool aabbs = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // boxes reach beyond the bounding sphere
+	double ra = ob_shape_radius(pa->shape, pa->size), rb = ob_shape_radius(pb->shape, pb->size);
+	ob_vec3 centre_a = ob_centre_now(u, a, ma, steps), centre_b = ob_centre_now(u, b, mb, steps);
+	if (ob_shape_is(pa->shape, OB_UNBOUNDED))
+		return plane_distance(u, a, centre_b, (aabbs ? sqrt(3) : 1) * rb);
+	if (ob_shape_is(pb->shape, OB_UNBOUNDED))
+		return plane_distance(u, b, centre_a, (aabbs ? sqrt(3) : 1) * ra);
+	double spheres = ob_norm(ob_sub(centre_a, centre_b)) - ra - rb;
+	if (spheres > ob_max(ra, rb) && !aabbs) // boxes would not add much, and cost more
+		return spheres;
+	double box_a[6], box_b[6], distance = 0;
+	ob_tight_aabb(u, pa, ob_state_now(u, a, ma, steps).pose, box_a);
+	ob_tight_aabb(u, pb, ob_state_now(u, b, mb, steps).pose, box_b);
+	for (int c = 0; c < 3; c++)
+		distance = ob_max(distance, ob_max(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
+	return aabbs ? distance : ob_max(distance, spheres);
+}
+
+// Path of both together in the solved step, if there is one (m).
+static double path_in_step(const ob_universe *u, uint32_t a, uint32_t b, double paths, uint64_t steps)
+{
+	const uint64_t step = ob_step_count(u);
+	return steps > step
+		       ? paths - ob_path_now(ob_newest_motion(u, a), step) - ob_path_now(ob_newest_motion(u, b), step)
+		       : 0;
+}
+
+double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t steps)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t a = k->a, b = k->b;
+	double distance = pair_distance(u, a, b, steps);
+	double paths = ob_schedule_path(&data->schedule[a], steps) + ob_schedule_path(&data->schedule[b], steps);
+	// They may have touched in the solved step if they moved farther in it than their distance.
+	return distance > path_in_step(u, a, b, paths, steps) ? paths + distance : -1;
+}
+
+static void add_pair(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t a = id < other ? id : other, b = id < other ? other : id;
+	uint32_t pair;
+	if (!take_pair(u, &pair))
+		return;
+	data->pair[pair] = (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = NAN };
+	link_pair(u, pair);
+	ob_pair_enter_check(u, pair, steps); // check at once
+	if (data->count->checks < data->pairs_max)
+		data->check[data->count->checks++] = pair;
+}
+
+void ob_pairs_measure(ob_universe *u, uint64_t steps)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t fresh = ob_checks_count(data);
+	for (uint32_t i = 0; i < fresh; i++) {
+		ob_pair_key *k = &data->pair[data->check[i]];
+		if (k->a != k->b)
+			k->limit = ob_pair_is_known_here(u, k) ? ob_pair_first_limit(u, k, steps) : -INFINITY;
+	}
+}
+
+// ---- queries
+
+static bool is_immobile(const ob_step_data *data, uint32_t id)
+{
+	return !ob_schedule_is_dynamic(&data->schedule[id]);
+}
+
+// True if this object decides about the pair. If both were queried and found each other, the lower id does.
+static bool decides(const ob_universe *u, uint32_t id, uint32_t other)
+{
+	return id < other || !ob_requery_lists(u, other);
+}
+
+// Returns the index of "wanted" in id[], which ascends; n: it is not there.
+static uint32_t place_of(const uint32_t *id, uint32_t n, uint32_t wanted)
+{
+	uint32_t first = 0, end = n;
+	while (first < end) {
+		const uint32_t middle = first + (end - first) / 2;
+		if (id[middle] < wanted)
+			first = middle + 1;
+		else
+			end = middle;
+	}
+	return first < n && id[first] == wanted ? first : n;
+}
+
+// Changes of an object's pairs: n of them, of which the first max are listed.
+typedef struct changes {
+	uint32_t n, max, *list;
+} changes;
+
+static void add_change(changes *c, uint32_t change)
+{
+	if (c->n < c->max)
+		c->list[c->n] = change;
+	c->n++;
+}
+
+// Ends pairs that the query has not found again, and begins new ones. found: n neighbours, ascending; had: [n] scratch.
+// Static objects keep no list of their pairs, and are queried when they are created: then they have none.
+static void compare_pairs(const ob_universe *u, uint32_t id, const uint32_t *found, uint32_t n, uint32_t *had,
+			  changes *to)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_place at;
+	memset(had, 0, n * sizeof *had);
+	for (uint32_t link = ob_has_pairs(data, id) ? data->first_pair[id] : 0; ob_pair_at(data, link, &at);
+	     link = ob_pair_next(data, at)) {
+		const ob_pair_key *k = &data->pair[at.pair];
+		ob_prefetch_link(u, ob_pair_next(data, at));
+		const uint32_t other = at.side ? k->a : k->b, place = place_of(found, n, other);
+		if (place < n)
+			had[place] = 1;
+		// A pair with a record stays until the step is over: it may have to be solved again.
+		else if (k->record == OB_NO_RECORD && decides(u, id, other))
+			add_change(to, OB_PAIR_ENDS | at.pair);
+	}
+	for (uint32_t i = 0; i < n; i++)
+		if (!had[i] && decides(u, id, found[i]) && (!is_immobile(data, id) || !is_immobile(data, found[i])))
+			add_change(to, found[i]);
+}
+
+void ob_pairs_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
+{
+	enum { USUALLY = 256 };
+	uint32_t few[3 * USUALLY], *found = few, room = USUALLY, n = ob_index_query(u, id, few, USUALLY, box_tests);
+	if (n > USUALLY) {
+		room = n;
+		found = ob_allocate(3 * (size_t)n * sizeof *found);
+		n = ob_index_query(u, id, found, n, box_tests);
+	}
+	uint32_t *had = found + room;
+	changes c = { .max = room, .list = had + room };
+	ob_sort_ids(found, n, ob_universe_ids(u), had);
+	compare_pairs(u, id, found, n, had, &c);
+	uint32_t *more = c.n > c.max ? ob_allocate(c.n * sizeof *more) : NULL;
+	if (more) {
+		c = (changes){ .max = c.n, .list = more };
+		compare_pairs(u, id, found, n, had, &c);
+	}
+	ob_commit_neighbours(u, id, n, c.list, c.n);
+	free(more);
+	if (found != few)
+		free(found);
+}
+
+// ---- results of queries
+
+static void change_pairs(ob_universe *u, uint32_t id, uint64_t steps)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t ids = ob_universe_ids(u);
+	const uint32_t at = data->neighbours[id].offset, n = at < data->neighbours_max ? data->neighbour_id[at] : 0;
+	if (n >= data->neighbours_max - at) {
+		data->count->failure = OB_STEP_DAMAGED;
+		return;
+	}
+	data->count->visits += 1 + n;
+	for (const uint32_t *change = data->neighbour_id + at + 1, *end = change + n; change < end; change++)
+		if (!ob_is_pair_change(data, id, *change, ids))
+			data->count->failure = OB_STEP_DAMAGED;
+		else if (*change & OB_PAIR_ENDS)
+			drop_pair(u, *change & ~OB_PAIR_ENDS);
+		else
+			add_pair(u, id, *change, steps);
+}
+
+static void prefetch_changes(const ob_step_data *data, const uint32_t *queried, uint32_t i, uint32_t n)
+{
+	enum { PLACE_AHEAD = 8, CHANGES_AHEAD = 4 };
+	if (i + PLACE_AHEAD < n)
+		__builtin_prefetch(&data->neighbours[queried[i + PLACE_AHEAD]]);
+	if (i + CHANGES_AHEAD < n && data->neighbours[queried[i + CHANGES_AHEAD]].offset < data->neighbours_max)
+		__builtin_prefetch(&data->neighbour_id[data->neighbours[queried[i + CHANGES_AHEAD]].offset]);
+}
+
+// Merges in the order of ids, not in that of the list or of the workers: so pairs have the same indices in every run.
+void ob_pairs_merge(ob_universe *u, uint64_t steps)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t ids = ob_universe_ids(u);
+	uint32_t count, n = 0, *queried = data->scratch, *other = data->scratch + ids;
+	const uint32_t *list = ob_requery_list(u, &count);
+	data->count->checks = 0;
+	if (!count)
+		return;
+	for (uint32_t i = 0; i < count && n < ids; i++)
+		if (list[i] < ids)
+			queried[n++] = list[i];
+	ob_sort_ids(queried, n, ids, other);
+	for (uint32_t i = 0; i < n && ob_step_failed(u, NULL) == OB_STEP_OK; i++) {
+		prefetch_changes(data, queried, i, n);
+		change_pairs(u, queried[i], steps);
+	}
+	ob_requery_reset(u);
+	ob_neighbours_reset(u);
+}
+
+// ---- state of contacts
+
+// A first solution has overwritten the pair's key. So where islands are solved again, the record alone decides.
+const ob_pair_state *ob_pair_state_before(const ob_universe *u, const ob_pair_key *k)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (k->record == OB_NO_RECORD || (!k->active && !data->count->merged))
+		return NULL;
+	const ob_pair_state *p = ob_pair_before(&data->record[k->record], ob_step_count(u));
+	return p && p->points ? p : NULL;
+}

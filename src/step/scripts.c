@@ -1,0 +1,217 @@
+#include "step/scripts.h"
+
+#include <string.h>
+
+#include "baseline/ode_baseline.h"
+#include "exchange/results.h"
+#include "schedule/calendar.h"
+#include "schedule/pair_checks.h"
+#include "step/broadphase.h"
+#include "step/budget.h"
+#include "step/now.h"
+#include "step/pairs.h"
+#include "step/profile.h"
+
+// ---- scripts that run
+
+bool ob_scripts_due(ob_universe *u)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_script_counts *count = data->script_counts;
+	const uint64_t step = ob_step_count(u);
+	if (!count || count->ran_for == step + 1)
+		return false;
+	count->ran_for = (uint32_t)step + 1;
+	count->due = 0;
+	for (uint32_t i = 0; i < count->cells && i < data->script_cells; i++)
+		if (ob_script_is_due(&data->script_turn[i], step))
+			data->script_due[count->due++] = i;
+	return count->due > 0;
+}
+
+static uint64_t run(ob_sim *s, uint32_t cell)
+{
+	const ob_step_data *data = s->data;
+	if (!ob_universe_contained(s->u))
+		return s->scripts.run(s->scripts.runner, &data->script_turn[cell], &data->script_cell[cell]);
+	s->scripts.turn = data->script_turn[cell];
+	s->scripts.cell = data->script_cell[cell];
+	const uint64_t instructions = s->scripts.run(s->scripts.runner, &s->scripts.turn, &s->scripts.cell);
+	ob_hand_over_script(s->u, cell, &s->scripts.turn, &s->scripts.cell);
+	return instructions;
+}
+
+static void run_share(ob_sim *s, uint32_t cell)
+{
+	enum { INSTRUCTIONS_PER_WORK = 4 };
+	ob_budget_begin_share(s, s->data->script_turn[cell].object);
+	ob_budget_note(&s->solver, run(s, cell) / INSTRUCTIONS_PER_WORK);
+	ob_budget_spent(&s->solver);
+}
+
+void ob_scripts_run(ob_sim *s)
+{
+	uint32_t i;
+	if (s->settings->one_per_object)
+		run_share(s, s->data->script_of[s->worker] - 1);
+	else
+		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK)) {
+			run_share(s, s->data->script_due[i]);
+			ob_profile_task_done(s, i);
+		}
+}
+
+bool ob_sim_awaits_requests(const ob_universe *u)
+{
+	return ob_scripts_have_requests(u);
+}
+
+bool ob_scripts_have_requests(const ob_universe *u)
+{
+	const ob_script_counts *count = ob_universe_step_data(u)->script_counts;
+	return count && count->requests > 0;
+}
+
+// ---- requests
+
+static bool moves(const ob_step_data *data, uint32_t id)
+{
+	return ob_schedule_is_dynamic(&data->schedule[id]);
+}
+
+// Changes the object's velocities or force: the motion that was computed ahead becomes void.
+static void set_going(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_run_settings *run = ob_universe_settings(u);
+	const ob_passport *pass = ob_passport_of(u, id);
+	const uint64_t step = ob_step_count(u);
+	ob_motion m = *ob_newest_motion(u, id);
+	const bool supported = ob_norm2(m.a) == 0;
+	const ob_state now = ob_state_now(u, id, &m, step);
+	m.path = ob_path_now(&m, step);
+	m.t0 = m.valid_until = (double)step * run->step_length;
+	m.p = now.pose.p, m.q = now.pose.q, m.v = now.v, m.w = now.w;
+	if (ob_norm2(push) > 0)
+		m.v = ob_madd(m.v, 1 / pass->mass, push);
+	if (ob_norm2(twist) > 0) {
+		const ob_mat3 r = ob_quat_matrix(m.q);
+		const ob_vec3 l = ob_rotate_back(&r, twist);
+		m.w = ob_add(m.w,
+			     ob_rotate(&r, ob_v3(l.x / pass->inertia.x, l.y / pass->inertia.y, l.z / pass->inertia.z)));
+	}
+	m.a = supported ? ob_v3(0, 0, 0) : ob_external_acceleration(run, pass);
+	m.step = (uint32_t)step;
+	m.flags = 0;
+	m.rest_time = 0;
+	const double reach = ob_step_reach(run, pass, m.q, m.v, m.w);
+	m.reach = (float)reach;
+	ob_schedule *schedule = &data->schedule[id];
+	*schedule = (ob_schedule){ ob_schedule_path(schedule, step), (float)reach, OB_SCHEDULE_AWAKE, m.step, m.step };
+	ob_calendar_enter_due(u, id);
+	ob_pairs_look(u, id);
+	ob_fat_aabb_update(u, id, &(ob_state){ { m.p, m.q }, m.v, m.w }, reach, 0);
+	ob_publish_motion(u, id, &m);
+}
+
+// Carries out a script's changes of its object. true: its motion changes.
+static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
+{
+	ob_universe *u = s->u;
+	const ob_step_data *data = s->data;
+	const bool body = moves(data, id);
+	ob_passport p = *ob_passport_of(u, id);
+	bool other = false;
+	if (body && c->asks & OB_SCRIPT_ASKS_FORCE) {
+		other |= !ob_equal(p.force, c->force);
+		p.force = c->force;
+	}
+	if (c->asks & OB_SCRIPT_ASKS_COLOUR) {
+		memcpy(p.colour, c->colour, sizeof p.colour);
+		p.flags &= ~(uint32_t)OB_OBJECT_MESH_COLOUR;
+	}
+	if (memcmp(&p, ob_passport_of(u, id), sizeof p) != 0)
+		ob_write_passport(u, id, &p);
+	if (body && c->asks & OB_SCRIPT_ASKS_TORQUE) {
+		other |= !ob_equal(c->torque, c->next_torque);
+		c->torque = c->next_torque;
+	}
+	const ob_vec3 none = { 0 };
+	const bool pushed = body && c->asks & OB_SCRIPT_ASKS_PUSH;
+	if (s->baseline && pushed) // it follows forces and torques by itself
+		ob_ode_baseline_kick(s->baseline, id, c->push, c->twist);
+	else if (!s->baseline && (other || pushed))
+		set_going(u, id, pushed ? c->push : none, pushed ? c->twist : none);
+	return other || pushed;
+}
+
+static void deliver(ob_step_data *data, const ob_script_turn *from, const ob_script_post *post)
+{
+	const uint32_t cell = post->object < data->objects_max ? data->script_of[post->object] : 0;
+	if (!cell)
+		return;
+	ob_script_turn *to = &data->script_turn[cell - 1];
+	ob_script_cell *c = &data->script_cell[cell - 1];
+	if (to->generation != post->generation || to->flags & OB_SCRIPT_STOPPED)
+		return;
+	const uint32_t bytes = (uint32_t)sizeof *post + post->bytes;
+	if (c->inbox_bytes + bytes > OB_SCRIPT_INBOX_BYTES) {
+		data->script_counts->lost++;
+		return;
+	}
+	ob_script_post mail = *post;
+	mail.object = from->object, mail.generation = from->generation;
+	memcpy(c->inbox + c->inbox_bytes, &mail, sizeof mail);
+	memcpy(c->inbox + c->inbox_bytes + sizeof mail, post + 1, post->bytes);
+	c->inbox_bytes += bytes;
+	to->flags |= OB_SCRIPT_MAIL;
+}
+
+// Removes an object. One that has a script of its own receives a message first, and is removed a step later.
+static void remove_object(ob_step_data *data, const ob_script_turn *from, ob_script_post *post)
+{
+	const uint32_t cell = post->object < data->objects_max ? data->script_of[post->object] : 0;
+	ob_script_turn *to = cell ? &data->script_turn[cell - 1] : NULL;
+	if (to && to != from && to->generation == post->generation && !(to->flags & OB_SCRIPT_STOPPED)) {
+		to->flags |= OB_SCRIPT_LEAVING;
+		post->kind = OB_SCRIPT_MESSAGE, post->bytes = 0, post->generation = 0; // it has no receiver
+		return;
+	}
+	data->script_counts->requests++;
+}
+
+// Carries out the posts in a cell's outbox, which are aligned to 8 bytes.
+static void post_all(ob_step_data *data, const ob_script_turn *from, ob_script_cell *c)
+{
+	for (uint32_t at = 0; at + sizeof(ob_script_post) <= c->outbox_bytes;) {
+		ob_script_post *post = (ob_script_post *)(void *)(c->outbox + at);
+		at += (uint32_t)sizeof *post + post->bytes;
+		if (post->kind == OB_SCRIPT_MESSAGE)
+			deliver(data, from, post);
+		else if (post->kind == OB_SCRIPT_REMOVE)
+			remove_object(data, from, post);
+		else
+			data->script_counts->requests++;
+	}
+}
+
+bool ob_scripts_carry_out(ob_sim *s)
+{
+	ob_step_data *data = s->data;
+	ob_script_counts *count = data->script_counts;
+	bool other = false;
+	count->requests = 0;
+	count->calls += count->due;
+	for (uint32_t i = 0; i < count->due; i++) {
+		const uint32_t cell = data->script_due[i];
+		ob_script_turn *turn = &data->script_turn[cell];
+		ob_script_cell *c = &data->script_cell[cell];
+		if (c->asks & ~(uint32_t)(OB_SCRIPT_ASKS_POST | OB_SCRIPT_ASKS_ERROR))
+			other |= change_object(s, turn->object, c);
+		if (c->asks & OB_SCRIPT_ASKS_POST)
+			post_all(data, turn, c);
+		count->failed += (c->asks & OB_SCRIPT_ASKS_ERROR) != 0;
+		c->asks = 0;
+	}
+	return other;
+}

@@ -1,0 +1,95 @@
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "baseline/ode_baseline.h"
+#include "cluster/peers.h"
+#include "exchange/commit.h"
+#include "step/islands.h"
+#include "step/sim.h"
+#include "step/state.h"
+
+// Number of ODE bodies that a worker keeps. All workers together keep no more than there are objects, or a few for each:
+// a worker that claims islands comes to solve every object in the course of a run.
+static uint32_t ode_bodies_of(const ob_universe *u)
+{
+	enum { LEAST = 256 }; // enough for the members of an island; .35 MB
+	const uint32_t objects = ob_universe_capacity(u), workers = ob_universe_workers(u);
+	const uint32_t share = objects / workers + (objects % workers != 0);
+	return share < LEAST ? (objects < LEAST ? objects : LEAST) : share;
+}
+
+ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
+{
+	uint32_t capacity = ob_universe_capacity(u);
+	const ob_run_settings *run = ob_universe_settings(u);
+	ob_sim *s = calloc(1, sizeof *s);
+	if (s) {
+		s->u = u;
+		s->data = ob_universe_step_data(u);
+		s->settings = run;
+		s->worker = worker;
+		s->solver.counters = *ob_worker_counters(u, worker); // another worker may have run its objects before
+		s->times.timed = s->solver.timed = run->timed;
+		s->span.traced = ob_universe_traced(u);
+	}
+	const ob_island_calls calls = ob_island_calls_of(s);
+	if (!s || !ob_solver_create(&s->solver, run, &calls, ode_bodies_of(u)) || !ob_island_scratch_create(s) ||
+	    !ob_rotation_cache_create(&s->rotations, capacity) ||
+	    (run->monolith && !(s->baseline = ob_ode_baseline_create(u)))) {
+		ob_sim_destroy(s);
+		ob_fail(e, "worker %u: no memory for %u objects", worker, capacity);
+		return NULL;
+	}
+	if (run->one_per_object && worker < capacity && ob_passport_of(u, worker)->flags & OB_OBJECT_PRESENT) {
+		ob_ode_bodies_get(&s->solver.ode_bodies, run->gravity, worker, ob_passport_of(u, worker)); // its own
+	}
+	if (ob_universe_contains(u) && worker == ob_universe_simulators(u)) {
+		s->committer = ob_committer_create(u);
+		if (!s->committer) {
+			ob_sim_destroy(s);
+			ob_fail(e, "arranger: no memory for %u objects", capacity);
+			return NULL;
+		}
+	}
+	if (s->times.timed) { // it waits at the gate from now on; the previous worker's wait ended with it
+		s->solver.counters.since_ns = ob_clock_ns();
+		s->times.cpu_end = ob_clock_thread_cpu();
+		*ob_worker_counters(u, worker) = s->solver.counters;
+	}
+	return s;
+}
+
+void ob_sim_destroy(ob_sim *s)
+{
+	if (!s)
+		return;
+	ob_ode_baseline_destroy(s->baseline);
+	ob_solver_finish(&s->solver);
+	ob_island_scratch_finish(s);
+	ob_rotation_cache_finish(&s->rotations);
+	ob_committer_destroy(s->committer);
+	free(s);
+}
+
+void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner)
+{
+	s->scripts.run = run;
+	s->scripts.runner = runner;
+}
+
+bool ob_sim_join(ob_sim *s, const ob_peers *p, ob_error *e)
+{
+	s->peers = *p;
+	return ob_peers_join(&s->peers, s->u, e);
+}
+
+void ob_sim_leave(ob_sim *s)
+{
+	ob_peers_leave(&s->peers);
+}
+
+void ob_sim_run(ob_sim *s)
+{
+	while (ob_step(s))
+		;
+}

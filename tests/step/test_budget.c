@@ -1,0 +1,237 @@
+// A step has a budget of work: when it is spent the run fails, nothing of the step is published, and the failure
+// names the bodies that spent it. Divergence ends a run in the same way, and so does a failure of ODE.
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "little_universe.h"
+#include "solver/narrowphase.h"
+#include "step/budget.h"
+
+// Checks the failure's message; the state of the previous step stands.
+static void expect_failure(little_universe *l, ob_step_failure why, uint32_t object, const char *saying)
+{
+	uint64_t before = ob_step_count(l->u);
+	ob_motion motion = *ob_newest_motion(l->u, object);
+	ob_gate_set_pause_step(l->u, before + 1);
+	ob_sim_resume(l->u);
+	while (!ob_gate_host_wait(l->u, 0))
+		ob_step(l->sim);
+	uint32_t blamed = UINT32_MAX;
+	CHECK(ob_step_failed(l->u, &blamed) == why && blamed == object);
+	CHECK(ob_step_count(l->u) == before);
+	CHECK(memcmp(&motion, ob_newest_motion(l->u, object), sizeof motion) == 0);
+	const char *text = ob_sim_failure(l->u);
+	bool said = text && strstr(text, saying);
+	CHECK(said);
+	if (!said)
+		fprintf(stderr, "%s\n", text ? text : "no failure");
+}
+
+// A few bodies are solved for a last grain of work, as if the rest of the step had spent all the others.
+static void test_spent(void)
+{
+	little_scene *s = little_scene_new();
+	ob_world_ground(&s->world);
+	for (int i = 0; i < 40; i++) {
+		ob_world_body b = ob_world_box(&s->world, 500, ob_v3(.5, .5, .5), ob_v3(.1 * (i % 2), 0, .5 + .9 * i));
+		snprintf(b.passport->name, OB_NAME_MAX, "brick %d", i);
+	}
+	little_universe l;
+	little_open(&l, s);
+	ob_step_work_add(l.u, UINT64_C(1) << 40);
+	expect_failure(&l, OB_STEP_OVERWORKED, 1, "step 1 takes more work than a step may: object 1 (brick 0)");
+	little_close(&l);
+	free(s);
+}
+
+// The last grain of work is spent by a lone flight: past many planes, or in many substeps of ODE's stepper.
+static void test_spent_in_flight(void)
+{
+	for (int by_ode = 0; by_ode < 2; by_ode++) {
+		little_scene *s = little_scene_new();
+		if (by_ode) {
+			s->run.integrator = OB_INTEGRATOR_ODE;
+			s->run.tolerance = 0;
+			s->run.substeps = 1000;
+		}
+		ob_world_sphere(&s->world, 500, .5, ob_v3(0, 0, 9));
+		for (int i = 0; i < (by_ode ? 1 : 200); i++)
+			ob_world_ground(&s->world);
+		little_universe l;
+		little_open(&l, s);
+		ob_step_work_add(l.u, UINT64_C(1) << 40);
+		expect_failure(&l, OB_STEP_OVERWORKED, 0, "step 1 takes more work than a step may: object 0");
+		little_close(&l);
+		free(s);
+	}
+}
+
+// Each share drops its remainder below a grain: the number of flights beside each other on a worker adds nothing to the
+// sum.
+static void test_small_shares(void)
+{
+	little_scene *s = little_scene_new();
+	for (int i = 0; i < 32; i++)
+		ob_world_sphere(&s->world, 500, .5, ob_v3(9 * i, 0, 9));
+	for (int i = 0; i < 20; i++)
+		ob_world_ground(&s->world);
+	little_universe l;
+	little_open(&l, s);
+	ob_step_work_add(l.u, UINT64_C(1) << 40);
+	ob_gate_set_pause_step(l.u, 1);
+	ob_sim_resume(l.u);
+	while (!ob_gate_host_wait(l.u, 0))
+		ob_step(l.sim);
+	CHECK(ob_step_failed(l.u, NULL) == OB_STEP_OK && ob_step_count(l.u) == 1);
+	little_close(&l);
+	free(s);
+}
+
+// Dearer tests count for more. Once the budget is spent no two bodies touch any more, so that a loop over many pairs
+// ends.
+static void test_collision_tests(void)
+{
+	little_scene *s = little_scene_new();
+	ob_world_sphere(&s->world, 500, .5, ob_v3(0, 0, 9));
+	little_universe l;
+	little_open(&l, s);
+	const ob_placed sphere = { .shape = OB_SHAPE_SPHERE,
+				   .size = { .5, 0, 0 },
+				   .r = ob_quat_matrix(ob_quat_identity()) };
+	ob_placed box = sphere, cylinder = sphere;
+	box.shape = OB_SHAPE_BOX, box.size = ob_v3(.5, .5, .5), box.p = ob_v3(.3, .2, .1);
+	cylinder.shape = OB_SHAPE_CYLINDER, cylinder.size = ob_v3(.5, .5, 0);
+	const ob_manifold_finder finder = ob_narrowphase_finder(&l.sim->solver);
+	ob_manifold m;
+	uint64_t noted[2];
+	ob_budget_begin_share(l.sim, 0);
+	for (int i = 0; i < 2; i++) {
+		const uint64_t before = l.sim->solver.budget.noted;
+		finder.find(finder.with, i ? &cylinder : &sphere, &box, .1, &m);
+		noted[i] = l.sim->solver.budget.noted - before;
+		CHECK(m.points > 0);
+	}
+	CHECK(noted[0] > 0 && noted[1] > 20 * noted[0]);
+	ob_step_work_add(l.u, UINT64_C(1) << 40);
+	ob_budget_note(&l.sim->solver, 1 << 20);
+	finder.find(finder.with, &sphere, &box, .1, &m);
+	CHECK(m.points == 0 && m.separation > 0);
+	little_close(&l);
+	free(s);
+}
+
+// A finder that counts its calls.
+typedef struct counted {
+	ob_manifold_finder finder;
+	uint64_t calls;
+} counted;
+
+static void count(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	counted *c = with;
+	c->calls++;
+	c->finder.find(c->finder.with, a, b, margin, out);
+}
+
+// Looks for an impact of two shapes, of "size" (m) and thin, that turn at "spin" (rad/s) beside each other. Returns the
+// number of advances.
+static uint64_t search(ob_sim *s, ob_shape shape, double size, double slenderness, double spin, bool nearing)
+{
+	const double thin = size / slenderness, speed = 2 * spin * size + 1;
+	ob_placed x[2];
+	ob_manifold m = { .valid_path = INFINITY };
+	counted c = { .finder = ob_narrowphase_follower(&s->solver) };
+	double apart;
+	for (int i = 0; i < 2; i++)
+		x[i] = (ob_placed){ .shape = shape,
+				    .size = shape == OB_SHAPE_BOX ? ob_v3(size, thin, thin) : ob_v3(thin, size, 0),
+				    .p = ob_v3(0, 8 * thin * i, 0),
+				    .r = ob_quat_matrix(ob_quat_identity()),
+				    .v = ob_v3(0, -.1 * i, 0),
+				    .w = shape == OB_SHAPE_BOX ? ob_v3(0, spin, .1 * spin)
+							       : ob_v3(.1 * spin, 0, spin) };
+	if (nearing)
+		ob_time_of_nearing(&x[0], &x[1], speed, .1, .1, .1 * thin, (ob_manifold_finder){ count, &c, false },
+				   &apart);
+	else
+		ob_time_of_impact(&x[0], &x[1], speed, 1. / 60, .1 * thin, .1 * thin,
+				  (ob_manifold_finder){ count, &c, false }, &m);
+	return c.calls;
+}
+
+// Each advance of a search costs as much as two dozen pairs in an iteration, however thin and fast the shapes are. Once
+// the budget is spent a search ends after its first test.
+static void test_searches(void)
+{
+	static const ob_shape shapes[] = { OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
+	enum { LEAST = 24 };
+	little_scene *scene = little_scene_new();
+	ob_world_sphere(&scene->world, 500, .5, ob_v3(0, 0, 9));
+	little_universe l;
+	little_open(&l, scene);
+	for (int spent = 0; spent < 2; spent++) {
+		uint64_t most = 0;
+		ob_budget_begin_share(l.sim, 0);
+		if (spent)
+			ob_step_work_add(l.u, UINT64_C(1) << 40);
+		for (int i = 0; i < 3 * 3 * 3 * 3 * 2; i++) {
+			const double size = (double[]){ 1e-6, 1, 1e6 }[i % 3],
+				     slenderness = (double[]){ 1, 100, 1e4 }[i / 3 % 3];
+			const double fastest = ob_min(1e4, 1e5 / size),
+				     spin = fastest * (double[]){ 0, .01, 1 }[i / 9 % 3];
+			const uint64_t before = l.sim->solver.budget.noted;
+			if (spent)
+				ob_budget_note(&l.sim->solver, 1 << 20);
+			const uint64_t n = search(l.sim, shapes[i / 27 % 3], size, slenderness, spin, i / 81);
+			CHECK(l.sim->solver.budget.noted - before >= LEAST * n);
+			most = n > most ? n : most;
+		}
+		CHECK(spent ? most == 1 : most > 100);
+	}
+	little_close(&l);
+	free(scene);
+}
+
+static void test_diverged(void)
+{
+	little_scene *s = little_scene_new();
+	ob_world_sphere(&s->world, 1, .5, ob_v3(0, 0, 0));
+	ob_world_body wild = ob_world_sphere(&s->world, 1e-9, .5, ob_v3(9, 0, 0));
+	wild.passport->force = ob_v3(0, 1e15, 0);
+	snprintf(wild.passport->name, OB_NAME_MAX, "wild");
+	little_universe l;
+	little_open(&l, s);
+	expect_failure(&l, OB_STEP_DIVERGED, 1, "object 1 (wild) diverged in step 1");
+	little_close(&l);
+	free(s);
+}
+
+// The carrier of a mass so small becomes NaN, and ODE's stepper rejects it.
+static void test_engine(void)
+{
+	little_scene *s = little_scene_new();
+	s->run.integrator = OB_INTEGRATOR_ODE;
+	s->run.step_length = 1;
+	s->run.tolerance = 0;
+	s->run.substeps = 8;
+	ob_world_box(&s->world, 1e-200, ob_v3(.5, .5, .5), ob_v3(0, 0, .5));
+	ob_world_ground(&s->world);
+	little_universe l;
+	little_open(&l, s);
+	expect_failure(&l, OB_STEP_ENGINE, 0, "ODE gave up in step 1 at object 0");
+	little_close(&l);
+	free(s);
+}
+
+int main(void)
+{
+	test_spent();
+	test_spent_in_flight();
+	test_small_shares();
+	test_collision_tests();
+	test_searches();
+	test_diverged();
+	test_engine();
+	return check_end();
+}
