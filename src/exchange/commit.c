@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cluster/halo.h"
 #include "schedule/calendar.h"
 #include "schedule/pair_checks.h"
 #include "schedule/work.h"
@@ -13,7 +12,7 @@
 
 enum { NONE = UINT32_MAX };
 
-ob_committer *ob_committer_create(const ob_universe *u)
+ob_committer *ob_committer_create(const ob_universe *u, ob_cluster *cluster)
 {
 	const uint32_t objects = ob_universe_capacity(u);
 	ob_committer *c = calloc(1, sizeof *c);
@@ -22,9 +21,10 @@ ob_committer *ob_committer_create(const ob_universe *u)
 	c->island_owner = calloc(objects, sizeof *c->island_owner);
 	c->query_owner = calloc(objects, sizeof *c->query_owner);
 	c->had = calloc(objects, sizeof *c->had);
+	c->cluster = cluster;
 	c->rank = ob_universe_rank(u);
 	c->ranks = ob_universe_ranks(u);
-	if (c->island_owner && c->query_owner && c->had && (c->ranks < 2 || ob_committer_share(c, u)))
+	if (c->island_owner && c->query_owner && c->had && (!cluster || ob_committer_share(c)))
 		return c;
 	ob_committer_destroy(c);
 	return NULL;
@@ -142,6 +142,16 @@ static void note_before(ob_committer *c, const ob_universe *u, const ob_mail_rec
 		c->damaged = OB_PEERS_MOTION | (1 + id);
 }
 
+// Notes a result for the exchange among ranks, before it is written.
+static void note_for_ranks(ob_committer *c, ob_universe *u, const ob_mail_record *from, const ob_found_result *r)
+{
+	if (from->kind != OB_RECORD_RESTORED)
+		note_before(c, u, from, r->id);
+	ob_halo_note(c->cluster->parts.halo, r->id, &r->motion);
+	if (ob_worker_is_here(u, from->worker))
+		count_woken(c, u, r->id, r->state);
+}
+
 static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const bool restored = from->kind == OB_RECORD_RESTORED, here = ob_worker_is_here(u, from->worker);
@@ -152,14 +162,10 @@ static const char *commit_result(ob_committer *c, ob_universe *u, const ob_mail_
 	if (!is_sound(&r->motion, u) || !ob_is_sound_state(r->state) ||
 	    (restored && (from->bytes != sizeof *r || here)))
 		return "has found a motion that makes no sense";
-	if (c->halo && !restored)
-		note_before(c, u, from, r->id);
-	if (c->halo)
-		ob_halo_note(c->halo, r->id, &r->motion);
 	if (here)
 		c->due--;
-	if (c->halo && here)
-		count_woken(c, u, r->id, r->state);
+	if (c->cluster)
+		note_for_ranks(c, u, from, r);
 	ob_write_result(u, r);
 	if (!here) {
 		ob_home_set(u, r->id, from->worker);
@@ -207,7 +213,7 @@ static bool is_sound_contact(const ob_found_contact *c, bool whole)
 // False for contacts that arrive without their state: only their existence, as a rule, comes from other ranks.
 static bool is_whole(const ob_committer *c, const ob_universe *u, const ob_mail_record *from)
 {
-	return c->ranks < 2 || ob_universe_shares_contacts(u) || ob_worker_is_here(u, from->worker);
+	return !c->cluster || ob_universe_shares_contacts(u) || ob_worker_is_here(u, from->worker);
 }
 
 static void note_pair(ob_universe *u, ob_mail *list, uint32_t pair)
@@ -233,12 +239,12 @@ static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail
 		return "has found a contact that makes no sense";
 	const uint32_t record = ob_write_contact_key(u, r);
 	if (!r->active && k->record != OB_NO_RECORD && !here)
-		note_pair(u, &c->parted, r->pair);
+		note_pair(u, &c->cluster->parted, r->pair);
 	if (record == OB_NO_RECORD)
 		return NULL;
 	const int version = whole ? ob_write_contact_state(u, r, record) : -1;
-	if (c->holdings)
-		ob_holdings_note(c->holdings, u, record, version, &r->state,
+	if (c->cluster)
+		ob_holdings_note(c->cluster->parts.holdings, u, record, version, &r->state,
 				 ob_universe_shares_contacts(u) ? OB_ALL_RANKS : ob_universe_rank_of(u, from->worker));
 	return NULL;
 }
@@ -345,9 +351,9 @@ static const char *commit_check(ob_committer *c, ob_universe *u, const ob_mail_r
 		return "has found about a pair what makes no sense";
 	ob_write_check(u, r);
 	if (!ob_worker_is_here(u, from->worker))
-		note_pair(u, &c->checked, r->pair);
-	if (c->ranks > 1 && (r->late || r->expected) && ob_pair_is_across(u, &ob_universe_step_data(u)->pair[r->pair]))
-		note_pair(u, &c->links_across, r->pair);
+		note_pair(u, &c->cluster->checked, r->pair);
+	if (c->cluster && (r->late || r->expected) && ob_pair_is_across(u, &ob_universe_step_data(u)->pair[r->pair]))
+		note_pair(u, &c->cluster->links_across, r->pair);
 	return NULL;
 }
 
@@ -456,7 +462,7 @@ static bool fails(ob_committer *c, ob_universe *u)
 	return ob_step_failed(u, NULL) != OB_STEP_OK;
 }
 
-bool ob_commit_collect(ob_committer *c, ob_universe *u, ob_phase phase)
+static bool collect(ob_committer *c, ob_universe *u, ob_phase phase)
 {
 	const bool islands = phase == OB_PHASE_ISLANDS, scripts = phase == OB_PHASE_SCRIPTS,
 		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
@@ -500,7 +506,7 @@ static void compare_before(ob_committer *c)
 	}
 }
 
-void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase)
+static void commit_mails(ob_committer *c, ob_universe *u, ob_phase phase)
 {
 	uint32_t worker = 0;
 	if (fails(c, u))
@@ -512,4 +518,15 @@ void ob_commit_mail(ob_committer *c, ob_universe *u, ob_phase phase)
 		compare_before(c);
 	if (c->due && ob_step_failed(u, NULL) == OB_STEP_OK)
 		ob_step_blame(u, worker, "or another has not done all that it was given");
+}
+
+bool ob_commit(ob_committer *c, ob_universe *u, ob_phase phase)
+{
+	const bool alone = !c->cluster || phase == OB_PHASE_RESUME; // each rank's arranger resumes the run by itself
+	const uint64_t digest = alone ? 0 : ob_peers_digest(u);
+	if (!collect(c, u, phase))
+		return false;
+	if (alone || ob_committer_exchange(c, u, phase, digest))
+		commit_mails(c, u, phase);
+	return true;
 }

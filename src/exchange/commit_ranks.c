@@ -5,34 +5,21 @@
 
 #include "cluster/digest.h"
 #include "exchange/committer.h"
-#include "schedule/involved.h"
 #include "schedule/pair_checks.h"
 #include "table/home.h"
 
-bool ob_committer_share(ob_committer *c, const ob_universe *u)
+bool ob_committer_share(ob_committer *c)
 {
-	c->holdings = ob_holdings_create(u);
-	c->halo = ob_halo_create(u);
-	c->regions = ob_regions_create(u);
 	c->dealt = calloc(c->ranks, sizeof *c->dealt);
-	c->rank_islands = ob_rank_islands_create(u);
 	c->to = calloc(c->ranks, sizeof *c->to);
 	c->told = calloc(c->ranks, sizeof *c->told);
 	c->heard = calloc(c->ranks, sizeof *c->heard);
-	return c->holdings && c->halo && c->regions && c->rank_islands && c->dealt && c->to && c->told && c->heard;
+	return c->dealt && c->to && c->told && c->heard;
 }
 
 void ob_committer_finish_shared(ob_committer *c)
 {
 	ob_mail_finish(&c->out);
-	ob_mail_finish(&c->parted);
-	ob_mail_finish(&c->checked);
-	ob_mail_finish(&c->links_across);
-	ob_mail_finish(&c->linked);
-	ob_holdings_destroy(c->holdings);
-	ob_halo_destroy(c->halo);
-	ob_regions_destroy(c->regions);
-	ob_rank_islands_destroy(c->rank_islands);
 	for (uint32_t r = 0; c->dealt && r < c->ranks; r++)
 		ob_mail_finish(&c->dealt[r]);
 	free(c->dealt);
@@ -48,7 +35,7 @@ static bool is_known(const ob_committer *c, const ob_universe *u, const ob_found
 	const ob_step_data *data = ob_universe_step_data(u);
 	const ob_pair_key *k = found->pair < ob_pairs_end(data) ? &data->pair[found->pair] : NULL;
 	return k && k->active && found->active && k->record != OB_NO_RECORD &&
-	       ob_holdings_here_alone(c->holdings, u, k->record);
+	       ob_holdings_here_alone(c->cluster->parts.holdings, u, k->record);
 }
 
 // Returns the bytes of a contact's record to send to the others. Only its existence is sent, unless its state is wanted
@@ -68,7 +55,7 @@ static bool put_result(ob_committer *c, const ob_universe *u, const ob_mail_reco
 	const ob_found_result *found = r->data; // valid up to its motion, in both layouts
 	if (!ob_committer_is_result(u, r) || !ob_is_sound_state(found->state)) // the commit will report it
 		return true;
-	const bool restores = ob_halo_tell(c->halo, u, found->id, all, c->to);
+	const bool restores = ob_halo_tell(c->cluster->parts.halo, u, found->id, all, c->to);
 	if (restores)
 		restored.data = ob_committer_result_of(u, r, &whole);
 	bool fits = true, kept; // kept is not used: the commit here tests the motion itself
@@ -118,9 +105,9 @@ static bool put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_re
 }
 
 // Sends each rank the records that it needs: results and checks concern ranks nearby.
-static const char *deal_records(ob_committer *c, ob_universe *u, ob_peers *p, ob_peers_head head)
+static const char *deal_records(ob_committer *c, ob_universe *u, ob_peers_head head)
 {
-	const bool all = p->look <= ob_step_count(u) + 1; // a reader needs all motions after this step
+	const bool all = c->cluster->peers.look <= ob_step_count(u) + 1; // a reader needs all motions after this step
 	const uint64_t nothing = 0;
 	ob_record_reader own = { .mail = ob_committer_mail_of(c, c->rank) };
 	ob_mail_record r;
@@ -138,12 +125,12 @@ static const char *deal_records(ob_committer *c, ob_universe *u, ob_peers *p, ob
 	for (uint32_t to = 0; to < c->ranks; to++)
 		memcpy(c->dealt[to].bytes + sizeof head, &c->told[to], sizeof *c->told);
 	if (!all && head.phase == OB_PHASE_ISLANDS)
-		ob_halo_part(c->halo);
+		ob_halo_part(c->cluster->parts.halo);
 	c->ahead = sizeof head + sizeof *c->told;
-	return ob_peers_deal(p, u, head, c->dealt, &c->at);
+	return ob_peers_deal(&c->cluster->peers, u, head, c->dealt, &c->at);
 }
 
-static const char *say_to_all(ob_committer *c, ob_universe *u, ob_peers *p, ob_peers_head head)
+static const char *say_to_all(ob_committer *c, ob_universe *u, ob_peers_head head)
 {
 	ob_mail own = ob_committer_mail_of(c, c->rank);
 	ob_mail_record r;
@@ -155,13 +142,13 @@ static const char *say_to_all(ob_committer *c, ob_universe *u, ob_peers *p, ob_p
 		return NULL;
 	}
 	c->ahead = sizeof head;
-	return ob_peers_exchange(p, u, head, &c->out, &c->at);
+	return ob_peers_exchange(&c->cluster->peers, u, head, &c->out, &c->at);
 }
 
-bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase phase, uint64_t digest)
+bool ob_committer_exchange(ob_committer *c, ob_universe *u, ob_phase phase, uint64_t digest)
 {
 	const bool islands = phase == OB_PHASE_ISLANDS;
-	const uint32_t damaged = islands ? ob_holdings_damaged(c->holdings, u) : OB_NO_OBJECT;
+	const uint32_t damaged = islands ? ob_holdings_damaged(c->cluster->parts.holdings, u) : OB_NO_OBJECT;
 	const ob_peers_head head = { .phase = phase,
 				     .digest = digest,
 				     .damaged = damaged != OB_NO_OBJECT ? 1 + damaged : c->damaged,
@@ -169,126 +156,6 @@ bool ob_commit_exchange(ob_committer *c, ob_universe *u, ob_peers *p, ob_phase p
 				     .woken = c->woken };
 	c->woken = 0;
 	c->dealt_to_each = islands || phase == OB_PHASE_FORECAST || phase == OB_PHASE_LATE_CONTACTS;
-	c->all = c->dealt_to_each ? deal_records(c, u, p, head) : say_to_all(c, u, p, head);
+	c->all = c->dealt_to_each ? deal_records(c, u, head) : say_to_all(c, u, head);
 	return c->all;
-}
-
-static bool take_last(ob_mail *list, uint32_t *pair)
-{
-	if (!list->used)
-		return false;
-	list->used -= sizeof *pair;
-	memcpy(pair, list->bytes + list->used, sizeof *pair);
-	return true;
-}
-
-bool ob_commit_take_parted(ob_committer *c, uint32_t *pair)
-{
-	return take_last(&c->parted, pair);
-}
-
-bool ob_commit_take_checked(ob_committer *c, uint32_t *pair)
-{
-	return take_last(&c->checked, pair);
-}
-
-static uint32_t pair_at(const ob_mail *list, size_t i)
-{
-	uint32_t pair;
-	memcpy(&pair, list->bytes + i * sizeof pair, sizeof pair);
-	return pair;
-}
-
-// Lists the pairs among links_across that still link two ranks' bodies: late contacts, or else pairs that are expected
-// to touch.
-static bool list_links_across(const ob_committer *c, const ob_universe *u, bool late, ob_mail *to)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	const size_t all = c->links_across.used / sizeof(uint32_t);
-	bool fits = true;
-	ob_mail_clear(to);
-	for (size_t i = 0; i < all; i++) {
-		const uint32_t pair = pair_at(&c->links_across, i);
-		const ob_pair_key *k = &data->pair[pair];
-		if ((late ? k->late : k->expected) && ob_pair_is_across(u, k))
-			fits &= ob_mail_append(to, &pair, sizeof pair);
-	}
-	return fits;
-}
-
-void ob_commit_find_links_across(ob_committer *c, ob_universe *u)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	bool fits = true;
-	ob_mail_clear(&c->links_across);
-	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
-		const ob_pair_key *k = &data->pair[i];
-		if (k->expected && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
-		    ob_pair_is_across(u, k))
-			fits &= ob_mail_append(&c->links_across, &i, sizeof i);
-	}
-	if (!fits)
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-}
-
-void ob_commit_involve_links_across(ob_committer *c, ob_universe *u)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	if (!list_links_across(c, u, false, &c->linked)) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return;
-	}
-	const ob_mail those = c->links_across; // from now on complete
-	c->links_across = c->linked;
-	c->linked = those;
-	for (size_t i = 0; i < c->links_across.used / sizeof(uint32_t); i++) {
-		const ob_pair_key *k = &data->pair[pair_at(&c->links_across, i)];
-		for (int side = 0; side < 2; side++)
-			if (ob_home_rank(u, side ? k->b : k->a) == c->rank)
-				ob_involve_due(u, side ? k->b : k->a);
-	}
-}
-
-// Clears links between ranks after islands have been shared out. Late contacts are merged, so no longer late. A pair
-// that is now another rank's alone is no longer expected: this rank receives no more checks of it. If it becomes a pair
-// of two ranks again, its owner has checked it before, and sent the result to all.
-static void forget_links_across(const ob_committer *c, ob_universe *u)
-{
-	ob_step_data *data = ob_universe_step_data(u);
-	for (size_t i = 0; i < c->links_across.used / sizeof(uint32_t); i++) {
-		ob_pair_key *k = &data->pair[pair_at(&c->links_across, i)];
-		k->late = 0;
-		if (!ob_pair_is_across(u, k) && !ob_pair_is_known_here(u, k))
-			k->expected = 0;
-	}
-}
-
-bool ob_commit_share_islands(ob_committer *c, ob_universe *u, ob_peers *p, bool *islands)
-{
-	const ob_rank_parts parts = { c->halo, c->holdings, c->regions };
-	if (!list_links_across(c, u, ob_universe_step_data(u)->count->merged, &c->linked)) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return false;
-	}
-	const uint32_t *pair = (const uint32_t *)(const void *)c->linked.bytes,
-		       pairs = (uint32_t)(c->linked.used / sizeof *pair);
-	if (!ob_rank_islands_share(c->rank_islands, u, p, &parts, pair, pairs, islands))
-		return false;
-	forget_links_across(c, u);
-	return true;
-}
-
-ob_halo *ob_commit_halo(const ob_committer *c)
-{
-	return c->halo;
-}
-
-ob_regions *ob_commit_regions(const ob_committer *c)
-{
-	return c->regions;
-}
-
-bool ob_commit_share(ob_committer *c, ob_universe *u, ob_peers *p)
-{
-	return ob_holdings_gather(c->holdings, u, p) && ob_halo_share_pairs(c->halo, u, p);
 }

@@ -3,7 +3,6 @@
 #ifndef OB_EXCHANGE_COMMITTER_H
 #define OB_EXCHANGE_COMMITTER_H
 
-#include "cluster/rank_islands.h"
 #include "exchange/commit.h"
 #include "exchange/records.h"
 
@@ -20,10 +19,7 @@ typedef struct ob_record_reader {
 struct ob_committer {
 	ob_mail mail; // from the local simulators
 	// With several ranks; else NULL, or 0.
-	ob_holdings *holdings;
-	ob_halo *halo;
-	ob_regions *regions;
-	ob_rank_islands *rank_islands;
+	ob_cluster *cluster;
 	uint32_t rank, ranks;
 	ob_mail out, *dealt; // mails to the other ranks: the same to all, or [ranks] one for each
 	bool *to; // [ranks]: true for ranks that receive a motion
@@ -31,10 +27,6 @@ struct ob_committer {
 	uint64_t damaged; // as in ob_peers_head
 	bool differs; // as in ob_peers_head
 	int32_t woken; // as in ob_peers_head
-	// Pairs, by their index. parted: reported separated by simulators of other ranks; checked: checked by them.
-	// links_across: have linked two ranks' bodies since islands were built; linked: those of them that still do.
-	// The last two are the same on all ranks.
-	ob_mail parted, checked, links_across, linked;
 	const char *all; // mails of all ranks: rank r's begins at at[r], its records "ahead" bytes later
 	const size_t *at;
 	size_t ahead;
@@ -62,8 +54,11 @@ static inline bool ob_is_sound_state(uint32_t state)
 // ---- for several ranks
 
 // Creates the parts that several ranks need. Returns false if there is no memory.
-bool ob_committer_share(ob_committer *c, const ob_universe *u);
+bool ob_committer_share(ob_committer *c);
 void ob_committer_finish_shared(ob_committer *c);
+// Adds the records of the other ranks' simulators to those collected here. digest: ob_peers_digest. false: the step has
+// failed.
+bool ob_committer_exchange(ob_committer *c, ob_universe *u, ob_phase phase, uint64_t digest);
 // Extends the digest "sum" by the motion from which the body was solved: other ranks compare it with their own. *whole:
 // false if that motion has been damaged.
 uint64_t ob_committer_digest_before(const ob_committer *c, const ob_universe *u, uint32_t id, uint64_t sum,

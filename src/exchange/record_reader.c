@@ -40,7 +40,7 @@ ob_mail ob_committer_mail_of(const ob_committer *c, uint32_t rank)
 uint64_t ob_committer_digest_before(const ob_committer *c, const ob_universe *u, uint32_t id, uint64_t sum, bool *whole)
 {
 	uint64_t digest;
-	*whole = ob_halo_digest(c->halo, u, id, &digest);
+	*whole = ob_halo_digest(c->cluster->parts.halo, u, id, &digest);
 	return ob_digest_word(sum + id, digest);
 }
 
@@ -60,8 +60,8 @@ static void prefetch_body(const ob_committer *c, const ob_universe *u, uint32_t 
 	__builtin_prefetch(&data->schedule[id], 1);
 	__builtin_prefetch(&data->result_island[id]);
 	__builtin_prefetch(&c->had[id], 1);
-	if (c->halo)
-		ob_halo_prefetch(c->halo, id);
+	if (c->cluster)
+		ob_halo_prefetch(c->cluster->parts.halo, id);
 	if (motion)
 		ob_prefetch_slot(u, id);
 }
@@ -93,8 +93,8 @@ static void prefetch_kept(const ob_committer *c, const ob_universe *u, const ob_
 	const uint32_t record = record_of(u, r);
 	if (record == NONE)
 		return;
-	if (c->holdings)
-		ob_holdings_prefetch(c->holdings, record);
+	if (c->cluster)
+		ob_holdings_prefetch(c->cluster->parts.holdings, record);
 	if (r->bytes > offsetof(ob_found_contact, state))
 		__builtin_prefetch(ob_universe_step_data(u)->record[record].stamp, 1);
 }

@@ -605,8 +605,10 @@ static void make_shares(ob_involved *p, uint64_t total, ob_regions *regions)
 {
 	ob_step_data *data = p->data;
 	const uint32_t all = least_of(ob_universe_simulators(p->u), data->objects_max),
-		       unsolved = data->count->unsolved, each = ob_universe_simulators(p->u) / ob_universe_ranks(p->u),
-		       first = least_of(ob_universe_rank(p->u) * each, all);
+		       unsolved = data->count->unsolved;
+	uint32_t first;
+	const uint32_t each = ob_universe_simulators_here(p->u, &first);
+	first = least_of(first, all);
 	shares s = { .first = first,
 		     .count = least_of(least_of(each, all - first), p->ids),
 		     .load = p->body,
@@ -646,7 +648,7 @@ static void deal_islands(ob_involved *p, ob_regions *regions)
 	sort_by_work(p);
 	for (uint32_t i = 0; i < n; i++)
 		total += data->island[i].work;
-	data->count->shared = ob_universe_ranks(p->u) > 1 || ob_moves_were_made(p->u);
+	data->count->shared = regions || ob_moves_were_made(p->u);
 	if (data->count->shared)
 		make_shares(p, total, regions);
 	else

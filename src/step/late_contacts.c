@@ -375,8 +375,7 @@ static void prefetch_listed(const ob_universe *u, uint32_t i, uint32_t end)
 	__builtin_prefetch(&data->home[a]);
 }
 
-// Drops pairs that this rank entered when it had one of their objects, which lives elsewhere now.
-static void leave_to_others(ob_universe *u)
+void ob_late_contacts_leave_to_others(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t listed = data->count->checks;
@@ -399,8 +398,6 @@ void ob_late_contacts_begin(ob_universe *u, bool solved)
 	ob_late_contacts_reset(u);
 	data->count->checked = (uint32_t)steps;
 	data->count->checks = ob_calendar_take(&look, steps, data->check, data->pairs_max);
-	if (ob_universe_ranks(u) > 1)
-		leave_to_others(u);
 }
 
 // ---- the check
@@ -441,7 +438,7 @@ static void enter_next_checks(const ob_universe *u)
 			__builtin_prefetch(&data->schedule[k->a]);
 			__builtin_prefetch(&data->schedule[k->b]);
 		}
-		if (ob_universe_ranks(u) < 2 || ob_pair_is_checked_here(u, &data->pair[data->check[i]]))
+		if (ob_pair_is_checked_here(u, &data->pair[data->check[i]]))
 			enter_next_check(u, data->check[i], data->count->checked);
 	}
 }

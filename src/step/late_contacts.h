@@ -15,6 +15,8 @@
 // are checked. Pairs of solved objects are among them: the worker that listed their islands' pairs has entered them
 // (island_builder.c). solved: a step has been solved and is not yet committed.
 void ob_late_contacts_begin(ob_universe *u, bool solved);
+// Drops listed pairs that this rank entered when it had one of their objects, which lives elsewhere now.
+void ob_late_contacts_leave_to_others(ob_universe *u);
 // Checks pairs first .. end-1: sets expected, late and limit of each, enters its next check in the calendar, and notes
 // in ob_step_data.count if any contact is late.
 void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved);

@@ -1,6 +1,5 @@
 #include "step/publish.h"
 
-#include "exchange/commit.h"
 #include "exchange/results.h"
 
 void ob_result_stage(ob_sim *s, uint32_t id, const ob_motion *m, uint32_t state, uint32_t due)
@@ -55,7 +54,7 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 	enum { AHEAD = 4 };
 	const ob_step_data *data = s->data;
 	const bool others_copy = s->settings->one_per_object && !ob_universe_contains(s->u);
-	ob_halo *halo = ob_universe_ranks(s->u) > 1 ? ob_commit_halo(s->committer) : NULL;
+	ob_halo *halo = ob_cluster_halo(s->cluster);
 	int32_t woken = 0;
 	for (uint32_t i = first; i < end; i++) {
 		const ob_island *is = &data->island[i];

@@ -2,6 +2,7 @@
 #ifndef OB_STEP_STATE_H
 #define OB_STEP_STATE_H
 
+#include "cluster/cluster.h"
 #include "solver/solver.h"
 #include "step/rotation_cache.h"
 #include "step/sim.h"
@@ -28,7 +29,7 @@ struct ob_sim {
 	ob_island_scratch scratch;
 	ob_rotation_cache rotations;
 	struct ob_committer *committer; // NULL unless this is the arranger (commit.h)
-	ob_peers peers; // the arranger's; ranks = 0: this is the only one
+	ob_cluster *cluster; // the arranger's, of several ranks; else NULL
 	struct ob_ode_baseline *baseline; // NULL unless one ODE world holds all objects
 	struct { // step/budget.h
 		uint64_t share; // spent in the running share, if that has a budget of its own

@@ -45,11 +45,8 @@
 #include <stdio.h>
 
 #include "baseline/ode_baseline.h"
-#include "cluster/peers.h"
-#include "cluster/regions.h"
 #include "exchange/commit.h"
 #include "exchange/results.h"
-#include "schedule/calendar.h"
 #include "step/broadphase.h"
 #include "step/budget.h"
 #include "step/critical_path.h"
@@ -77,6 +74,7 @@ enum {
 typedef struct scheduler {
 	ob_universe *u;
 	ob_sim *sim; // the scheduling worker's; NULL: the host resumes the run
+	ob_cluster *cluster; // NULL: this is the only rank
 	ob_step_data *data;
 	const ob_run_settings *settings;
 } scheduler;
@@ -147,9 +145,10 @@ static bool open_scripts(const scheduler *c, ob_phase phase)
 // Opens the gate to n simulators on this rank. With none, the gate still has to wait for other ranks.
 static void open_gate_here(const scheduler *c, ob_phase phase, uint32_t *who, uint32_t n)
 {
-	const uint32_t all = ob_universe_simulators(c->u), each = all / ob_universe_ranks(c->u);
+	uint32_t first;
+	const uint32_t each = ob_universe_simulators_here(c->u, &first);
 	if (!n)
-		who[0] = (ob_universe_rank(c->u) + 1) * each % all; // a simulator elsewhere
+		who[0] = (first + each) % ob_universe_simulators(c->u); // a simulator elsewhere
 	ob_gate_open(c->u, phase, who, n ? n : 1);
 }
 
@@ -160,8 +159,8 @@ static bool open_shares(const scheduler *c, ob_phase phase)
 	const uint32_t all = data->count->chunks;
 	uint32_t n = 0;
 	ob_task_reset(c->u, all, all);
-	if (ob_universe_ranks(c->u) > 1)
-		ob_islands_list_dealt_pairs(c->u, ob_commit_halo(c->sim->committer));
+	if (c->cluster)
+		ob_islands_list_dealt_pairs(c->u, ob_cluster_halo(c->cluster));
 	for (uint32_t w = 0; w < all; w++)
 		if (data->chunk[w] < data->chunk[w + 1])
 			data->scratch[n++] = w;
@@ -212,10 +211,11 @@ static bool open_islands(const scheduler *c, ob_phase phase)
 }
 
 // Opens the check of a rank's own pairs. Every rank runs this phase, even without pairs: it exchanges results.
-static bool open_own_pairs(const scheduler *c, ob_phase phase, uint32_t pairs)
+static bool open_own_pairs(const scheduler *c, ob_phase phase)
 {
-	const uint32_t all = ob_universe_simulators(c->u), each = all / ob_universe_ranks(c->u),
-		       first = ob_universe_rank(c->u) * each,
+	uint32_t first;
+	ob_late_contacts_leave_to_others(c->u);
+	const uint32_t each = ob_universe_simulators_here(c->u, &first), pairs = ob_checks_count(c->data),
 		       tasks = (pairs + OB_LATE_CONTACTS_BATCH - 1) / OB_LATE_CONTACTS_BATCH,
 		       workers = tasks < each ? tasks : each;
 	uint32_t *who = c->data->scratch;
@@ -233,8 +233,8 @@ static bool open_pairs(const scheduler *c, ob_phase phase)
 	const uint32_t all = ob_universe_simulators(c->u);
 	ob_late_contacts_begin(c->u, solved);
 	const uint32_t pairs = ob_checks_count(c->data);
-	if (ob_universe_ranks(c->u) > 1)
-		return open_own_pairs(c, phase, pairs);
+	if (c->cluster)
+		return open_own_pairs(c, phase);
 	const bool alone = all == 1 && !c->settings->timed; // in timed runs the parallel part is measured apart
 	const bool serial = pairs < PARALLEL_PAIRS || alone || c->settings->one_per_object;
 	if (!pairs)
@@ -466,77 +466,38 @@ static void step_baseline(ob_sim *s)
 // ---- the serial parts
 
 // True if the run pauses here. The host may request a pause at a step that has just passed: then it is the next one.
+// Other ranks' motions may be missing here if the request came late: they come when the others receive it.
 static bool must_pause(const scheduler *c)
 {
-	const bool due = ob_step_count(c->u) >= ob_gate_pause_step(c->u);
-	if (ob_universe_ranks(c->u) < 2)
-		return due;
-	// Other ranks' motions may be missing here if the request came late: they come when the others receive it.
-	return due && (!ob_halo_is_partial(ob_commit_halo(c->sim->committer)) || ob_gate_stopped(c->u));
-}
-
-// True if some rank has an object to solve in this step, or a pair to check before it.
-static bool is_anybody_due(const scheduler *c)
-{
-	const uint64_t step = ob_step_count(c->u);
-	const ob_calendar solve = ob_calendar_of_objects(c->u), look = ob_calendar_of_pairs(c->u);
-	if (ob_universe_ranks(c->u) > 1)
-		return c->data->count->next_due <= step;
-	return ob_calendar_is_due(&solve, step) || ob_calendar_is_due(&look, step);
-}
-
-// Makes the requested move of an object; on several ranks rank 0 receives requests and sends them to the others.
-static void make_move(const scheduler *c)
-{
-	if (ob_universe_ranks(c->u) == 1) {
-		ob_move_make(c->u, ob_move_take(c->u));
-	} else {
-		ob_move_make(c->u, c->sim->peers.move);
-		c->sim->peers.move = 0;
-	}
-}
-
-// Ends contacts of other ranks' islands of the step before, as island_builder.c does for this one's.
-static void end_parted(const scheduler *c)
-{
-	uint32_t pair;
-	while (ob_commit_take_parted(c->sim->committer, &pair))
-		if (!c->data->pair[pair].active)
-			ob_pair_release_record(c->u, &c->data->pair[pair]);
+	return ob_step_count(c->u) >= ob_gate_pause_step(c->u) &&
+	       (ob_cluster_is_whole(c->cluster) || ob_gate_stopped(c->u));
 }
 
 static ob_phase build_islands(const scheduler *c)
 {
-	struct ob_step_counts *count = c->data->count;
-	const bool several = ob_universe_ranks(c->u) > 1;
-	count->islands = 0;
-	if (several)
-		c->sim->peers.islands = 0;
-	make_move(c);
-	if (!is_anybody_due(c))
+	c->data->count->islands = 0;
+	ob_move_make(c->u, ob_cluster_begin(c->cluster, c->u));
+	if (!ob_cluster_is_due(c->cluster, c->u))
 		return OB_PHASE_COMPLETE;
-	if (several)
-		end_parted(c);
+	ob_cluster_end_contacts(c->cluster, c->u);
 	ob_islands_begin(c->u);
-	if (several)
-		ob_commit_involve_links_across(c->sim->committer, c->u);
+	ob_cluster_involve_links(c->cluster, c->u);
 	return OB_PHASE_LINKS;
 }
 
 static ob_phase after_links(const scheduler *c)
 {
-	bool islands = true; // on any rank
-	if (ob_universe_ranks(c->u) > 1 && !ob_commit_share_islands(c->sim->committer, c->u, &c->sim->peers, &islands))
+	bool elsewhere;
+	if (!ob_cluster_share_islands(c->cluster, c->u, &elsewhere))
 		return OB_PHASE_PAUSE;
 	ob_islands_list_members(c->u);
-	return islands ? OB_PHASE_LISTS : OB_PHASE_COMPLETE;
+	return elsewhere || c->data->count->islands ? OB_PHASE_LISTS : OB_PHASE_COMPLETE;
 }
 
 static ob_phase after_lists(const scheduler *c)
 {
-	const bool several = ob_universe_ranks(c->u) > 1;
-	ob_islands_deal(c->u, several ? ob_commit_regions(c->sim->committer) : NULL);
-	return several || c->data->count->islands ? OB_PHASE_ISLANDS : OB_PHASE_COMPLETE;
+	ob_islands_deal(c->u, ob_cluster_regions(c->cluster));
+	return OB_PHASE_ISLANDS;
 }
 
 static ob_phase begin_step(const scheduler *c)
@@ -549,7 +510,7 @@ static ob_phase begin_step(const scheduler *c)
 		return OB_PHASE_SCRIPTS;
 	if (c->settings->monolith)
 		return OB_PHASE_BASELINE;
-	return count->checked != step && is_anybody_due(c) ? OB_PHASE_FORECAST : build_islands(c);
+	return count->checked != step && ob_cluster_is_due(c->cluster, c->u) ? OB_PHASE_FORECAST : build_islands(c);
 }
 
 // Counts awake and kinematic objects, after any have been changed.
@@ -567,21 +528,12 @@ static void count_awake(const scheduler *c)
 	c->data->count->kinematic = kinematic;
 }
 
-// Gives new bodies regions and owners, on several ranks.
-static void settle(const scheduler *c)
-{
-	if (ob_regions_settle(ob_commit_regions(c->sim->committer), c->u))
-		ob_commit_find_links_across(c->sim->committer, c->u);
-	ob_halo_settle(ob_commit_halo(c->sim->committer), c->u);
-}
-
 static ob_phase after_resume(const scheduler *c)
 {
 	count_awake(c);
 	if (c->settings->monolith)
 		ob_requery_reset(c->u); // ODE's world finds its own neighbours
-	if (ob_universe_ranks(c->u) > 1)
-		settle(c);
+	ob_cluster_settle(c->cluster, c->u);
 	return OB_PHASE_BROADPHASE_START;
 }
 
@@ -590,10 +542,9 @@ static ob_phase after_resume(const scheduler *c)
 static bool merge_pairs(const scheduler *c, uint64_t steps, ob_phase next)
 {
 	const bool checked = next == OB_PHASE_FORECAST || next == OB_PHASE_LATE_CONTACTS;
-	if (ob_universe_ranks(c->u) > 1)
-		ob_regions_follow(ob_commit_regions(c->sim->committer), c->u);
+	ob_cluster_follow(c->cluster, c->u);
 	ob_pairs_merge(c->u, steps);
-	if (ob_universe_ranks(c->u) > 1 && !ob_halo_meet(ob_commit_halo(c->sim->committer), c->u, &c->sim->peers))
+	if (!ob_cluster_meet(c->cluster, c->u))
 		return false;
 	if (!checked || ob_universe_contains(c->u))
 		ob_pairs_measure(c->u, steps);
@@ -616,8 +567,7 @@ static ob_phase after_scripts(const scheduler *c)
 	uint32_t queries;
 	if (ob_scripts_carry_out(c->sim))
 		count_awake(c);
-	if (ob_universe_ranks(c->u) > 1)
-		settle(c); // for motions that scripts have changed
+	ob_cluster_settle(c->cluster, c->u); // for motions that scripts have changed
 	if (ob_scripts_have_requests(c->u))
 		return OB_PHASE_PAUSE;
 	if (c->settings->monolith)
@@ -667,25 +617,12 @@ static ob_phase after_baseline(const scheduler *c)
 	return OB_PHASE_COMPLETE;
 }
 
-// Gathers the universe on all ranks, as far as a reader needs it. false: the step has failed.
-static bool gather(const scheduler *c)
-{
-	ob_halo *halo = ob_commit_halo(c->sim->committer);
-	ob_peers *p = &c->sim->peers;
-	const uint64_t step = ob_step_count(c->u);
-	if (p->look <= step && ob_halo_is_partial(halo) && !ob_halo_gather(halo, c->u, p))
-		return false;
-	return ob_contacts_wanted(c->u) != step || ob_commit_share(c->sim->committer, c->u, p);
-}
-
 static ob_phase complete_step(const scheduler *c)
 {
 	const struct ob_step_counts *count = c->data->count;
-	const bool several = ob_universe_ranks(c->u) > 1;
-	ob_step_complete(c->u, count->awake, count->pairs - count->pairs_idle,
-			 several ? c->sim->peers.islands : count->islands);
+	ob_step_complete(c->u, count->awake, count->pairs - count->pairs_idle, ob_cluster_islands(c->cluster, c->u));
 	ob_step_work_reset(c->u);
-	if ((several && !gather(c)) || !ob_invariants_check(c->u, OB_INVARIANTS_AFTER_STEP))
+	if (!ob_cluster_gather(c->cluster, c->u) || !ob_invariants_check(c->u, OB_INVARIANTS_AFTER_STEP))
 		return OB_PHASE_PAUSE;
 	return begin_step(c);
 }
@@ -727,7 +664,7 @@ static ob_phase open_from(const scheduler *c, ob_phase phase)
 // Chooses the next phase; the last worker to arrive alone calls it. Returns the phase of the open gate, or PAUSE.
 static ob_phase schedule(ob_sim *s, ob_phase finished)
 {
-	const scheduler c = { s->u, s, s->data, s->settings };
+	const scheduler c = { s->u, s, s->cluster, s->data, s->settings };
 	ob_critical_path_close(s->u, finished, phases[finished].per_worker);
 	ob_profile_begin(s, OB_PROFILE_SCHEDULE);
 	ob_step_set_scheduler(s->u, s->worker);
@@ -738,27 +675,15 @@ static ob_phase schedule(ob_sim *s, ob_phase finished)
 	return next;
 }
 
-// Commits the results of all ranks' simulators. Each rank's arranger resumes the run by itself. false: STOP.
-static bool commit(ob_sim *s, ob_phase phase)
-{
-	const bool alone = s->peers.ranks < 2 || phase == OB_PHASE_RESUME;
-	const uint64_t digest = alone ? 0 : ob_peers_digest(s->u);
-	if (!ob_commit_collect(s->committer, s->u, phase))
-		return false;
-	if (alone || ob_commit_exchange(s->committer, s->u, &s->peers, phase, digest))
-		ob_commit_mail(s->committer, s->u, phase);
-	for (uint32_t pair; ob_commit_take_checked(s->committer, &pair);)
-		ob_late_contacts_take(s->u, pair);
-	return true;
-}
-
 // Runs the arranger: commits results at the end of each phase, and schedules the next, until the host takes over.
 // false: STOP.
 static bool arrange(ob_sim *s, ob_phase phase)
 {
 	while (phase != OB_PHASE_PAUSE) {
-		if (!commit(s, phase))
+		if (!ob_commit(s->committer, s->u, phase))
 			return false;
+		for (uint32_t pair; ob_cluster_take_checked(s->cluster, &pair);)
+			ob_late_contacts_take(s->u, pair);
 		phase = schedule(s, phase);
 	}
 	return true;
@@ -794,7 +719,7 @@ bool ob_step(ob_sim *s)
 
 void ob_sim_resume(ob_universe *u)
 {
-	const scheduler c = { u, NULL, ob_universe_step_data(u), ob_universe_settings(u) };
+	const scheduler c = { u, NULL, NULL, ob_universe_step_data(u), ob_universe_settings(u) };
 	const uint32_t arranger = ob_universe_simulators(u);
 	if (!ob_invariants_check(u, OB_INVARIANTS_AT_RESUME)) // it stays paused, and ob_sim_failure gives the reason
 		return;

@@ -2,7 +2,6 @@
 
 #include "base/clock.h"
 #include "baseline/ode_baseline.h"
-#include "cluster/peers.h"
 #include "exchange/commit.h"
 #include "step/islands.h"
 #include "step/sim.h"
@@ -44,7 +43,8 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		ob_ode_bodies_get(&s->solver.ode_bodies, run->gravity, worker, ob_passport_of(u, worker)); // its own
 	}
 	if (ob_universe_contains(u) && worker == ob_universe_simulators(u)) {
-		s->committer = ob_committer_create(u);
+		if (ob_cluster_create(u, &s->cluster))
+			s->committer = ob_committer_create(u, s->cluster);
 		if (!s->committer) {
 			ob_sim_destroy(s);
 			ob_fail(e, "arranger: no memory for %u objects", capacity);
@@ -68,6 +68,7 @@ void ob_sim_destroy(ob_sim *s)
 	ob_island_scratch_finish(s);
 	ob_rotation_cache_finish(&s->rotations);
 	ob_committer_destroy(s->committer);
+	ob_cluster_destroy(s->cluster);
 	free(s);
 }
 
@@ -79,13 +80,14 @@ void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner)
 
 bool ob_sim_join(ob_sim *s, const ob_peers *p, ob_error *e)
 {
-	s->peers = *p;
-	return ob_peers_join(&s->peers, s->u, e);
+	s->cluster->peers = *p;
+	return ob_peers_join(&s->cluster->peers, s->u, e);
 }
 
 void ob_sim_leave(ob_sim *s)
 {
-	ob_peers_leave(&s->peers);
+	if (s->cluster)
+		ob_peers_leave(&s->cluster->peers);
 }
 
 void ob_sim_run(ob_sim *s)

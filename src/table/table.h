@@ -105,6 +105,8 @@ uint32_t ob_universe_rank(const ob_universe *u);
 uint32_t ob_universe_ranks(const ob_universe *u);
 bool ob_worker_is_here(const ob_universe *u, uint32_t worker);
 uint32_t ob_universe_rank_of(const ob_universe *u, uint32_t simulator);
+// Returns the number of this rank's simulators; *first: the first of them.
+uint32_t ob_universe_simulators_here(const ob_universe *u, uint32_t *first);
 // Checks if another program has attached the universe; called by the host, which has its file. The second returns the
 // last result.
 void ob_universe_look_for_readers(ob_universe *u);

@@ -44,6 +44,12 @@ uint32_t ob_universe_rank_of(const ob_universe *u, uint32_t simulator)
 {
 	return simulator / (ob_universe_simulators(u) / u->ranks);
 }
+uint32_t ob_universe_simulators_here(const ob_universe *u, uint32_t *first)
+{
+	const uint32_t each = ob_universe_simulators(u) / u->ranks;
+	*first = u->rank * each;
+	return each;
+}
 void ob_universe_look_for_readers(ob_universe *u)
 {
 	__atomic_store_n(&u->control->is_read, ob_segment_is_read(u->fd), __ATOMIC_RELAXED);
