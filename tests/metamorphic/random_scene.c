@@ -67,7 +67,7 @@ static scene_body *add(random_scene *s, dice *d, ob_shape shape, ob_vec3 size, o
 {
 	scene_body *b = &s->body[s->bodies++];
 	*b = (scene_body){ .shape = shape,
-			   .size = size,
+			   .size = shape == OB_SHAPE_SPHERE ? ob_v3(size.x, 0, 0) : size,
 			   .mass = d->density * volume(shape, size),
 			   .friction = d->friction,
 			   .restitution = d->restitution,
