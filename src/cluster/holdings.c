@@ -117,12 +117,10 @@ static int version_of(const ob_universe *u, uint32_t record)
 	return ob_pair_newest(&ob_universe_step_data(u)->record[record], ob_step_count(u));
 }
 
-// Bytes of a parcel. Experimental solvers alone (ghost.h) have impulses for each of the two sides.
+// Bytes of a parcel. Experimental solvers alone have impulses for each of the two sides.
 static size_t parcel_bytes(const ob_universe *u)
 {
-	const uint32_t solver = ob_universe_settings(u)->solver;
-	const bool two = solver == OB_SOLVER_GHOST || solver == OB_SOLVER_LAGGED;
-	return two ? sizeof(parcel) : offsetof(parcel, impulse_b);
+	return ob_solver_is_two_sided(ob_universe_settings(u)->solver) ? sizeof(parcel) : offsetof(parcel, impulse_b);
 }
 
 static bool pack(ob_mail *to, const ob_universe *u, uint32_t pair, uint32_t record)

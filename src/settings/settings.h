@@ -20,6 +20,12 @@ typedef enum ob_solver_kind {
 	OB_SOLVER_LAGGED, // each computes the contact's impulse for itself, on a delayed state of its partner
 } ob_solver_kind;
 
+// True if the two bodies of a pair do not agree on one impulse.
+static inline bool ob_solver_is_two_sided(uint32_t kind)
+{
+	return kind == OB_SOLVER_GHOST || kind == OB_SOLVER_LAGGED;
+}
+
 typedef enum ob_integrator {
 	OB_INTEGRATOR_EXACT, // free motion in closed form
 	OB_INTEGRATOR_ODE, // by ODE's stepper

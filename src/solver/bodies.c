@@ -8,16 +8,9 @@
 #include "motion/drift.h"
 #include "shape/shape.h"
 #include "solver/equilibrium.h"
-#include "solver/ghost.h"
 #include "solver/narrowphase.h"
 #include "solver/relative_speed.h"
 #include "solver/surfaces.h"
-
-static void add_row(double *r, ob_vec3 linear, ob_vec3 angular)
-{
-	r[0] += linear.x, r[1] += linear.y, r[2] += linear.z;
-	r[3] += angular.x, r[4] += angular.y, r[5] += angular.z;
-}
 
 // Updates the inverse inertia (world frame) to the body's attitude.
 static void update_inertia(ob_body *body)
@@ -73,7 +66,7 @@ static void load_body(ob_solver *s, uint32_t row, const ob_island_object *object
 	update_inertia(body);
 	if (!moves)
 		return;
-	add_row(w->v[row], now.v, now.w);
+	ob_row_add(w->v[row], now.v, now.w);
 	w->mass += pass->mass;
 	body->acceleration = ob_external_acceleration(s->settings, pass);
 	body->torque = object->torque;
@@ -102,12 +95,16 @@ static void clear_rows(ob_island_work *w, uint32_t first, uint32_t end)
 		memset(all[i] + first, 0, (end - first) * sizeof *all[i]);
 }
 
+uint32_t ob_bodies_add_row(ob_island_work *w)
+{
+	clear_rows(w, w->rows, w->rows + 1);
+	return w->rows++;
+}
+
 static void load_fixed_body(ob_solver *s, uint32_t object)
 {
-	ob_island_work *w = &s->island;
-	w->row_of[object] = w->rows;
-	clear_rows(w, w->rows, w->rows + 1);
-	load_body(s, w->rows++, &s->in->object[object], false);
+	const uint32_t row = s->island.row_of[object] = ob_bodies_add_row(&s->island);
+	load_body(s, row, &s->in->object[object], false);
 }
 
 void ob_bodies_load(ob_solver *s, const ob_island_input *in)
@@ -121,9 +118,8 @@ void ob_bodies_load(ob_solver *s, const ob_island_input *in)
 	w->surfaces.count = 0;
 	w->error = w->new_error = 0;
 	w->bodies = in->members;
-	// Fixed bodies: at most one per pair, or two ghosts per pair.
-	const uint32_t most = 1 + in->members + (ob_ghosts_used(s) ? 2 : 1) * in->pairs;
-	reserve_rows(w, most);
+	// Fixed bodies: at most one for each side of a pair.
+	reserve_rows(w, 1 + in->members + s->methods.sides * in->pairs);
 	clear_rows(w, 0, 1 + in->members);
 	memset(&w->body[0], 0, sizeof w->body[0]);
 	w->rows = 1;
@@ -148,8 +144,6 @@ void ob_bodies_load(ob_solver *s, const ob_island_input *in)
 		}
 	}
 	w->first_ghost = w->rows;
-	if (ob_ghosts_used(s))
-		clear_rows(w, w->first_ghost, most);
 }
 
 // ---- attitudes
@@ -242,7 +236,7 @@ static void drift_row(ob_island_work *w, uint32_t row, double h, bool held)
 	if (ob_norm2(ob_row_angular(d)) > 0)
 		update_row_pose(w, row);
 	(held ? ob_drift_held : ob_drift)(body->q, ob_row_angular(w->v[row]), body->inertia, h, &q, &rate);
-	add_row(d, ob_v3(0, 0, 0), ob_small_turn(body->q, q));
+	ob_row_add(d, ob_v3(0, 0, 0), ob_small_turn(body->q, q));
 	update_gaps(w, row);
 	ob_body_place(body, ob_add(body->p, ob_row_linear(d)), q);
 	set_rate(w->v[row], rate);
@@ -282,7 +276,7 @@ static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 	memcpy(v, u, sizeof *w->v);
 	set_rate(v, rate);
 	memset(d, 0, sizeof *w->d);
-	add_row(d, ob_add(way, ob_row_linear(body->first_half)), ob_small_turn(body->start_q, q));
+	ob_row_add(d, ob_add(way, ob_row_linear(body->first_half)), ob_small_turn(body->start_q, q));
 	update_gaps(w, row);
 	memset(d, 0, sizeof *w->d);
 	ob_body_place(body, ob_add(body->p, way), q);
@@ -299,7 +293,7 @@ static void turn_body(ob_solver *s, uint32_t row, bool held)
 	const ob_vec3 turn = ob_scale(ob_row_angular(w->v[row]), w->h);
 	const double turned = ob_norm2(turn);
 	if (body->isotropic || turned == 0 || (held && turned < unnoticed_turn * unnoticed_turn)) {
-		add_row(d, ob_v3(0, 0, 0), turn);
+		ob_row_add(d, ob_v3(0, 0, 0), turn);
 		const double most = body->isotropic ? deferred_turn_isotropic : deferred_turn;
 		if (ob_norm2(ob_row_angular(d)) > most * most)
 			ob_body_update_pose(w, row);
@@ -314,7 +308,7 @@ static void turn_body(ob_solver *s, uint32_t row, bool held)
 void ob_body_set_velocity(ob_island_work *w, uint32_t row, ob_vec3 linear, ob_vec3 angular)
 {
 	memset(w->v[row], 0, sizeof *w->v);
-	add_row(w->v[row], linear, angular);
+	ob_row_add(w->v[row], linear, angular);
 	set_speed_bound(w, row);
 }
 
@@ -331,9 +325,9 @@ void ob_bodies_warm_start(ob_solver *s)
 	ob_island_work *w = &s->island;
 	memset(w->dv, 0, w->rows * sizeof *w->dv);
 	for (uint32_t i = 1; i <= w->bodies; i++)
-		add_row(w->dv[i], ob_scale(w->body[i].acceleration, w->h),
-			w->torques ? ob_scale(ob_body_turned_by(&w->body[i], w->body[i].torque), w->h)
-				   : ob_v3(0, 0, 0));
+		ob_row_add(w->dv[i], ob_scale(w->body[i].acceleration, w->h),
+			   w->torques ? ob_scale(ob_body_turned_by(&w->body[i], w->body[i].torque), w->h)
+				      : ob_v3(0, 0, 0));
 	for (uint32_t k = 0; k < w->batches; k++) {
 		const ob_batch *b = &w->batch[w->batch_order[k]];
 		if (b->live)
@@ -351,33 +345,6 @@ void ob_bodies_predict_velocities(ob_solver *s)
 	ob_surfaces_predict_velocities(s);
 }
 
-// Integrates by ODE instead: the impulses of the partial substep enter as a force.
-static void integrate_by_ode(ob_solver *s, uint32_t row)
-{
-	ob_island_work *w = &s->island;
-	ob_body *body = &w->body[row];
-	ob_vec3 g = ob_scale(s->settings->gravity, w->h);
-	double change[6];
-	for (int c = 0; c < 6; c++)
-		change[c] = w->u[row][c] - w->v[row][c];
-	ob_vec3 j = ob_scale(ob_sub(ob_row_linear(change), g), body->mass),
-		wl = ob_rotate_back(&body->r, ob_row_angular(change));
-	ob_vec3 l = ob_rotate(&body->r, ob_v3(wl.x * body->inertia.x, wl.y * body->inertia.y, wl.z * body->inertia.z));
-	ob_state state = { { body->p, body->q }, ob_row_linear(w->v[row]), ob_row_angular(w->v[row]) };
-	ob_pose before = state.pose;
-	if (!ob_ode_body_step(
-		    ob_ode_bodies_get(&s->ode_bodies, s->settings->gravity, body->id, s->in->object[row - 1].passport),
-		    &state, j, l, w->h))
-		s->calls.fail(s->calls.with, body->id);
-	// The displacement row takes ODE's step, so that the gaps follow.
-	ob_quat turn = ob_quat_mul(state.pose.q, (ob_quat){ before.q.w, -before.q.x, -before.q.y, -before.q.z });
-	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
-	double angle = 2 * ob_atan2(sin_half, turn.w), scale = sin_half > 1e-12 ? angle / sin_half : 2;
-	add_row(w->d[row], ob_sub(state.pose.p, before.p), ob_scale(ob_v3(turn.x, turn.y, turn.z), scale));
-	memset(w->u[row], 0, sizeof(ob_body_row));
-	add_row(w->u[row], state.v, state.w);
-}
-
 // Integrates the position: by the trapezoidal rule after a smooth change of velocity (exact in free flight), by the new
 // velocity after a jump.
 static void integrate_exactly(ob_island_work *w, uint32_t row, double smooth)
@@ -389,6 +356,19 @@ static void integrate_exactly(ob_island_work *w, uint32_t row, double smooth)
 	double old = change < smooth ? .5 * w->h : 0;
 	for (int c = 0; c < 3; c++)
 		d[c] += (w->h - old) * u[c] + old * v[c];
+}
+
+void ob_body_move(ob_solver *s, uint32_t row, double smooth)
+{
+	ob_island_work *w = &s->island;
+	if (w->body[row].halved) {
+		finish_halved(w, row, smooth);
+		return;
+	}
+	const bool held = !ob_equal(ob_row_angular(w->u[row]), ob_row_angular(w->v[row]));
+	integrate_exactly(w, row, smooth);
+	memcpy(w->v[row], w->u[row], sizeof *w->v);
+	turn_body(s, row, held);
 }
 
 static void advance_surface(ob_solver *s, uint32_t row)
@@ -405,23 +385,11 @@ static void advance_surface(ob_solver *s, uint32_t row)
 void ob_bodies_integrate_positions(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
-	const ob_run_settings *run = s->settings;
 	w->unpaced += w->h;
 	double smooth = 2 * w->max_acceleration * w->max_acceleration * w->h * w->h;
 	ob_surfaces_carry(s);
 	for (uint32_t i = 1; i <= w->bodies; i++) {
-		if (run->integrator == OB_INTEGRATOR_ODE) {
-			integrate_by_ode(s, i);
-			ob_body_update_pose(w, i);
-			memcpy(w->v[i], w->u[i], sizeof *w->v);
-		} else if (w->body[i].halved) {
-			finish_halved(w, i, smooth);
-		} else {
-			bool held = !ob_equal(ob_row_angular(w->u[i]), ob_row_angular(w->v[i]));
-			integrate_exactly(w, i, smooth);
-			memcpy(w->v[i], w->u[i], sizeof *w->v);
-			turn_body(s, i, held);
-		}
+		s->methods.move(s, i, smooth);
 		set_speed_bound(w, i);
 		w->body[i].path += w->h * surface_speed(w, i);
 	}

@@ -6,7 +6,6 @@
 #include "solver/conjugate.h"
 #include "solver/direct_solver.h"
 #include "solver/few_contacts.h"
-#include "solver/ghost.h"
 
 // Iterations. A change of velocity above the wake threshold activates a body: its contacts are solved again.
 static const double wake_threshold = 2e-3; // m/s
@@ -76,9 +75,7 @@ void ob_solver_limit_prediction(ob_solver *s)
 		ob_batch_limit_prediction(&w->batch[i], cap, 2.5 * gained);
 }
 
-// Activates a body whose velocity changed by more than the wake threshold. Its contacts are due in this iteration, if
-// their turn is still to come, and in the next.
-static void activate_body(ob_island_work *w, uint32_t row, uint32_t iteration)
+void ob_solver_activate(ob_island_work *w, uint32_t row, uint32_t iteration)
 {
 	ob_body *body = &w->body[row];
 	if (body->active_iteration == iteration || body->inv_mass == 0)
@@ -95,17 +92,10 @@ static bool activate_bodies(ob_island_work *w, const ob_batch *b)
 {
 	for (unsigned left = b->active; left; left &= left - 1) {
 		int l = __builtin_ctz(left);
-		activate_body(w, b->body_a[l], w->iteration);
-		activate_body(w, b->body_b[l], w->iteration);
+		ob_solver_activate(w, b->body_a[l], w->iteration);
+		ob_solver_activate(w, b->body_b[l], w->iteration);
 	}
 	return b->active != 0;
-}
-
-// Activates ghosts of the bodies that are active.
-static void activate_ghosts(ob_island_work *w)
-{
-	for (uint32_t g = w->first_ghost; g < w->rows; g++)
-		activate_body(w, g, w->body[w->body[g].ghost_of].active_iteration);
 }
 
 // Runs one iteration over the contacts of active bodies, colour by colour; the first one runs over all. Returns the
@@ -149,7 +139,7 @@ static double converge(ob_solver *s, ob_solver_iteration *iteration, uint32_t ma
 		if (k)
 			ob_conjugate_go_on(w);
 		s->counters.solver_iterations++;
-		ob_ghosts_read(s, w->u, k);
+		s->methods.read(s, w->u, k);
 		for (uint32_t i = 0; i < w->batches; i++)
 			w->batch_due[i] = w->iteration;
 		ob_conjugate_note(w);
@@ -169,7 +159,7 @@ void ob_solver_converge(ob_solver *s, double enough, uint32_t max_iterations)
 		.impact_threshold = INFINITY,
 		.first = true,
 		.jacobi = is_jacobi(s),
-		.ghosts = ob_ghosts_used(s),
+		.ghosts = s->methods.restless,
 		.resting_gap = resting_gap * s->island.unit.length,
 		.turning_gap = turning_gap * s->island.unit.length,
 		.dv = s->island.dv,
@@ -236,7 +226,7 @@ static bool few_touch(const ob_island_work *w)
 static void activate_all(ob_island_work *w)
 {
 	for (uint32_t i = 1; i <= w->bodies; i++)
-		activate_body(w, i, w->iteration);
+		ob_solver_activate(w, i, w->iteration);
 }
 
 // Returns the ratio of substeps to their usual number, at least 1. Remainders of all substeps add up over the step, so
@@ -258,7 +248,7 @@ void ob_solver_iterate(ob_solver *s)
 		.impact_threshold = impact_threshold * w->unit.speed * w->h / w->substep,
 		.first = true,
 		.jacobi = is_jacobi(s),
-		.ghosts = ob_ghosts_used(s),
+		.ghosts = s->methods.restless,
 		.resting_gap = resting_gap * w->unit.length,
 		.turning_gap = turning_gap * w->unit.length,
 		.dv = w->dv,
@@ -282,8 +272,7 @@ void ob_solver_iterate(ob_solver *s)
 			activate_all(w);
 		}
 		s->counters.solver_iterations++;
-		ob_ghosts_read(s, w->u, k);
-		activate_ghosts(w);
+		s->methods.read(s, w->u, k);
 		w->iteration += 1 + (k == 0); // a gap of 1, so that no body is active from the last partial substep
 		residual = solve_contacts(s, &iteration, &any_active, &changed);
 		if (iteration.first) {

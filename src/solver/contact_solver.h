@@ -21,4 +21,8 @@ double ob_solver_slop(const ob_solver *s);
 // Adds the rows of "from" to those of "to", and clears them.
 void ob_solver_add_rows(ob_island_work *w, ob_body_row *to, ob_body_row *from);
 
+// Activates a body whose velocity changed by more than the wake threshold. Its contacts are due in this iteration, if
+// their turn is still to come, and in the next.
+void ob_solver_activate(ob_island_work *w, uint32_t row, uint32_t iteration);
+
 #endif

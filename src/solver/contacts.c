@@ -7,7 +7,6 @@
 #include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/contact_order.h"
-#include "solver/ghost.h"
 #include "solver/narrowphase.h"
 #include "solver/relative_speed.h"
 #include "solver/surfaces.h"
@@ -68,10 +67,9 @@ static uint32_t free_colour(const ob_island_work *w, const ob_contact *contact, 
 static ob_batch_kind kind_of(const ob_solver *s, const ob_contact *contact)
 {
 	const ob_island_work *w = &s->island;
-	bool aabb = s->settings->narrow_phase == OB_NARROW_AABB; // the box of a sphere has four points
 	ob_shape a = w->body[contact->a].shape, b = w->body[contact->b].shape;
-	bool point = ob_shape_is(a, OB_ISOTROPIC) || ob_shape_is(b, OB_ISOTROPIC);
-	return (point && !aabb ? OB_KIND_POINT : OB_KIND_FULL) |
+	bool point = ob_shape_is(a, OB_ISOTROPIC) || ob_shape_is(b, OB_ISOTROPIC); // their boxes have four
+	return (point && !s->methods.boxes ? OB_KIND_POINT : OB_KIND_FULL) |
 	       (contact->mu > 0 ? OB_KIND_FULL : OB_KIND_FRICTIONLESS);
 }
 
@@ -416,12 +414,12 @@ static bool moves_alone(const ob_island_work *w, const ob_contact *contact, doub
 }
 
 // True if another test would find the same geometry: the bodies have not moved since, nor been hit, and points were
-// sought as far ahead. Never true with ghosts, which move on.
+// sought as far ahead. Never true for restless bodies.
 static bool is_of_now(const ob_solver *s, const ob_contact *contact)
 {
 	const ob_island_work *w = &s->island;
-	return contact->since == 0 && !ob_ghosts_used(s) && contact->found_for >= w->h && contact->lane != OB_NO_LANE &&
-	       !ob_contact_was_hit(w, contact);
+	return contact->since == 0 && !s->methods.restless && contact->found_for >= w->h &&
+	       contact->lane != OB_NO_LANE && !ob_contact_was_hit(w, contact);
 }
 
 // Advances the contact's path, and tests its geometry if needed. Returns true if it was tested.
@@ -456,7 +454,7 @@ bool ob_contacts_update_hit(ob_solver *s, double ahead)
 	bool any = false;
 	ob_island_work *w = &s->island;
 	for (uint32_t i = 0; i < w->contacts; i++)
-		if (ob_contact_was_hit(w, &w->contact[i]) || ob_ghosts_used(s))
+		if (ob_contact_was_hit(w, &w->contact[i]) || s->methods.restless)
 			any |= update_contact(s, &w->contact[i], 0, ahead);
 	return any;
 }
@@ -530,8 +528,7 @@ void ob_contacts_prepare(ob_solver *s)
 
 // ---- input and results
 
-// Loads the next contact, whose a and b are set.
-static void load_contact(ob_solver *s, const ob_island_pair *pair)
+void ob_contact_load(ob_solver *s, const ob_island_pair *pair)
 {
 	ob_island_work *w = &s->island;
 	ob_contact *contact = &w->contact[w->contacts++];
@@ -562,18 +559,6 @@ static void load_contact(ob_solver *s, const ob_island_pair *pair)
 			impulse[i] * (w->h / p->substep);
 }
 
-// Loads a pair twice: each side is solved for itself, against a ghost of the other.
-static void load_with_ghosts(ob_solver *s, const ob_island_pair *pair)
-{
-	ob_contact *own = &s->island.contact[s->island.contacts], *mirror = own + 1;
-	*mirror = *own;
-	own->b = ob_ghost_make(s, own->b);
-	mirror->a = ob_ghost_make(s, mirror->a);
-	mirror->mirror = true;
-	load_contact(s, pair);
-	load_contact(s, pair);
-}
-
 static void link_adjacent(ob_island_work *w)
 {
 	uint32_t total = 0;
@@ -596,7 +581,7 @@ static void link_adjacent(ob_island_work *w)
 void ob_contacts_load(ob_solver *s, const ob_island_input *in)
 {
 	ob_island_work *w = &s->island;
-	uint32_t most = ob_ghosts_used(s) ? 2 * in->pairs : in->pairs;
+	const uint32_t most = s->methods.sides * in->pairs;
 	if (most > w->contacts_max) {
 		w->contacts_max = most + most / 2;
 		w->contact = ob_reallocate(w->contact, w->contacts_max * sizeof *w->contact);
@@ -623,10 +608,7 @@ void ob_contacts_load(ob_solver *s, const ob_island_input *in)
 		if (own)
 			*(pair->fixed == pair->a ? &t->a : &t->b) = own;
 		t->limit = pair->limit - w->body[t->a].path - w->body[t->b].path;
-		if (ob_ghosts_used(s) && t->a <= w->bodies && t->b <= w->bodies)
-			load_with_ghosts(s, pair);
-		else
-			load_contact(s, pair);
+		s->methods.load(s, pair);
 	}
 	link_adjacent(w);
 	ob_surfaces_begin(s);
@@ -675,7 +657,7 @@ void ob_contacts_report(ob_solver *s)
 		found.limit = contact->limit - path + w->body[contact->a].path + w->body[contact->b].path;
 		found.active = active;
 		found.kept = active || pair->kept; // the step may have been solved before
-		found.two_sided = ob_ghosts_used(s);
+		found.two_sided = s->methods.sides > 1;
 		if (found.kept)
 			store_contact(w, contact, &found.state);
 		memset(found.impulse_b, 0,

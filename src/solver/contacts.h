@@ -10,6 +10,8 @@
 
 // Loads the contacts of the island's pairs, with the impulses at the end of the step before.
 void ob_contacts_load(ob_solver *s, const ob_island_input *in);
+// Loads the next contact, whose a and b are set.
+void ob_contact_load(ob_solver *s, const ob_island_pair *pair);
 // Runs the narrow phase for every pair whose geometry may change within the time ahead (s; 0: has changed), judged by
 // the motion of its bodies so far and to come. Impulses stay with their points. Returns true if any geometry was
 // updated.

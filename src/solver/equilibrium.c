@@ -10,7 +10,7 @@ bool ob_equilibrium_likely(const ob_solver *s, const ob_island_input *in)
 {
 	const ob_run_settings *run = s->settings;
 	if (run->substeps == 1 || s->island.substeps > run->substeps || run->solver != OB_SOLVER_COLOURED ||
-	    run->integrator != OB_INTEGRATOR_EXACT)
+	    !s->methods.exact)
 		return false;
 	for (uint32_t i = 0; i < in->members; i++)
 		if (!(in->object[i].motion->flags & OB_MOTION_STEADY))

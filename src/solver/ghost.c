@@ -1,20 +1,18 @@
 #include "solver/ghost.h"
 
 #include "base/allocate.h"
+#include "solver/bodies.h"
+#include "solver/contact_solver.h"
+#include "solver/contacts.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-bool ob_ghosts_used(const ob_solver *s)
-{
-	uint32_t solver = s->settings->solver;
-	return solver == OB_SOLVER_GHOST || solver == OB_SOLVER_LAGGED;
-}
-
-uint32_t ob_ghost_make(ob_solver *s, uint32_t row)
+// Adds a row that stands for body "row" towards one of its neighbours. Returns the new row.
+static uint32_t make_ghost(ob_solver *s, uint32_t row)
 {
 	ob_island_work *w = &s->island;
-	uint32_t ghost = w->rows++;
+	const uint32_t ghost = ob_bodies_add_row(w);
 	ob_body *body = &w->body[ghost];
 	*body = w->body[row];
 	if (s->settings->solver == OB_SOLVER_GHOST) {
@@ -26,6 +24,22 @@ uint32_t ob_ghost_make(ob_solver *s, uint32_t row)
 	w->body[row].next_ghost = ghost;
 	memcpy(w->v[ghost], w->v[row], sizeof *w->v);
 	return ghost;
+}
+
+void ob_ghosts_load(ob_solver *s, const ob_island_pair *pair)
+{
+	ob_island_work *w = &s->island;
+	ob_contact *own = &w->contact[w->contacts], *mirror = own + 1;
+	const bool two = own->a <= w->bodies && own->b <= w->bodies;
+	if (two) {
+		*mirror = *own;
+		own->b = make_ghost(s, own->b);
+		mirror->a = make_ghost(s, mirror->a);
+		mirror->mirror = true;
+	}
+	ob_contact_load(s, pair);
+	if (two)
+		ob_contact_load(s, pair);
 }
 
 void ob_ghosts_follow(ob_solver *s)
@@ -41,12 +55,10 @@ void ob_ghosts_follow(ob_solver *s)
 	}
 }
 
-void ob_ghosts_read(ob_solver *s, ob_body_row *rows, uint32_t iteration)
+bool ob_ghosts_read(ob_solver *s, ob_body_row *rows, uint32_t iteration)
 {
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
-	if (!ob_ghosts_used(s))
-		return;
 	uint32_t kept = run->solver == OB_SOLVER_LAGGED ? run->lag + 1 : 1, late = kept - 1;
 	if (kept * w->rows > w->history_max) {
 		w->history_max = kept * w->rows * 2;
@@ -56,4 +68,7 @@ void ob_ghosts_read(ob_solver *s, ob_body_row *rows, uint32_t iteration)
 	const ob_body_row *seen = w->history + (iteration > late ? iteration - late : 0) % kept * w->rows;
 	for (uint32_t g = w->first_ghost; g < w->rows; g++)
 		memcpy(rows[g], seen[w->body[g].ghost_of], sizeof *rows);
+	for (uint32_t g = w->first_ghost; g < w->rows; g++)
+		ob_solver_activate(w, g, w->body[w->body[g].ghost_of].active_iteration);
+	return true;
 }

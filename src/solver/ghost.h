@@ -1,4 +1,4 @@
-// Ghosts: each simulator's own copies of its neighbours. An experiment off the hot path, for the two solvers in which
+// Ghosts: each simulator's own copies of its neighbours. An experiment, for the two solvers in which
 // the bodies of a pair do not agree on one impulse; they exist for comparison with those that do.
 //
 //   OB_SOLVER_GHOST    a neighbour is infinitely heavy, and moves as it last published
@@ -14,14 +14,13 @@
 
 #include "solver/solver.h"
 
-// True if the run's solver uses ghosts.
-bool ob_ghosts_used(const ob_solver *s);
-// Adds a row that stands for body "row" towards one of its neighbours. Returns the new row.
-uint32_t ob_ghost_make(ob_solver *s, uint32_t row);
+// Loads a pair: twice if both bodies move, as each side is solved for itself, against a ghost of the other.
+void ob_ghosts_load(ob_solver *s, const ob_island_pair *pair);
 // Copies velocities, displacements and speeds of the bodies to their ghosts. Poses follow in ob_body_update_pose.
 void ob_ghosts_follow(ob_solver *s);
 // Stores the bodies' velocities before an iteration (counted from 0) of a phase that works on rows (v or u). Copies
-// them to their ghosts, late by the lag of the run. No copy is older than the phase.
-void ob_ghosts_read(ob_solver *s, ob_body_row *rows, uint32_t iteration);
+// them to their ghosts, late by the lag of the run. No copy is older than the phase. Ghosts are as active as their bodies.
+// Returns true.
+bool ob_ghosts_read(ob_solver *s, ob_body_row *rows, uint32_t iteration);
 
 #endif

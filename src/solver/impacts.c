@@ -11,7 +11,6 @@
 #include "solver/bodies.h"
 #include "solver/budget.h"
 #include "solver/contacts.h"
-#include "solver/ghost.h"
 #include "solver/narrowphase.h"
 #include "solver/relative_speed.h"
 #include "solver/surfaces.h"
@@ -938,8 +937,7 @@ void ob_impacts_begin(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	w->last_impact = 0;
-	w->plastic = s->settings->integrator == OB_INTEGRATOR_EXACT && s->settings->narrow_phase != OB_NARROW_AABB &&
-		     !ob_ghosts_used(s);
+	w->plastic = s->methods.instants;
 	const bool any = w->elastic || w->plastic;
 	for (uint32_t i = 0; i < w->rows && any; i++)
 		w->body[i].hit = 0;
@@ -963,19 +961,17 @@ bool ob_impacts_resolve(ob_solver *s, bool first)
 	reserve(w);
 	for (uint32_t row = 0; row < w->rows; row++)
 		w->impacts.root[row] = row;
-	ob_ghosts_read(s, w->v, 0);
+	s->methods.read(s, w->v, 0);
 	look_at_all(s, first);
 	while (w->impacts.count && round < max_rounds && !ob_budget_spent(s)) {
 		ob_budget_note(s, w->impacts.count);
 		const uint32_t selected = join_touching(s, select_earliest(w));
 		solve_selected(s, selected);
 		round++;
-		if (ob_ghosts_used(s)) {
-			ob_ghosts_read(s, w->v, round);
+		if (s->methods.read(s, w->v, round))
 			look_at_all(s, true);
-		} else {
+		else
 			look_again(s, round, selected);
-		}
 	}
 	s->counters.impact_iterations += round;
 	return round > 0;

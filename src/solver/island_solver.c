@@ -14,8 +14,8 @@
 #include "solver/equilibrium.h"
 #include "solver/error_control.h"
 #include "solver/frame.h"
-#include "solver/ghost.h"
 #include "solver/impacts.h"
+#include "solver/methods.h"
 #include "solver/midpoint.h"
 #include "solver/push_apart.h"
 #include "solver/surfaces.h"
@@ -48,7 +48,7 @@ static void resolve_impacts(ob_solver *s)
 	ob_solver_enter(s, OB_PROFILE_IMPACTS);
 	for (int round = 0; round < MAX_IMPACT_ROUNDS && ob_impacts_resolve(s, round == 0); round++) {
 		ob_bodies_update_speed_bounds(s);
-		ob_ghosts_follow(s);
+		s->methods.follow(s);
 		if (!update_hit_contacts(s))
 			break;
 		ob_solver_enter(s, OB_PROFILE_IMPACTS);
@@ -74,7 +74,7 @@ static void solve_partial_substep(ob_solver *s, double left, bool first_of_step)
 	enum { WORK_OF_BODY = 24, WORK_OF_CONTACT = 8 }; // beside its tests and solves
 	ob_budget_note(s, WORK_OF_BODY * s->island.rows + WORK_OF_CONTACT * s->island.contacts);
 	ob_solver_enter(s, OB_PROFILE_NARROWPHASE);
-	ob_ghosts_follow(s);
+	s->methods.follow(s);
 	ob_adaptive_begin(s, left);
 	ob_surfaces_renew_contacts(s);
 	ob_impacts_begin(s);
@@ -90,7 +90,7 @@ static void solve_partial_substep(ob_solver *s, double left, bool first_of_step)
 	ob_error_control_note_slip(s);
 	ob_midpoint_end(s);
 	ob_solver_limit_prediction(s);
-	ob_ghosts_follow(s);
+	s->methods.follow(s);
 	ob_solver_enter(s, OB_PROFILE_PROJECT);
 	ob_push_apart(s);
 }
@@ -171,6 +171,7 @@ bool ob_solver_create(ob_solver *s, const ob_run_settings *settings, const ob_is
 {
 	s->settings = settings;
 	s->calls = *calls;
+	s->methods = ob_methods_of(settings);
 	s->island.unit = ob_run_settings_units(settings);
 	s->island.tolerance = OB_DEFAULT_TOLERANCE * s->island.unit.length;
 	s->island.run_coarseness = s->island.coarseness = ob_run_settings_coarseness(settings);

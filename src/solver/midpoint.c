@@ -6,7 +6,6 @@
 #include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/contacts.h"
-#include "solver/ghost.h"
 #include "solver/impacts.h"
 #include "solver/relative_speed.h"
 #include "solver/surfaces.h"
@@ -72,8 +71,6 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 void ob_midpoint_mark(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
-	const bool ever = s->settings->integrator == OB_INTEGRATOR_EXACT && !ob_ghosts_used(s) &&
-			  s->settings->narrow_phase != OB_NARROW_AABB;
 	for (uint32_t i = 0; i < w->rows; i++)
 		w->body[i].among_others = w->body[i].turns = false;
 	for (uint32_t i = 0; i < w->contacts; i++) {
@@ -86,7 +83,8 @@ void ob_midpoint_mark(ob_solver *s)
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		ob_contact *contact = &w->contact[i];
 		ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-		contact->turns = ever && !a->among_others && !b->among_others && turns_noticeably(w, contact);
+		contact->turns =
+			s->methods.instants && !a->among_others && !b->among_others && turns_noticeably(w, contact);
 		a->turns |= contact->turns;
 		b->turns |= contact->turns;
 	}

@@ -1,6 +1,5 @@
 #include "solver/narrowphase.h"
 
-#include "base/cpu.h"
 #include "shape/shape.h"
 #include "solver/budget.h"
 #include "solver/contact_solver.h"
@@ -8,50 +7,6 @@
 static const double swept_travel =
 	.4; // share of the smaller thickness: faster pairs are followed through the partial substep
 static const double swept_gap = 1e-3; // m: a smaller gap counts as touching
-
-// ---- axis-aligned boxes of shapes
-
-// Finds centre and half widths of a hull's box, which is not about the hull's centre.
-static void find_extent(const ob_placed *x, ob_vec3 *middle, ob_vec3 *half)
-{
-	ob_vec3 low = { INFINITY, INFINITY, INFINITY }, high = { -INFINITY, -INFINITY, -INFINITY };
-	for (uint32_t k = 0; k < x->hull->corners; k++) {
-		const ob_vec3 c = ob_rotate(&x->r, x->hull->corner[k]);
-		low = ob_v3(ob_min(low.x, c.x), ob_min(low.y, c.y), ob_min(low.z, c.z));
-		high = ob_v3(ob_max(high.x, c.x), ob_max(high.y, c.y), ob_max(high.z, c.z));
-	}
-	*middle = ob_madd(x->p, .5, ob_add(low, high));
-	*half = ob_scale(ob_sub(high, low), .5);
-}
-
-// Half the width of the shape along the world's axis i (m).
-static double half_width(const ob_placed *x, int i)
-{
-	return ob_shape_extent(x->shape, x->size, ob_v3(x->r.m[i][0], x->r.m[i][1], x->r.m[i][2]));
-}
-
-static ob_placed box_around(const ob_placed *x)
-{
-	if (ob_shape_is(x->shape, OB_UNBOUNDED))
-		return *x;
-	ob_placed box = { .shape = OB_SHAPE_BOX,
-			  .p = x->p,
-			  .r = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } },
-			  .v = x->v,
-			  .rest_depth = x->rest_depth,
-			  .far_future = x->far_future };
-	if (x->hull)
-		find_extent(x, &box.p, &box.size);
-	else
-		box.size = ob_v3(half_width(x, 0), half_width(x, 1), half_width(x, 2));
-	return box;
-}
-
-void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
-{
-	ob_placed box_a = box_around(a), box_b = box_around(b);
-	ob_manifold_find(&box_a, &box_b, margin, out);
-}
 
 // ---- the collision test of the run
 
@@ -78,13 +33,18 @@ static uint64_t work_of_points(const ob_placed *a, const ob_placed *b)
 	return two ? OF_TWO_ROUND : OF_A_CORNER * (corners_of(a) + corners_of(b));
 }
 
+void ob_shapes_find(ob_solver *s, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
+{
+	ob_manifold_find(a, b, margin, out);
+	ob_budget_note(s, out->points ? work_of_points(a, b) : 0);
+}
+
 // Runs a collision test. Once the budget is spent all shapes are far apart, so that loops over many pairs, and searches
 // in time, end soon.
 static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	const double far = 1e30; // m: beyond all that moves within a run
 	ob_solver *s = with;
-	const ob_run_settings *run = s->settings;
 	ob_budget_note(s, work_of_test(a, b));
 	out->disc_radius = 0;
 	out->valid_path = INFINITY;
@@ -93,19 +53,12 @@ static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, do
 		out->separation = far;
 		return;
 	}
-	if (run->narrow_phase == OB_NARROW_AABB) {
-		s->counters.box_tests++;
-		ob_synthetic_load(run->load);
-		ob_manifold_aabb(a, b, margin, out);
-	} else {
-		ob_manifold_find(a, b, margin, out);
-		ob_budget_note(s, out->points ? work_of_points(a, b) : 0);
-	}
+	s->methods.find(s, a, b, margin, out);
 }
 
 ob_manifold_finder ob_narrowphase_finder(ob_solver *s)
 {
-	return (ob_manifold_finder){ find_manifold, s, s->settings->narrow_phase == OB_NARROW_AABB };
+	return (ob_manifold_finder){ find_manifold, s, s->methods.boxes };
 }
 
 // Tests two shapes at an instant of a search. The search places both by their rotation and looks for a direction along
@@ -119,7 +72,7 @@ static void find_on_the_way(void *with, const ob_placed *a, const ob_placed *b, 
 
 ob_manifold_finder ob_narrowphase_follower(ob_solver *s)
 {
-	return (ob_manifold_finder){ find_on_the_way, s, s->settings->narrow_phase == OB_NARROW_AABB };
+	return (ob_manifold_finder){ find_on_the_way, s, s->methods.boxes };
 }
 
 double ob_narrowphase_rest_depth(const ob_solver *s, double thickness, bool pressed)

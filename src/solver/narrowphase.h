@@ -30,8 +30,7 @@ ob_manifold_finder ob_narrowphase_follower(ob_solver *s);
 // Time of impact (s from now) of the two, if they go on as they do; infinity: not before "horizon".
 double ob_narrowphase_time_of_impact(ob_solver *s, const ob_contact *t, double horizon);
 
-// Narrow phase of axis-aligned boxes: ob_manifold_find for the boxes of the two shapes, which grow and shrink as the
-// shapes turn. A plane's box would be all of space: it stays a plane. Pure function.
-void ob_manifold_aabb(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+// Tests two shapes, and notes the work of finding their points: ob_methods.find.
+void ob_shapes_find(ob_solver *s, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 #endif

@@ -1,6 +1,10 @@
 #include "solver/ode_bodies.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+#include "elementary/elementary.h"
+#include "solver/bodies.h"
 
 typedef struct ob_ode_slot {
 	ob_ode_body *body; // NULL: none yet
@@ -31,4 +35,32 @@ ob_ode_body *ob_ode_bodies_get(ob_ode_bodies *w, ob_vec3 gravity, uint32_t id, c
 		*slot = (ob_ode_slot){ ob_ode_body_create(p, gravity, w->stepper), id, p->generation };
 	}
 	return slot->body;
+}
+
+void ob_ode_bodies_move(ob_solver *s, uint32_t row, double smooth)
+{
+	ob_island_work *w = &s->island;
+	ob_body *body = &w->body[row];
+	ob_vec3 g = ob_scale(s->settings->gravity, w->h);
+	double change[6];
+	for (int c = 0; c < 6; c++)
+		change[c] = w->u[row][c] - w->v[row][c];
+	ob_vec3 j = ob_scale(ob_sub(ob_row_linear(change), g), body->mass),
+		wl = ob_rotate_back(&body->r, ob_row_angular(change));
+	ob_vec3 l = ob_rotate(&body->r, ob_v3(wl.x * body->inertia.x, wl.y * body->inertia.y, wl.z * body->inertia.z));
+	ob_state state = { { body->p, body->q }, ob_row_linear(w->v[row]), ob_row_angular(w->v[row]) };
+	ob_pose before = state.pose;
+	if (!ob_ode_body_step(
+		    ob_ode_bodies_get(&s->ode_bodies, s->settings->gravity, body->id, s->in->object[row - 1].passport),
+		    &state, j, l, w->h))
+		s->calls.fail(s->calls.with, body->id);
+	// The displacement row takes ODE's step, so that the gaps follow.
+	ob_quat turn = ob_quat_mul(state.pose.q, (ob_quat){ before.q.w, -before.q.x, -before.q.y, -before.q.z });
+	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+	double angle = 2 * ob_atan2(sin_half, turn.w), scale = sin_half > 1e-12 ? angle / sin_half : 2;
+	ob_row_add(w->d[row], ob_sub(state.pose.p, before.p), ob_scale(ob_v3(turn.x, turn.y, turn.z), scale));
+	memset(w->u[row], 0, sizeof(ob_body_row));
+	ob_row_add(w->u[row], state.v, state.w);
+	ob_body_update_pose(w, row);
+	memcpy(w->v[row], w->u[row], sizeof *w->v);
 }

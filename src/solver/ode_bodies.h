@@ -17,4 +17,8 @@ void ob_ode_bodies_finish(ob_ode_bodies *w);
 // Returns the body of object id, made from its passport. Valid until the next call. gravity: m/s^2.
 ob_ode_body *ob_ode_bodies_get(ob_ode_bodies *w, ob_vec3 gravity, uint32_t id, const ob_passport *p);
 
+// Moves a body of an island by ODE: the impulses of the partial substep enter as a force. ob_methods.move.
+struct ob_solver;
+void ob_ode_bodies_move(struct ob_solver *s, uint32_t row, double smooth);
+
 #endif

@@ -203,7 +203,7 @@ void ob_push_apart(ob_solver *s)
 		push_free(s, left);
 		return;
 	}
-	const bool jacobi = is_jacobi(s), aabb = s->settings->narrow_phase == OB_NARROW_AABB && !jacobi;
+	const bool jacobi = is_jacobi(s), aabb = s->methods.boxes && !jacobi;
 	const double before = potential_energy(w);
 	if (aabb)
 		memcpy(w->delta + 1, w->d + 1, w->bodies * sizeof *w->d);

@@ -12,6 +12,7 @@
 
 #include <ob/motion.h>
 
+#include "contact/manifold.h"
 #include "settings/settings.h"
 #include "solver/island.h"
 #include "solver/ode_bodies.h"
@@ -80,6 +81,26 @@ typedef struct ob_island_calls {
 	void (*motion)(void *with, const ob_island_object *object, ob_motion *m, bool free);
 } ob_island_calls;
 
+// Methods of a run, chosen when it begins (solver/methods.h). The solver calls them, and does not ask which they are.
+struct ob_solver;
+typedef struct ob_methods {
+	// Narrow phase of two shapes, as ob_manifold_find.
+	void (*find)(struct ob_solver *s, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+	// Loads a pair as the next contacts; the first has its bodies.
+	void (*load)(struct ob_solver *s, const ob_island_pair *pair);
+	// Shows the motion of each body to its neighbours.
+	void (*follow)(struct ob_solver *s);
+	// Shows them the velocities (v or u) before an iteration, counted from 0. true: any may have changed.
+	bool (*read)(struct ob_solver *s, ob_body_row *rows, uint32_t iteration);
+	// Moves a body of the island through the partial substep. smooth: (m/s)^2, squares of larger changes are jumps.
+	void (*move)(struct ob_solver *s, uint32_t row, double smooth);
+	uint32_t sides; // contacts that a pair of two moving bodies becomes
+	bool restless; // bodies may change without being hit
+	bool exact; // free motion is in closed form
+	bool boxes; // axis-aligned boxes collide, in place of shapes
+	bool instants; // hits are solved at their instants: motions are exact, shapes collide, bodies agree on impulses
+} ob_methods;
+
 typedef struct ob_solver {
 	const ob_run_settings *settings;
 	ob_island_calls calls;
@@ -89,6 +110,7 @@ typedef struct ob_solver {
 		bool spent;
 	} budget;
 	ob_counters counters;
+	ob_methods methods;
 	ob_ode_bodies ode_bodies;
 	const ob_island_input *in; // input of the running call
 	ob_island_work island; // scratch

@@ -4,7 +4,6 @@
 #include "contact/manifold.h"
 #include "exchange/touches.h"
 #include "motion/flight.h"
-#include "solver/ghost.h"
 #include "solver/narrowphase.h"
 #include "step/budget.h"
 
@@ -148,10 +147,8 @@ bool ob_ballistic_pair_advance(ob_sim *s, const uint32_t id[2])
 	const double end = (double)(ob_step_count(s->u) + 1) * s->settings->step_length;
 	ob_course c[2];
 	uint32_t impacts;
-	if (s->settings->integrator == OB_INTEGRATOR_ODE || s->settings->narrow_phase == OB_NARROW_AABB ||
-	    ob_ghosts_used(&s->solver) ||
-	    !(ob_pair_restitution(ob_passport_of(s->u, id[0])->restitution, ob_passport_of(s->u, id[1])->restitution) >
-	      0))
+	if (!s->solver.methods.instants || !(ob_pair_restitution(ob_passport_of(s->u, id[0])->restitution,
+								 ob_passport_of(s->u, id[1])->restitution) > 0))
 		return false;
 	ob_courses_begin(s, id, c, 2);
 	const bool parted = ob_equal(c[0].m.a, c[1].m.a) && follow(s, c, end, &impacts);

@@ -33,7 +33,7 @@ static ob_flier landing_body(const ob_sim *s, const ob_course *c)
 	const ob_motion *f = &c->m;
 	ob_flier out = { body->shape, body->size, body->inertia, f->p,    f->v,
 			 f->a,        f->q,       f->w,          c->spin, ob_hull_of(s->u, body) };
-	if (s->settings->narrow_phase == OB_NARROW_AABB) {
+	if (s->solver.methods.boxes) {
 		double reach = sqrt(3) * ob_shape_radius(body->shape, body->size);
 		out.shape = OB_SHAPE_NONE;
 		out.size = ob_v3(reach, 0, 0);
@@ -139,7 +139,7 @@ static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state 
 	ob_impact_point point[SUPPORT_POINTS];
 	ob_impact_body body[2] = { { .inv_mass = 1 / passport->mass, .v = state->v, .w = state->w } };
 	body[1].v = running_velocity(s->u, plane, &ground);
-	if (!(e > 0) || s->settings->narrow_phase != OB_NARROW_OBB)
+	if (!(e > 0) || s->solver.methods.boxes)
 		return false;
 	const ob_mat3 r = ob_quat_matrix(state->pose.q);
 	ob_inverse_inertia(passport->inertia, &r, body[0].inv_inertia);
@@ -275,48 +275,6 @@ void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end)
 	ob_fat_aabb_update(s->u, id, end, reach, path);
 	m->reach = (float)reach;
 	ob_result_stage(s, id, m, state, state == OB_SCHEDULE_AWAKE ? m->step : UINT32_MAX);
-}
-
-static ob_state state_by_ode(ob_sim *s, uint32_t id)
-{
-	const ob_run_settings *run = s->settings;
-	const ob_motion *before = ob_newest_motion(s->u, id);
-	double h = run->step_length / run->substeps;
-	ob_state now = { { before->p, before->q }, before->v, before->w };
-	ob_vec3 force = ob_scale(ob_passport_of(s->u, id)->force, h);
-	bool done = true;
-	enum { WORK_OF_SUBSTEP = 32 };
-	for (uint32_t i = 0; i < run->substeps && done && !ob_budget_spent(&s->solver); i++) {
-		ob_budget_note(&s->solver, WORK_OF_SUBSTEP);
-		done = ob_ode_body_step(
-			ob_ode_bodies_get(&s->solver.ode_bodies, run->gravity, id, ob_passport_of(s->u, id)), &now,
-			force, ob_v3(0, 0, 0), h);
-	}
-	if (!done)
-		ob_step_fail(s->u, OB_STEP_ENGINE, id);
-	return now;
-}
-
-// Advances by one step with ODE's stepper, which computes no impacts ahead.
-static void step_by_ode(ob_sim *s, uint32_t id)
-{
-	const ob_run_settings *run = s->settings;
-	const ob_passport *body = ob_passport_of(s->u, id);
-	const ob_motion *before = ob_newest_motion(s->u, id);
-	uint64_t step = ob_step_count(s->u) + 1;
-	ob_state end = state_by_ode(s, id);
-	ob_motion m = { .t0 = (double)step * run->step_length,
-			.valid_until = (double)(step + 1) * run->step_length,
-			.p = end.pose.p,
-			.q = end.pose.q,
-			.v = end.v,
-			.w = end.w,
-			.a = ob_external_acceleration(run, body),
-			.path = before->path + ob_step_reach(run, body, before->q, before->v, before->w),
-			.step = (uint32_t)step,
-			.flags = OB_MOTION_FREE,
-			.island = id };
-	ob_body_publish(s, id, &m, &end);
 }
 
 // Returns the time (s) for which a flight is computed from this velocity on. Its fat AABB holds all of the flight, and
@@ -464,13 +422,6 @@ void ob_ballistic_advance(ob_sim *s, const uint32_t *id, uint32_t n, bool *done)
 	for (uint32_t k = 0; k < n; k++) {
 		done[k] = true;
 		on[k] = &c[k];
-	}
-	if (s->settings->integrator == OB_INTEGRATOR_ODE) {
-		for (uint32_t k = 0; k < n; k++) {
-			ob_budget_begin_share(s, id[k]);
-			step_by_ode(s, id[k]);
-		}
-		return;
 	}
 	ob_courses_begin(s, id, c, n);
 	while (left) { // from impact to impact of each

@@ -134,7 +134,7 @@ static void publish_body(void *sim, const ob_island_object *object, ob_motion *m
 {
 	ob_sim *s = sim;
 	ob_state end = { { m->p, m->q }, m->v, m->w };
-	if (free && s->settings->integrator == OB_INTEGRATOR_EXACT) { // the substeps only searched for impacts
+	if (free && s->solver.methods.exact) { // the substeps only searched for impacts
 		const ob_motion flight = ob_ballistic_flight(s, object->id);
 		end = ob_ballistic_state(s, object->id, &flight, m->t0);
 		m->t0 = flight.t0, m->valid_until = flight.valid_until;
@@ -179,7 +179,7 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 {
 	const ob_step_data *data = s->data;
 	const uint32_t *id = data->member + is->first_member;
-	if (is->members > 2 || (is->pairs && (data->count->merged || s->settings->integrator == OB_INTEGRATOR_ODE)))
+	if (is->members > 2 || (is->pairs && (data->count->merged || !s->solver.methods.exact)))
 		return false;
 	for (uint32_t i = 0; data->script_of && i < is->members; i++)
 		if (ob_norm2(ob_script_torque(data, id[i])) > 0)
@@ -234,7 +234,7 @@ void ob_islands_fly(ob_sim *s, uint32_t first, uint32_t n, bool *flown)
 		ob_touches_begin(s->u, is);
 		lone[fly] = k, id[fly++] = data->member[is->first_member];
 	}
-	ob_ballistic_advance(s, id, fly, done);
+	s->fly(s, id, fly, done);
 	for (uint32_t i = 0; i < fly; i++)
 		if ((flown[lone[i]] = done[i])) {
 			end_contacts(s, &data->island[first + lone[i]]);

@@ -245,7 +245,7 @@ static bool spheres_exclude_contact(const pair_check *c, ob_pair_key *k, double 
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
 	if (a->state == OB_SCHEDULE_PLANE || b->state == OB_SCHEDULE_PLANE)
 		return flies_above_plane(c, a->state == OB_SCHEDULE_PLANE ? k->b : k->a);
-	if (c->s->settings->narrow_phase == OB_NARROW_AABB)
+	if (c->s->solver.methods.boxes)
 		return false;
 	const bounding_spheres round =
 		bounding_spheres_of(c, k, ob_result_of(c->u, k->a), ob_result_of(c->u, k->b), c->steps);

@@ -26,6 +26,7 @@ struct ob_sim {
 	const ob_run_settings *settings; // of u, constant
 	uint32_t worker;
 	ob_solver solver;
+	void (*fly)(ob_sim *s, const uint32_t *id, uint32_t n, bool *done); // ob_ballistic_advance, or by ODE
 	ob_island_scratch scratch;
 	ob_rotation_cache rotations;
 	struct ob_committer *committer; // NULL unless this is the arranger (commit.h)

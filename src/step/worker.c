@@ -4,6 +4,7 @@
 #include "baseline/ode_baseline.h"
 #include "exchange/commit.h"
 #include "step/islands.h"
+#include "step/ode_flight.h"
 #include "step/sim.h"
 #include "step/state.h"
 
@@ -39,6 +40,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		ob_fail(e, "worker %u: no memory for %u objects", worker, capacity);
 		return NULL;
 	}
+	s->fly = s->solver.methods.exact ? ob_ballistic_advance : ob_ode_flight_advance;
 	if (run->one_per_object && worker < capacity && ob_passport_of(u, worker)->flags & OB_OBJECT_PRESENT) {
 		ob_ode_bodies_get(&s->solver.ode_bodies, run->gravity, worker, ob_passport_of(u, worker)); // its own
 	}

@@ -91,8 +91,7 @@ bool ob_reserve_pairs(ob_universe *u, uint32_t first, uint32_t count)
 
 bool ob_reserve_record(ob_universe *u, uint32_t record)
 {
-	const uint32_t solver = u->header.run.solver;
-	const bool two = solver == OB_SOLVER_GHOST || solver == OB_SOLVER_LAGGED;
+	const bool two = ob_solver_is_two_sided(u->header.run.solver);
 	return ob_pages_take(u, OB_AREA_RECORD, record, 1) && (!two || ob_pages_take(u, OB_AREA_IMPULSE_B, record, 1));
 }
 

@@ -10,12 +10,6 @@
 
 static_assert(sizeof(ob_saved_record) == 320, "saved record");
 
-// Do the two bodies of a pair not agree on one impulse? Else its area has no pages.
-static bool is_two_sided(const ob_universe *u)
-{
-	return u->header.run.solver == OB_SOLVER_GHOST || u->header.run.solver == OB_SOLVER_LAGGED;
-}
-
 // ---- saving
 
 static bool is_present(const ob_universe *u, uint32_t id)
@@ -62,7 +56,7 @@ static void save_record(const ob_universe *u, uint32_t record, ob_saved_record *
 	const ob_pair_record *r = &data->record[record];
 	const int newest = r->stamp[1] > r->stamp[0];
 	*out = (ob_saved_record){ .state = r->version[newest], .stamp = r->stamp[newest] };
-	if (is_two_sided(u))
+	if (ob_solver_is_two_sided(u->header.run.solver))
 		memcpy(out->impulse_b, data->impulse_b[record][newest], sizeof out->impulse_b);
 }
 
@@ -308,7 +302,7 @@ static void load_record(ob_universe *u, uint32_t record, const ob_saved_record *
 	to->version[0] = from->state;
 	to->stamp[0] = from->stamp;
 	to->stamp[1] = 0;
-	if (is_two_sided(u))
+	if (ob_solver_is_two_sided(u->header.run.solver))
 		memcpy(data->impulse_b[record][0], from->impulse_b, sizeof from->impulse_b);
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/cpu.h"
 #include "base/clock.h"
+#include "solver/boxes.h"
 #include "solver/narrowphase.h"
 
 #include "../check.h"
