@@ -36,7 +36,7 @@ ARROWS = {
     'step': 'baseline exchange cluster schedule solver contact shape motion elementary table settings base',
     'scene': 'hull mesh settings shape motion elementary base',
     'script': 'scene table settings shape motion base',
-    'host': 'step script scene hull table settings ode base ranks exchange/results.h',
+    'host': 'step script scene hull shape table settings ode base ranks exchange/results.h',
     'checkpoint': 'host scene table settings base',
     'measure': 'shape motion base',
     'reference': 'shape motion base',
@@ -50,7 +50,7 @@ ARROWS = {
     'record': 'measure mesh scene table settings shape motion base',
     'paper': 'host measure render reference plot experiment scene table settings ranks base',
     'serve': 'record measure mesh host scene table settings shape motion base',
-    'cli': 'serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
+    'cli': 'shape serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
 }
 BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
          'paper': ['paper_texts.h'],

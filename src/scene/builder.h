@@ -86,16 +86,13 @@ int ob_scene_call_sun(lua_State *L);
 int ob_scene_call_ground(lua_State *L);
 int ob_scene_call_material(lua_State *L);
 int ob_scene_call_camera(lua_State *L);
-int ob_scene_call_box(lua_State *L);
-int ob_scene_call_hull(lua_State *L);
-int ob_scene_call_sphere(lua_State *L);
-int ob_scene_call_capsule(lua_State *L);
-int ob_scene_call_cylinder(lua_State *L);
-int ob_scene_call_plane(lua_State *L);
 int ob_scene_call_param(lua_State *L);
 int ob_scene_call_random(lua_State *L);
 int ob_scene_call_random_rotation(lua_State *L);
 int ob_scene_call_random_integer(lua_State *L); // math.random
+
+// Adds an object of this shape from the table at the bottom of the stack.
+void ob_scene_add(lua_State *L, ob_shape shape);
 
 // True if the scene requested every -D; else false and e.
 bool ob_builder_check_defines(const ob_builder *b, const char *path, ob_error *e);

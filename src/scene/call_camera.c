@@ -8,6 +8,7 @@
 #include "scene/builder.h"
 #include "scene/sandbox.h"
 #include "scene/text.h"
+#include "shape/shape.h"
 
 #define RADIANS (M_PI / 180)
 #define ASPECT (16. / 9) // picture for which a framing camera is placed
@@ -144,7 +145,7 @@ static double ground_height(const ob_scene *s)
 	double height = -INFINITY;
 	for (uint32_t i = 0; i < s->objects; i++) {
 		const ob_object_def *o = &s->object[i];
-		if (o->passport.shape == OB_SHAPE_PLANE && o->state.pose.q.w > .999 && s->run.gravity.z < 0)
+		if (ob_shape_is(o->passport.shape, OB_UNBOUNDED) && o->state.pose.q.w > .999 && s->run.gravity.z < 0)
 			height = fmax(height, o->state.pose.p.z);
 	}
 	return height;
@@ -157,7 +158,7 @@ static fit fit_objects(const ob_scene *s, const view *v)
 	double ground = ground_height(s);
 	for (uint32_t i = 0; i < s->objects; i++) {
 		const ob_object_def *o = &s->object[i];
-		if (o->passport.shape == OB_SHAPE_PLANE)
+		if (ob_shape_is(o->passport.shape, OB_UNBOUNDED))
 			continue;
 		ob_vec3 p = o->state.pose.p;
 		double r = o->passport.mesh ? s->mesh[o->passport.mesh - 1].radius

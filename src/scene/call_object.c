@@ -1,4 +1,4 @@
-// material, box, hull, sphere, capsule, cylinder, plane, ground: the objects, and their shared code.
+// material, ground, and a call for each shape: the objects, and their shared code.
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +13,7 @@
 #include "scene/object_limits.h"
 #include "scene/sandbox.h"
 #include "scene/text.h"
+#include "shape/shape.h"
 
 // ---- material "wood" { friction = .5, density = 600 }
 
@@ -116,9 +117,10 @@ enum { UNSAID = UINT32_MAX, DYNAMIC = 0, STATIC, KINEMATIC }; // UNSAID: not set
 typedef struct body {
 	const char *name, *material, *script;
 	ob_flat state; // the script's
-	ob_vec3 size, at, velocity, spin, force, normal, surface_velocity;
+	ob_vec3 given[OB_SHAPE_KEYS]; // numbers of the shape's size; a single one is in x
+	ob_vec3 at, velocity, spin, force, normal, surface_velocity;
 	uint32_t kind;
-	double radius, length, height, mass, density, friction, restitution, roughness, metal, born, dies;
+	double height, mass, density, friction, restitution, roughness, metal, born, dies;
 	ob_quat q, rotation, mesh_rotation;
 	const char *mesh;
 	ob_vec3 mesh_at;
@@ -131,8 +133,6 @@ typedef struct body {
 } body;
 
 #define F(member, ...) OB_FIELD(body, member, .name = #member, __VA_ARGS__)
-#define EXTENT(member) \
-	F(member, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST, .high = OB_LENGTH_MOST, .required = true)
 #define WITHIN(member, most) F(member, .kind = OB_FIELD_VECTOR, .low = -(most), .high = most)
 #define SURFACE \
 	F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
@@ -159,40 +159,20 @@ typedef struct body {
 		F(mesh_at, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6), \
 		F(mesh_rotation, .kind = OB_FIELD_ROTATION)
 
-static const ob_field box_fields[] = {
-	F(size, .kind = OB_FIELD_VECTOR, .low = OB_LENGTH_LEAST, .high = OB_LENGTH_MOST, .required = true),
-	PLACE,
-	MOVING,
-	SURFACE,
-	LOOKS,
-};
-static const ob_field hull_fields[] = {
-	F(points, .kind = OB_FIELD_POINTS, .low = -OB_LENGTH_MOST, .high = OB_LENGTH_MOST, .required = true),
-	PLACE,
-	MOVING,
-	SURFACE,
-	LOOKS,
-};
-static const ob_field sphere_fields[] = { EXTENT(radius), PLACE, MOVING, SURFACE, LOOKS };
-static const ob_field long_fields[] = { EXTENT(radius), EXTENT(length), PLACE, MOVING, SURFACE, LOOKS };
-static const ob_field plane_fields[] = { F(normal, .kind = OB_FIELD_DIRECTION), PLACE, SURFACE };
+static const ob_field body_fields[] = { PLACE, MOVING, SURFACE, LOOKS };
+static const ob_field endless_fields[] = { F(normal, .kind = OB_FIELD_DIRECTION), PLACE, SURFACE };
+static const ob_field points_field =
+	F(points, .kind = OB_FIELD_POINTS, .low = -OB_LENGTH_MOST, .high = OB_LENGTH_MOST, .required = true);
 static const ob_field ground_fields[] = {
 	F(height, .kind = OB_FIELD_NUMBER, .low = -OB_PLACE_MOST, .high = OB_PLACE_MOST),
 	F(grid, .kind = OB_FIELD_BOOLEAN),
 	SURFACE,
 };
 #define STATE_BYTES 1024 // the universe's size for an object's state (table/script_data.h)
-#define READ(L, where, fields, to) \
-	unsigned char state_bytes[STATE_BYTES]; \
-	(to)->state = (ob_flat){ state_bytes, 0, sizeof state_bytes }; \
-	ob_fields_read(L, 1, where, fields, sizeof fields / sizeof *fields, to)
 
 static const body nothing = {
-	.size = { NAN, NAN, NAN },
 	.normal = { 0, 0, 1 },
 	.kind = UNSAID,
-	.radius = NAN,
-	.length = NAN,
 	.mass = NAN,
 	.density = NAN,
 	.friction = NAN,
@@ -297,25 +277,6 @@ static void apply_material(lua_State *L, const ob_builder *b, const char *kind, 
 	}
 }
 
-static double volume(ob_shape shape, ob_vec3 size, const ob_hull *hull)
-{
-	double disc = M_PI * size.x * size.x;
-	switch (shape) {
-	case OB_SHAPE_BOX:
-		return 8 * size.x * size.y * size.z;
-	case OB_SHAPE_SPHERE:
-		return 4. / 3 * disc * size.x;
-	case OB_SHAPE_CAPSULE:
-		return disc * (2 * size.y + 4. / 3 * size.x);
-	case OB_SHAPE_CYLINDER:
-		return disc * 2 * size.y;
-	case OB_SHAPE_HULL:
-		return hull->volume;
-	default:
-		return 0;
-	}
-}
-
 static void refuse_together(lua_State *L, const char *kind, const char *a, const char *b)
 {
 	ob_sandbox_fail(L, "%s.%s: expected either %s or %s, got both", kind, b, a, b);
@@ -395,7 +356,9 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	find_kind(L, kind, d);
 	check_together(L, kind, d);
 	apply_material(L, b, kind, d);
-	double mass = d->kind != DYNAMIC ? 0 : isnan(d->mass) ? d->density * volume(shape, size, d->hull) : d->mass;
+	double mass = d->kind != DYNAMIC ? 0
+		      : isnan(d->mass)   ? d->density * ob_shape_volume(shape, size, d->hull)
+					 : d->mass;
 	const ob_mesh_source source = source_of_mesh(d);
 	const uint8_t mesh = d->mesh && !b->options->joining ? ob_builder_mesh(L, b, kind, &source) : 0;
 	ob_object_def *o = ob_builder_add(L, b, kind, d->name);
@@ -449,14 +412,6 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	return o;
 }
 
-int ob_scene_call_box(lua_State *L)
-{
-	body d = nothing;
-	READ(L, "box", box_fields, &d);
-	add(L, "box", OB_SHAPE_BOX, ob_scale(d.size, .5), &d);
-	return 0;
-}
-
 static uint64_t hash_points(const ob_points *p)
 {
 	return ob_hash_on(OB_HASH_BEGIN, p->at, p->count * sizeof *p->at);
@@ -500,39 +455,6 @@ static const ob_hull *find_hull(lua_State *L, ob_builder *b, const ob_points *p)
 	return &s->hull[s->hulls++];
 }
 
-int ob_scene_call_hull(lua_State *L)
-{
-	body d = nothing;
-	READ(L, "hull", hull_fields, &d);
-	d.hull = find_hull(L, ob_sandbox_user(L), &d.points);
-	add(L, "hull", OB_SHAPE_HULL, ob_hull_size(d.hull), &d);
-	return 0;
-}
-
-int ob_scene_call_sphere(lua_State *L)
-{
-	body d = nothing;
-	READ(L, "sphere", sphere_fields, &d);
-	add(L, "sphere", OB_SHAPE_SPHERE, ob_v3(d.radius, 0, 0), &d);
-	return 0;
-}
-
-int ob_scene_call_capsule(lua_State *L)
-{
-	body d = nothing;
-	READ(L, "capsule", long_fields, &d);
-	add(L, "capsule", OB_SHAPE_CAPSULE, ob_v3(d.radius, .5 * d.length, 0), &d);
-	return 0;
-}
-
-int ob_scene_call_cylinder(lua_State *L)
-{
-	body d = nothing;
-	READ(L, "cylinder", long_fields, &d);
-	add(L, "cylinder", OB_SHAPE_CYLINDER, ob_v3(d.radius, .5 * d.length, 0), &d);
-	return 0;
-}
-
 // The shortest rotation from +z to the unit vector n.
 static ob_quat turn_to(ob_vec3 n)
 {
@@ -541,14 +463,55 @@ static ob_quat turn_to(ob_vec3 n)
 	return ob_quat_normalize((ob_quat){ 1 + n.z, -n.y, n.x, 0 });
 }
 
-int ob_scene_call_plane(lua_State *L)
+// Reads the numbers of the shape's size by their keys, and the fields that all such objects have.
+static void read_shape(lua_State *L, ob_shape shape, body *d)
 {
+	enum { MOST = OB_SHAPE_KEYS + sizeof body_fields / sizeof *body_fields + 1 };
+	const ob_shape_kind *kind = ob_shape_kind_of(shape);
+	ob_field field[MOST];
+	size_t n = 0;
+	if (ob_shape_is(shape, OB_UNBOUNDED)) {
+		d->fixed = true;
+		ob_fields_read(L, 1, kind->name, endless_fields, sizeof endless_fields / sizeof *endless_fields, d);
+		return;
+	}
+	for (size_t k = 0; k < OB_SHAPE_KEYS && kind->key[k].name; k++)
+		field[n++] = (ob_field){ .name = kind->key[k].name,
+					 .kind = kind->key[k].component < 0 ? OB_FIELD_VECTOR : OB_FIELD_NUMBER,
+					 .offset = offsetof(body, given) + k * sizeof *d->given,
+					 .low = OB_LENGTH_LEAST,
+					 .high = OB_LENGTH_MOST,
+					 .required = true };
+	if (ob_shape_is(shape, OB_HULLED))
+		field[n++] = points_field;
+	memcpy(field + n, body_fields, sizeof body_fields);
+	ob_fields_read(L, 1, kind->name, field, n + sizeof body_fields / sizeof *body_fields, d);
+}
+
+static ob_vec3 size_of(ob_shape shape, const body *d)
+{
+	const ob_shape_key *key = ob_shape_kind_of(shape)->key;
+	double size[3] = { 0 };
+	if (d->hull)
+		return ob_hull_size(d->hull);
+	if (key->name && key->component == OB_SHAPE_SIDES)
+		return ob_scale(d->given[0], key->share);
+	for (size_t k = 0; k < OB_SHAPE_KEYS && key[k].name; k++)
+		size[key[k].component] = key[k].share * d->given[k].x;
+	return ob_v3(size[0], size[1], size[2]);
+}
+
+void ob_scene_add(lua_State *L, ob_shape shape)
+{
+	unsigned char state_bytes[STATE_BYTES];
 	body d = nothing;
-	d.fixed = true;
-	READ(L, "plane", plane_fields, &d);
-	d.q = turn_to(d.normal);
-	add(L, "plane", OB_SHAPE_PLANE, ob_v3(0, 0, 0), &d);
-	return 0;
+	d.state = (ob_flat){ state_bytes, 0, sizeof state_bytes };
+	read_shape(L, shape, &d);
+	if (ob_shape_is(shape, OB_HULLED))
+		d.hull = find_hull(L, ob_sandbox_user(L), &d.points);
+	if (ob_shape_is(shape, OB_UNBOUNDED))
+		d.q = turn_to(d.normal);
+	add(L, ob_shape_name(shape), shape, size_of(shape, &d), &d);
 }
 
 int ob_scene_call_ground(lua_State *L)
@@ -558,7 +521,7 @@ int ob_scene_call_ground(lua_State *L)
 	body d = nothing;
 	d.name = "ground";
 	d.fixed = true;
-	READ(L, "ground", ground_fields, &d);
+	ob_fields_read(L, 1, "ground", ground_fields, sizeof ground_fields / sizeof *ground_fields, &d);
 	const ob_material *m = d.material ? ob_builder_material(b, d.material) : NULL;
 	if (isnan(d.colour[0]) && (!m || isnan(m->colour[0])))
 		for (int i = 0; i < 4; i++)

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "shape/shape.h"
+
 static bool within(const char *property, const char *unit, double least, double most, double value, ob_error *e)
 {
 	return (value >= least && value <= most) || // false for NaN
@@ -20,40 +22,34 @@ static bool is_length(double value, ob_error *e)
 	return within("size", " m", OB_LENGTH_LEAST, OB_LENGTH_MOST, value, e);
 }
 
+// Checks the numbers of a size as they are given.
 static bool check_size(const ob_passport *p, ob_error *e)
 {
-	const ob_vec3 s = p->size;
-	switch (p->shape) {
-	case OB_SHAPE_SPHERE:
-		return is_length(s.x, e);
-	case OB_SHAPE_BOX:
-		return is_length(2 * s.x, e) && is_length(2 * s.y, e) && is_length(2 * s.z, e);
-	case OB_SHAPE_CAPSULE:
-	case OB_SHAPE_CYLINDER:
-		return is_length(s.x, e) && is_length(2 * s.y, e);
-	case OB_SHAPE_HULL: // its ball, its width; the ball in it is a quarter of that, or more
-		return is_length(s.x, e) && is_length(2 * s.y, e) && within("size", " m", .25 * s.y, s.x, s.z, e);
-	case OB_SHAPE_PLANE:
+	const ob_shape shape = (ob_shape)p->shape;
+	const double size[3] = { p->size.x, p->size.y, p->size.z };
+	if (ob_shape_is(shape, OB_UNBOUNDED))
 		return (p->flags & OB_OBJECT_PRESCRIBED) == OB_OBJECT_STATIC ||
-		       ob_fail(e, "plane: expected to be static");
-	default:
-		return ob_fail(e, "shape: expected from %d to %d, got %u", OB_SHAPE_SPHERE, OB_SHAPE_HULL, p->shape);
-	}
+		       ob_fail(e, "%s: expected to be static", ob_shape_name(shape));
+	if (!ob_shape_is_bounded(shape))
+		return ob_fail(e, "shape: expected from %d to %d, got %u", OB_SHAPE_NONE + 1, OB_SHAPE_KINDS - 1,
+			       shape);
+	if (ob_shape_is(shape, OB_HULLED)) // its ball, its width; the ball in it is a quarter of that, or more
+		return is_length(size[0], e) && is_length(2 * size[1], e) &&
+		       within("size", " m", .25 * size[1], size[0], size[2], e);
+	const ob_shape_key *key = ob_shape_kind_of(shape)->key;
+	for (int k = 0; k < OB_SHAPE_KEYS && key[k].name; k++)
+		for (int c = 0; c < 3; c++)
+			if ((key[k].component == c || key[k].component == OB_SHAPE_SIDES) &&
+			    !is_length(size[c] / key[k].share, e))
+				return false;
+	return true;
 }
 
 // A needle turns about its axis with too little inertia beside the others for all to be told apart.
 static bool check_slenderness(const ob_passport *p, ob_error *e)
 {
-	const ob_vec3 s = p->size;
-	double longest = 1, least = 1; // of a ball
-	if (p->shape == OB_SHAPE_BOX)
-		longest = fmax(s.x, fmax(s.y, s.z)), least = fmin(s.x, fmin(s.y, s.z));
-	else if (p->shape == OB_SHAPE_CYLINDER)
-		longest = fmax(s.x, s.y), least = fmin(s.x, s.y);
-	else if (p->shape == OB_SHAPE_CAPSULE)
-		longest = s.x + s.y, least = s.x;
-	else if (p->shape == OB_SHAPE_HULL)
-		longest = s.x, least = s.y;
+	const ob_shape shape = (ob_shape)p->shape;
+	const double longest = 2 * ob_shape_longest(shape, p->size), least = ob_shape_thickness(shape, p->size);
 	return within("size", " times as long as wide", 1, OB_SLENDERNESS_MOST, longest / least, e);
 }
 
@@ -85,7 +81,7 @@ static bool check_start(const ob_passport *p, const ob_state *s, ob_error *e)
 		return false;
 	if (!(fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-6))
 		return ob_fail(e, "attitude: expected a unit quaternion");
-	if (p->shape == OB_SHAPE_PLANE)
+	if (ob_shape_is(p->shape, OB_UNBOUNDED))
 		return true;
 	const double radius = ob_shape_radius((ob_shape)p->shape, p->size);
 	return within("spin", " m/s at its surface", 0, OB_SPEED_MOST, ob_norm(s->w) * radius, e);

@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
+#include "shape/shape.h"
 
 #define FILE_MAX ((size_t)4 << 20) // bytes of a scene file
 
@@ -32,6 +33,26 @@ static void blank_start(char *text, size_t size)
 			text[i++] = ' ';
 }
 
+// Upvalue 1 is the shape.
+static int call_shape(lua_State *L)
+{
+	ob_scene_add(L, (ob_shape)lua_tointeger(L, lua_upvalueindex(1)));
+	return 0;
+}
+
+// Opens the library, and offers a call for each shape.
+static int open_library(lua_State *L)
+{
+	ob_library_open(L);
+	lua_pushglobaltable(L);
+	for (int shape = OB_SHAPE_NONE + 1; shape < OB_SHAPE_KINDS; shape++) {
+		lua_pushinteger(L, shape);
+		lua_pushcclosure(L, call_shape, 1);
+		lua_setfield(L, -2, ob_shape_name((ob_shape)shape));
+	}
+	return 0;
+}
+
 static bool offer_calls(ob_sandbox *s, ob_error *e)
 {
 	static const struct {
@@ -45,12 +66,6 @@ static bool offer_calls(ob_sandbox *s, ob_error *e)
 		{ NULL, "ground", ob_scene_call_ground },
 		{ NULL, "material", ob_scene_call_material },
 		{ NULL, "camera", ob_scene_call_camera },
-		{ NULL, "box", ob_scene_call_box },
-		{ NULL, "hull", ob_scene_call_hull },
-		{ NULL, "sphere", ob_scene_call_sphere },
-		{ NULL, "capsule", ob_scene_call_capsule },
-		{ NULL, "cylinder", ob_scene_call_cylinder },
-		{ NULL, "plane", ob_scene_call_plane },
 		{ NULL, "script", ob_scene_call_script },
 		{ NULL, "param", ob_scene_call_param },
 		{ NULL, "random", ob_scene_call_random },
@@ -90,7 +105,7 @@ static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *
 static bool run(ob_builder *b, const char *path, char *text, size_t size, ob_error *e)
 {
 	blank_start(text, size);
-	ob_sandbox *sandbox = ob_sandbox_create(path, ob_library_open, b, e);
+	ob_sandbox *sandbox = ob_sandbox_create(path, open_library, b, e);
 	bool good = sandbox && offer_calls(sandbox, e) && ob_sandbox_run(sandbox, text, size, e);
 	ob_sandbox_destroy(sandbox);
 	return good;

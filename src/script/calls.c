@@ -9,6 +9,7 @@
 #include "scene/object_limits.h"
 #include "scene/text.h"
 #include "script/runner.h"
+#include "shape/shape.h"
 
 void ob_script_warn(lua_State *L, const char *format, ...)
 {
@@ -386,11 +387,12 @@ static unsigned cost_of_points(lua_State *L)
 	return EACH * points;
 }
 
-// Creates an object. Upvalue 1 is the scene's function, which puts the object into the runner's scene; 2 its name.
+// Creates an object, at first in the runner's scene. Upvalue 1 is its shape.
 static int call_create(lua_State *L)
 {
 	ob_script_runner *r = runner_of(L);
-	const char *kind = lua_tostring(L, lua_upvalueindex(2));
+	const ob_shape shape = (ob_shape)lua_tointeger(L, lua_upvalueindex(1));
+	const char *kind = ob_shape_name(shape);
 	lua_settop(L, 1);
 	ob_script_thaw(L, 1);
 	const bool named = lua_istable(L, 1) && lua_getfield(L, 1, "name") != LUA_TNIL;
@@ -399,7 +401,7 @@ static int call_create(lua_State *L)
 	lua_setfield(L, LUA_REGISTRYINDEX, "scene.names"); // only the host assigns names
 	r->scene.objects = r->scene.states_bytes = r->scene.hulls = 0;
 	ob_sandbox_spend(L, 500 + cost_of_points(L));
-	lua_tocfunction(L, lua_upvalueindex(1))(L);
+	ob_scene_add(L, shape);
 	ob_object_def *def = &r->scene.object[0];
 	if (def->path || def->force) {
 		free(def->path), free(def->force);
@@ -669,22 +671,18 @@ int ob_script_calls_open(lua_State *L)
 		{ "random", ob_scene_call_random },
 		{ "random_rotation", ob_scene_call_random_rotation },
 	};
-	static const luaL_Reg creations[] = {
-		{ "box", ob_scene_call_box },           { "hull", ob_scene_call_hull },
-		{ "sphere", ob_scene_call_sphere },     { "capsule", ob_scene_call_capsule },
-		{ "cylinder", ob_scene_call_cylinder },
-	};
 	open_objects(L);
 	lua_pushglobaltable(L);
 	for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
 		lua_pushcfunction(L, calls[i].func);
 		lua_setfield(L, -2, calls[i].name);
 	}
-	for (size_t i = 0; i < sizeof creations / sizeof *creations; i++) {
-		lua_pushcfunction(L, creations[i].func);
-		lua_pushstring(L, creations[i].name);
-		lua_pushcclosure(L, call_create, 2);
-		lua_setfield(L, -2, creations[i].name);
+	for (int shape = OB_SHAPE_NONE + 1; shape < OB_SHAPE_KINDS; shape++) {
+		if (!ob_shape_is_bounded((ob_shape)shape))
+			continue;
+		lua_pushinteger(L, shape);
+		lua_pushcclosure(L, call_create, 1);
+		lua_setfield(L, -2, ob_shape_name((ob_shape)shape));
 	}
 	lua_getfield(L, -1, "pairs");
 	lua_pushcclosure(L, call_pairs, 1);

@@ -37,6 +37,12 @@ static inline bool ob_shape_is(ob_shape shape, unsigned any)
 	return (0u OB_SHAPES(OB_SHAPE_BIT)) >> ((unsigned)shape & 31) & 1;
 }
 
+// True for a known shape with a size: one that can move, and that others can create.
+static inline bool ob_shape_is_bounded(ob_shape shape)
+{
+	return shape != OB_SHAPE_NONE && (unsigned)shape < OB_SHAPE_KINDS && !ob_shape_is(shape, OB_UNBOUNDED);
+}
+
 // Sum of a box with these half extents, a disc across z, and a ball: all points x + y + z with x in the box, y in the
 // disc, z in the ball.
 typedef struct ob_outline {
