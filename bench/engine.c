@@ -8,6 +8,7 @@
 #include "world/world.h"
 #include "lab/look.h"
 #include "ode/ode_body.h"
+#include "shape/shape.h"
 
 void bench_print(const char *quantity, const char *unit, double value)
 {
@@ -34,7 +35,7 @@ void bench_build(const bench_order *o, ob_world *w)
 	for (uint32_t id = 0; id < w->objects; id++) {
 		ob_passport *p = &w->passport[id];
 		if (!(p->flags & OB_OBJECT_STATIC))
-			p->inertia = ob_ode_inertia(p->shape, p->size, p->mass);
+			p->inertia = ob_shape_inertia(p->shape, p->size, NULL, p->mass);
 	}
 }
 

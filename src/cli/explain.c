@@ -5,6 +5,7 @@
 #include <stdarg.h>
 
 #include "cli/quantity.h"
+#include "shape/shape.h"
 
 // Prints one line: an item and its description.
 __attribute__((format(printf, 3, 4))) static void line(FILE *f, const char *thing, const char *format, ...)
@@ -29,7 +30,7 @@ static traits traits_of(const ob_scene *s)
 		const ob_passport *p = &s->object[i].passport;
 		bool moves = !(p->flags & OB_OBJECT_PRESCRIBED);
 		t.bodies += moves;
-		t.round += moves && p->shape == OB_SHAPE_SPHERE;
+		t.round += moves && ob_shape_is(p->shape, OB_ISOTROPIC);
 		t.forced += moves && ob_norm2(p->force) > 0;
 		t.varying += s->object[i].force != NULL;
 		t.rough += p->friction > 0;

@@ -6,6 +6,7 @@
 #include "base/spelling.h"
 #include "cli/command.h"
 #include "host/ask.h"
+#include "shape/shape.h"
 #include "table/table.h"
 
 typedef struct sending {
@@ -50,7 +51,7 @@ static bool create(sending *s, ob_error *e)
 	for (uint32_t i = 0; fine && i < scene->objects; i++) {
 		const ob_object_def *def = &scene->object[i];
 		s->request = (ob_request){ .kind = OB_REQUEST_ADD, .def = *def };
-		if (def->passport.shape == OB_SHAPE_HULL)
+		if (ob_shape_is(def->passport.shape, OB_HULLED))
 			s->request.corners = scene->hull_corners[def->passport.hull];
 		if (def->script || def->born > 0 || def->dies < INFINITY)
 			fine = ob_fail(e, "create: expected an object without script, born and dies");

@@ -13,6 +13,7 @@
 
 #include "base/utf8.h"
 #include "host/host_state.h"
+#include "shape/shape.h"
 #include "table/home.h"
 
 enum { ANSWER_PATIENCE_MS = 10000, WAITING = 16 };
@@ -86,16 +87,13 @@ static bool is_colour(const float *c)
 
 static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
 {
-	const uint32_t shape = r->def.passport.shape;
-	const bool known = shape == OB_SHAPE_BOX || shape == OB_SHAPE_SPHERE || shape == OB_SHAPE_CAPSULE ||
-			   shape == OB_SHAPE_CYLINDER || shape == OB_SHAPE_HULL;
+	const ob_shape shape = (ob_shape)r->def.passport.shape;
 	ob_hull hull;
-	if (!known || r->def.script || r->def.state_bytes)
-		return ob_fail(e, "only boxes, spheres, capsules, cylinders and hulls without a script can be created "
-				  "by requests");
+	if (!ob_shape_is_bounded(shape) || r->def.script || r->def.state_bytes)
+		return ob_fail(e, "only objects with a size and without a script can be created by requests");
 	if (!ob_population_find_look(h->population, &r->def, e))
 		return false;
-	if (shape != OB_SHAPE_HULL)
+	if (!ob_shape_is(shape, OB_HULLED))
 		return true;
 	if (ob_universe_hulls(h->u) == 0)
 		return ob_fail(e, "the one ODE world has no hulls");

@@ -23,8 +23,7 @@ void ob_hulls_finish(ob_hulls *h)
 static uint32_t find(const ob_hulls *h, const ob_hull *hull)
 {
 	for (uint32_t i = 0; i < h->count; i++)
-		if (memcmp(ob_hull_of(h->u, &(ob_passport){ .shape = OB_SHAPE_HULL, .hull = (uint16_t)i }), hull,
-			   sizeof *hull) == 0)
+		if (memcmp(ob_hull_at(h->u, i), hull, sizeof *hull) == 0)
 			return i;
 	return UINT32_MAX;
 }

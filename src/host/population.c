@@ -9,9 +9,9 @@
 #include "exchange/results.h"
 #include "host/journal.h"
 #include "host/rcu_tsan.h"
-#include "ode/ode_body.h"
 #include "scene/object_limits.h"
 #include "scene/random.h"
+#include "shape/shape.h"
 #include "step/sim.h"
 
 // An entry of the timetable.
@@ -144,7 +144,7 @@ static bool check_parts(const ob_population *p, const ob_passport *pass, ob_erro
 	const ob_hull *h = ob_hull_of(p->u, pass);
 	if (pass->mesh > p->scene->meshes)
 		return ob_fail(e, "object \"%s\": its mesh is not one of its scene", pass->name);
-	if (pass->shape != OB_SHAPE_HULL ||
+	if (!ob_shape_is(pass->shape, OB_HULLED) ||
 	    (h && pass->size.x == h->radius && pass->size.y == .5 * h->thickness && pass->size.z == h->inner))
 		return true;
 	return ob_fail(e, "object \"%s\": it has no hull of this universe", pass->name);
@@ -155,9 +155,7 @@ static ob_vec3 inertia_of(const ob_population *p, const ob_passport *pass)
 {
 	if (pass->flags & OB_OBJECT_PRESCRIBED)
 		return ob_v3(0, 0, 0);
-	if (pass->shape == OB_SHAPE_HULL)
-		return ob_scale(ob_hull_of(p->u, pass)->inertia, pass->mass);
-	return ob_ode_inertia((ob_shape)pass->shape, pass->size, pass->mass);
+	return ob_shape_inertia((ob_shape)pass->shape, pass->size, ob_hull_of(p->u, pass), pass->mass);
 }
 
 // ---- changes
@@ -293,7 +291,7 @@ static bool take_hull(ob_population *p, ob_object_def *def, const ob_script_post
 {
 	const size_t before = sizeof *def + def->state_bytes, bytes = post->used - before;
 	ob_hull_corners corners = { .count = (uint32_t)(bytes / sizeof *corners.at) };
-	if (def->passport.shape != OB_SHAPE_HULL)
+	if (!ob_shape_is(def->passport.shape, OB_HULLED))
 		return true;
 	if (bytes > sizeof corners.at)
 		return ob_fail(e, "hull: its corners make no sense");
@@ -382,7 +380,7 @@ static void add_asked_for(ob_population *p, const ob_request *r)
 	ob_object_def def = r->def;
 	ob_passport *pass = &def.passport;
 	uint32_t id;
-	if (pass->shape == OB_SHAPE_HULL && r->corners.count && !ob_hulls_give(&p->hulls, &r->corners, pass, &e))
+	if (ob_shape_is(pass->shape, OB_HULLED) && r->corners.count && !ob_hulls_give(&p->hulls, &r->corners, pass, &e))
 		ob_log_warn("object \"%s\" was not added: %s", pass->name, e.text);
 	else if ((id = add_on_request(p, &def, NULL)) != UINT32_MAX)
 		p->slots[id].origin = r->origin;

@@ -1,5 +1,7 @@
 #include "lab/look.h"
 
+#include "shape/shape.h"
+
 ob_state ob_look_at(const ob_case_run_state *t, uint32_t id)
 {
 	const ob_motion *m = &t->now.motion[id];
@@ -34,7 +36,7 @@ bool ob_look_fell_through(const ob_case_run_state *t)
 {
 	double ground = INFINITY, lowest = INFINITY;
 	for (uint32_t id = 0; id < t->world->objects; id++) {
-		if (t->world->passport[id].shape == OB_SHAPE_PLANE)
+		if (ob_shape_is(t->world->passport[id].shape, OB_UNBOUNDED))
 			ground = t->world->state[id].pose.p.z;
 		else if (ob_look_moves(t, id))
 			lowest = fmin(lowest, t->now.motion[id].p.z);

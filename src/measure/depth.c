@@ -1,11 +1,12 @@
 #include "measure/depth.h"
 
 #include "measure/hull_depth.h"
+#include "shape/shape.h"
 
 // Half length (m) of the segment inside a capsule; 0 for a sphere.
 static double core_length(const ob_solid *s)
 {
-	return s->shape == OB_SHAPE_CAPSULE ? s->size.y : 0;
+	return ob_shape_is(s->shape, OB_AXIAL) ? s->size.y : 0;
 }
 
 static double clamp(double x, double low, double high)
@@ -24,22 +25,7 @@ static double hull_extent(const ob_hull *h, ob_vec3 n)
 double ob_solid_extent(const ob_solid *s, ob_vec3 n)
 {
 	ob_vec3 b = ob_rotate_back(&s->r, n);
-	switch (s->shape) {
-	case OB_SHAPE_SPHERE:
-		return s->size.x;
-	case OB_SHAPE_BOX:
-		return fabs(b.x) * s->size.x + fabs(b.y) * s->size.y + fabs(b.z) * s->size.z;
-	case OB_SHAPE_CAPSULE:
-		return s->size.x + fabs(b.z) * s->size.y;
-	case OB_SHAPE_CYLINDER:
-		return s->size.x * sqrt(b.x * b.x + b.y * b.y) + fabs(b.z) * s->size.y;
-	case OB_SHAPE_HULL:
-		return hull_extent(s->hull, b);
-	case OB_SHAPE_PLANE:
-	case OB_SHAPE_NONE:
-		break;
-	}
-	return 0;
+	return s->hull ? hull_extent(s->hull, b) : ob_shape_extent(s->shape, s->size, b);
 }
 
 static double plane_and_solid(const ob_solid *plane, const ob_solid *s)
@@ -219,7 +205,7 @@ struct search {
 static double overlap(const struct search *s, ob_vec3 n)
 {
 	const double along = ob_dot(n, s->d);
-	if (s->b->shape != OB_SHAPE_HULL)
+	if (!s->b->hull)
 		return ob_solid_extent(s->a, n) + ob_solid_extent(s->b, n) - fabs(along);
 	const ob_vec3 back = ob_scale(n, -1);
 	return fmin(ob_solid_extent(s->a, n) + ob_solid_extent(s->b, back) - along,
@@ -242,10 +228,10 @@ static void try_direction(struct search *s, ob_vec3 n)
 
 static void add_axes(struct search *s, const ob_solid *solid)
 {
-	if (solid->shape == OB_SHAPE_BOX)
+	if (ob_shape_is(solid->shape, OB_SIDED))
 		for (int i = 0; i < 3; i++)
 			s->axis[s->axes++] = ob_column(&solid->r, i);
-	if (solid->shape == OB_SHAPE_CAPSULE || solid->shape == OB_SHAPE_CYLINDER)
+	if (ob_shape_is(solid->shape, OB_AXIAL))
 		s->axis[s->axes++] = ob_column(&solid->r, 2);
 }
 
@@ -354,7 +340,7 @@ double ob_depth_search(const ob_solid *a, const ob_solid *b)
 {
 	struct search s = { .a = a, .b = b, .d = ob_sub(b->p, a->p), .least = INFINITY };
 	add_axes(&s, a);
-	if (b->shape == OB_SHAPE_HULL)
+	if (b->hull)
 		add_hull(&s, b);
 	else
 		add_axes(&s, b);
@@ -380,26 +366,44 @@ double ob_depth_search(const ob_solid *a, const ob_solid *b)
 
 // ---- any two solids
 
+// True for a point or a segment along z that is grown by a radius.
+static bool is_rounded(ob_shape s)
+{
+	return ob_shape_is(s, OB_ROUND) && !ob_shape_is(s, OB_RIMMED);
+}
+
+bool ob_depth_needs_search(ob_shape a, ob_shape b)
+{
+	if (ob_shape_is(a, OB_UNBOUNDED) || ob_shape_is(b, OB_UNBOUNDED))
+		return false;
+	if ((is_rounded(a) || ob_shape_is(a, OB_SIDED)) && (is_rounded(b) || ob_shape_is(b, OB_SIDED)))
+		return false;
+	return !(ob_shape_is(a, OB_ISOTROPIC) && ob_shape_is(b, OB_RIMMED)) &&
+	       !(ob_shape_is(b, OB_ISOTROPIC) && ob_shape_is(a, OB_RIMMED));
+}
+
 double ob_depth(const ob_solid *a, const ob_solid *b)
 {
 	if (a->shape > b->shape)
-		return ob_depth(b,
-				a); // from here on: order sphere, box, plane, capsule, cylinder, hull
-	if (a->shape == OB_SHAPE_NONE || (a->shape == OB_SHAPE_PLANE && b->shape == OB_SHAPE_PLANE))
+		return ob_depth(b, a);
+	const bool round_a = is_rounded(a->shape), round_b = is_rounded(b->shape);
+	if (a->shape == OB_SHAPE_NONE || (ob_shape_is(a->shape, OB_UNBOUNDED) && ob_shape_is(b->shape, OB_UNBOUNDED)))
 		return -INFINITY;
-	if (a->shape == OB_SHAPE_PLANE)
+	if (ob_shape_is(a->shape, OB_UNBOUNDED))
 		return plane_and_solid(a, b);
-	if (b->shape == OB_SHAPE_PLANE)
+	if (ob_shape_is(b->shape, OB_UNBOUNDED))
 		return plane_and_solid(b, a);
-	if (b->shape == OB_SHAPE_HULL)
-		return a->shape == OB_SHAPE_BOX || a->shape == OB_SHAPE_HULL ? ob_depth_of_polyhedra(a, b)
-		       : a->shape == OB_SHAPE_CYLINDER                       ? ob_depth_search(a, b)
-									     : ob_depth_of_round_and_hull(a, b);
-	if (b->shape == OB_SHAPE_CYLINDER)
-		return a->shape == OB_SHAPE_SPHERE ? sphere_and_cylinder(a, b) : ob_depth_search(a, b);
-	if (a->shape == OB_SHAPE_BOX)
-		return b->shape == OB_SHAPE_BOX ? depth_of_boxes(a, b) : depth_of_capsule_and_box(b, a);
-	if (b->shape == OB_SHAPE_BOX)
-		return depth_of_capsule_and_box(a, b);
-	return capsules(a, b);
+	if (round_a && round_b)
+		return capsules(a, b);
+	if (b->hull && ob_shape_is(a->shape, OB_CORNERED))
+		return ob_depth_of_polyhedra(a, b);
+	if (b->hull && round_a)
+		return ob_depth_of_round_and_hull(a, b);
+	if (ob_depth_needs_search(a->shape, b->shape))
+		return ob_depth_search(a, b);
+	if (ob_shape_is(b->shape, OB_RIMMED))
+		return sphere_and_cylinder(a, b);
+	if (ob_shape_is(a->shape, OB_SIDED))
+		return round_b ? depth_of_capsule_and_box(b, a) : depth_of_boxes(a, b);
+	return depth_of_capsule_and_box(a, b);
 }

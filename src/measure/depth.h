@@ -10,7 +10,7 @@ typedef struct ob_solid {
 	ob_vec3 size; // m, see ob_shape
 	ob_vec3 p; // m, centre
 	ob_mat3 r; // body to world
-	const ob_hull *hull; // OB_SHAPE_HULL
+	const ob_hull *hull; // NULL unless the shape needs one
 } ob_solid;
 
 // Depth (m); <= 0: no overlap, and its negative is a lower bound of the distance. Closed forms, exact to rounding, for
@@ -18,6 +18,9 @@ typedef struct ob_solid {
 // planes. Boxes use separating axes (Gottschalk, Lin and Manocha 1996). Hulls with all but cylinders have closed forms,
 // too (hull_depth.h). Cylinders with boxes, capsules, hulls and cylinders: ob_depth_search.
 double ob_depth(const ob_solid *a, const ob_solid *b);
+
+// True if the depth of two such solids has no closed form, or one that costs as much as a search.
+bool ob_depth_needs_search(ob_shape a, ob_shape b);
 
 // Same for any two solids but planes, by a search over directions for the least overlap of their projections. Every
 // direction gives an upper bound, so the result is never too small; it is too large by less than 1e-7 of their size.

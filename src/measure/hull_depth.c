@@ -1,5 +1,7 @@
 #include "measure/hull_depth.h"
 
+#include "shape/shape.h"
+
 static const double golden = .6180339887498949;
 
 // ---- polyhedra
@@ -59,7 +61,7 @@ static void hull_polyhedron(polyhedron *x, const ob_solid *s)
 static void polyhedron_init(polyhedron *x, const ob_solid *s, ob_vec3 origin)
 {
 	x->centre = ob_sub(s->p, origin);
-	if (s->shape == OB_SHAPE_BOX)
+	if (!s->hull)
 		box_polyhedron(x, s);
 	else
 		hull_polyhedron(x, s);
@@ -209,7 +211,7 @@ static double segment_depth(const ob_hull *h, ob_vec3 c, ob_vec3 u, double half)
 
 double ob_depth_of_round_and_hull(const ob_solid *round, const ob_solid *hull)
 {
-	const double half = round->shape == OB_SHAPE_CAPSULE ? round->size.y : 0;
+	const double half = ob_shape_is(round->shape, OB_AXIAL) ? round->size.y : 0;
 	const ob_vec3 c = ob_rotate_back(&hull->r, ob_sub(round->p, hull->p)),
 		      u = ob_rotate_back(&hull->r, ob_column(&round->r, 2));
 	const double distance = least_distance(hull->hull, c, u, half);

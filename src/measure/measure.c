@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "measure/depth.h"
+#include "shape/shape.h"
 
 // ---- energy and momentum
 
@@ -139,18 +140,9 @@ static bool is_over(struct effort *x)
 	return x->stopped || x->work > most_work;
 }
 
-static bool needs_search(ob_shape a, ob_shape b)
-{
-	if (a == OB_SHAPE_PLANE || b == OB_SHAPE_PLANE)
-		return false;
-	if (a == OB_SHAPE_HULL || b == OB_SHAPE_HULL)
-		return true;
-	return (a == OB_SHAPE_CYLINDER && b != OB_SHAPE_SPHERE) || (b == OB_SHAPE_CYLINDER && a != OB_SHAPE_SPHERE);
-}
-
 static uint64_t work_of(const ob_solid *a, const ob_solid *b)
 {
-	return needs_search(a->shape, b->shape) ? WORK_OF_SEARCH : WORK_OF_DEPTH;
+	return ob_depth_needs_search(a->shape, b->shape) ? WORK_OF_SEARCH : WORK_OF_DEPTH;
 }
 
 static void add_depth(struct search *s, struct item *a, struct item *b)
@@ -189,7 +181,7 @@ static void collect_solids(const ob_snapshot *s, struct item *item, struct box *
 		if (!(p->flags & OB_OBJECT_PRESENT) || p->shape == OB_SHAPE_NONE)
 			continue;
 		ob_pose pose = ob_snapshot_state(s, id).pose;
-		bool plane = p->shape == OB_SHAPE_PLANE;
+		bool plane = ob_shape_is(p->shape, OB_UNBOUNDED);
 		struct item *i = plane ? &item[s->count - ++*planes] : &item[(*solids)++];
 		i->id = id;
 		i->overlaps = 0;

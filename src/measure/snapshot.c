@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "motion/flight.h"
+#include "shape/shape.h"
 
 static bool grow_objects(ob_snapshot *s, uint32_t count)
 {
@@ -68,7 +69,7 @@ static bool expect_hulls(ob_snapshot *s, uint64_t created, uint32_t hulls)
 
 static bool take_hull(ob_snapshot *s, const ob_universe *u, const ob_passport *p, ob_error *e)
 {
-	if (p->shape != OB_SHAPE_HULL || (p->hull < s->hulls && s->hull[p->hull]))
+	if (!ob_shape_is(p->shape, OB_HULLED) || (p->hull < s->hulls && s->hull[p->hull]))
 		return true;
 	// it may have come since the number of hulls was read
 	ob_hull *h = expect_hulls(s, s->created, p->hull + 1u) ? malloc(sizeof *h) : NULL;
@@ -171,7 +172,7 @@ void ob_snapshot_finish(ob_snapshot *s)
 const ob_hull *ob_snapshot_hull(const ob_snapshot *s, uint32_t id)
 {
 	const ob_passport *p = &s->passport[id];
-	return p->shape == OB_SHAPE_HULL && p->hull < s->hulls ? s->hull[p->hull] : NULL;
+	return ob_shape_is(p->shape, OB_HULLED) && p->hull < s->hulls ? s->hull[p->hull] : NULL;
 }
 
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id)

@@ -125,14 +125,6 @@ struct ob_ode_body {
 	dGeomID geom; // follows the body; NULL for objects without a shape
 };
 
-ob_vec3 ob_ode_inertia(ob_shape shape, ob_vec3 size, double mass)
-{
-	if (!(mass > 0))
-		return ob_v3(0, 0, 0);
-	dMass m = ob_ode_mass(shape, size, mass);
-	return ob_v3(m.I[0], m.I[5], m.I[10]);
-}
-
 // Creates shared working memory. Without it each world would use the process's own, with an unlocked job list: worlds
 // of different threads would corrupt it. Each world would also reserve 128 kB for its first step, where a free body
 // needs 1.

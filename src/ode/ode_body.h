@@ -11,9 +11,6 @@ void ob_ode_init(void);
 void ob_ode_thread_init(void);
 void ob_ode_thread_finish(void);
 
-// Mass properties of a homogeneous shape of given mass, by ODE. Returns principal moments (kg m^2).
-ob_vec3 ob_ode_inertia(ob_shape shape, ob_vec3 size, double mass);
-
 // Shared resources of stepping: working memory and a list of jobs. One for each thread that steps bodies; all of its
 // worlds share it, and it is destroyed after them. NULL: out of memory.
 typedef struct ob_ode_stepper ob_ode_stepper;

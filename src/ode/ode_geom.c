@@ -13,11 +13,9 @@ dGeomID ob_ode_geom_create(dSpaceID space, ob_shape shape, ob_vec3 size)
 		return dCreateCapsule(space, size.x, 2 * size.y);
 	case OB_SHAPE_CYLINDER:
 		return dCreateCylinder(space, size.x, 2 * size.y);
-	case OB_SHAPE_NONE:
-	case OB_SHAPE_HULL: // no collisions: worlds with hulls are rejected, and a separate body needs no geometry
-		break;
+	default: // no collisions: worlds with hulls are rejected, and a separate body needs no geometry
+		return NULL;
 	}
-	return NULL;
 }
 
 void ob_ode_geom_place(dGeomID g, ob_pose pose)
@@ -30,29 +28,4 @@ void ob_ode_geom_place(dGeomID g, ob_pose pose)
 	}
 	dGeomSetPosition(g, pose.p.x, pose.p.y, pose.p.z);
 	dGeomSetQuaternion(g, (dQuaternion){ pose.q.w, pose.q.x, pose.q.y, pose.q.z });
-}
-
-dMass ob_ode_mass(ob_shape shape, ob_vec3 size, double mass)
-{
-	dMass m;
-	dMassSetZero(&m);
-	switch (shape) {
-	case OB_SHAPE_SPHERE:
-		dMassSetSphereTotal(&m, mass, size.x);
-		break;
-	case OB_SHAPE_BOX:
-		dMassSetBoxTotal(&m, mass, 2 * size.x, 2 * size.y, 2 * size.z);
-		break;
-	case OB_SHAPE_CAPSULE:
-		dMassSetCapsuleTotal(&m, mass, 3, size.x, 2 * size.y);
-		break;
-	case OB_SHAPE_CYLINDER:
-		dMassSetCylinderTotal(&m, mass, 3, size.x, 2 * size.y);
-		break;
-	case OB_SHAPE_PLANE:
-	case OB_SHAPE_NONE:
-	case OB_SHAPE_HULL: // it knows its own
-		break;
-	}
-	return m;
 }

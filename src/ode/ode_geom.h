@@ -6,11 +6,9 @@
 
 #include <ob/motion.h>
 
-// Creates a geometry. space may be 0; returns NULL for OB_SHAPE_NONE and for a hull.
+// Creates a geometry. space may be 0; returns NULL for a shape that is none of ODE's.
 dGeomID ob_ode_geom_create(dSpaceID space, ob_shape shape, ob_vec3 size);
 // Places a geometry without a body (static objects, single tests).
 void ob_ode_geom_place(dGeomID g, ob_pose pose);
-// Mass properties; zero mass for a plane or no shape.
-dMass ob_ode_mass(ob_shape shape, ob_vec3 size, double mass);
 
 #endif

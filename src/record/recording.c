@@ -16,6 +16,7 @@
 #include "base/utf8.h"
 #include "record/layout.h"
 #include "scene/object_limits.h"
+#include "shape/shape.h"
 #include "table/layout.h"
 
 enum { OBJECTS_MAX = 1 << 20, CAMERAS_MAX = 1000, HULLS_MAX = UINT16_MAX + 1, EVERY_MAX = 1 << 30 };
@@ -799,7 +800,7 @@ static bool passport_makes_sense(const ob_passport *p)
 
 static bool has_its_hull(const ob_snapshot *s, const ob_passport *p)
 {
-	return p->shape != OB_SHAPE_HULL || (p->hull < s->hulls && s->hull[p->hull]);
+	return !ob_shape_is(p->shape, OB_HULLED) || (p->hull < s->hulls && s->hull[p->hull]);
 }
 
 static bool is_present(const ob_snapshot *s, uint32_t id)

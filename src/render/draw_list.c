@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "shape/shape.h"
+
 // ---- the view of a camera
 
 // Objects farther away are not drawn: the fog has hidden them (see fog_ranges in frame.c).
@@ -109,11 +111,12 @@ bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapsh
 	b->planes = 0;
 	for (uint32_t i = 0; i < now->count; i++) {
 		const ob_passport *p = &now->passport[i];
-		if (!(p->flags & OB_OBJECT_PRESENT) || p->shape == OB_SHAPE_NONE || p->shape > OB_SHAPE_HULL ||
-		    (p->shape == OB_SHAPE_HULL && !ob_snapshot_hull(now, i)))
+		const bool unbounded = ob_shape_is(p->shape, OB_UNBOUNDED);
+		if (!(p->flags & OB_OBJECT_PRESENT) || !(unbounded || ob_shape_is_bounded(p->shape)) ||
+		    (ob_shape_is(p->shape, OB_HULLED) && !ob_snapshot_hull(now, i)))
 			continue;
 		ob_pose pose = pose_at(prev, now, i, t);
-		if (p->shape != OB_SHAPE_PLANE) {
+		if (!unbounded) {
 			const ob_mesh *look = look_of(b, p);
 			const double radius = look ? look->radius : ob_shape_radius(p->shape, p->size);
 			b->body[b->count++] = (ob_draw_item){ pose, radius, 0, i };
@@ -245,14 +248,14 @@ static uint32_t mesh_of(const ob_draw_list *b, const ob_passport *p, const ob_dr
 {
 	if (look_of(b, p))
 		return OB_MESHES + b->now->hulls + p->mesh - 1;
-	if (p->shape == OB_SHAPE_BOX)
+	if (ob_shape_is(p->shape, OB_SIDED))
 		return OB_MESH_BOX;
-	if (p->shape == OB_SHAPE_HULL)
+	if (ob_shape_is(p->shape, OB_HULLED))
 		return OB_MESHES + p->hull;
 	double distance = ob_norm(ob_sub(body->pose.p, v->eye));
 	double px = .5 * height * p->size.x / (v->tan_y * fmax(distance, v->near_plane));
 	uint32_t level = px < medium_px ? 0 : px < fine_px ? 1 : 2;
-	return (p->shape == OB_SHAPE_CYLINDER ? OB_MESH_CYLINDER : OB_MESH_ROUND) + level;
+	return (ob_shape_is(p->shape, OB_RIMMED) ? OB_MESH_CYLINDER : OB_MESH_ROUND) + level;
 }
 
 static double bevel_width(double smallest)
@@ -271,30 +274,23 @@ static void set_vec4(float to[4], double x, double y, double z, double w)
 static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec3 eye, bool look)
 {
 	ob_instance i;
-	ob_vec3 at = ob_sub(pose->p, eye), size = p->size;
-	double r = size.x, rounding = 0;
-	ob_vec3 core = { 0, 0, 0 };
-	if (look) { // meshes and hulls are in metres
-		r = 0;
-		core = ob_v3(1, 1, 1);
+	ob_vec3 at = ob_sub(pose->p, eye);
+	double rounding = 0;
+	ob_outline o;
+	if (!ob_shape_outline(p->shape, p->size, &o) || look)
+		o = (ob_outline){ .half = { 1, 1, 1 } }; // meshes and hulls are in metres
+	if (look) {
 		rounding -= p->flags & OB_OBJECT_MESH_COLOUR ? 1 : 0;
 		rounding -= p->flags & OB_OBJECT_MESH_SURFACE ? 2 : 0;
-	} else if (p->shape == OB_SHAPE_BOX) {
-		r = 0;
-		core = size;
-		rounding = bevel_width(fmin(size.x, fmin(size.y, size.z)));
-	} else if (p->shape == OB_SHAPE_CYLINDER) {
-		r = bevel_width(fmin(size.x, size.y));
-		core = ob_v3(size.x - r, size.x - r, size.y - r);
-	} else if (p->shape == OB_SHAPE_CAPSULE) {
-		core.z = size.y;
-	} else if (p->shape == OB_SHAPE_HULL) {
-		r = 0;
-		core = ob_v3(1, 1, 1);
+	} else if (ob_shape_is(p->shape, OB_SIDED)) {
+		rounding = bevel_width(fmin(o.half.x, fmin(o.half.y, o.half.z)));
+	} else if (o.rim > 0) {
+		o.ball = bevel_width(fmin(o.rim, o.half.z));
+		o.half = ob_v3(o.rim - o.ball, o.rim - o.ball, o.half.z - o.ball);
 	}
-	set_vec4(i.position_radius, at.x, at.y, at.z, r);
+	set_vec4(i.position_radius, at.x, at.y, at.z, o.ball);
 	set_vec4(i.attitude, pose->q.x, pose->q.y, pose->q.z, pose->q.w);
-	set_vec4(i.core, core.x, core.y, core.z, rounding);
+	set_vec4(i.core, o.half.x, o.half.y, o.half.z, rounding);
 	for (int k = 0; k < 3; k++)
 		i.colour[k] = p->colour[k];
 	i.colour[3] = ob_surface_pack(p->roughness, p->metal);

@@ -8,6 +8,7 @@
 
 #include "base/utf8.h"
 #include "scene/object_limits.h"
+#include "shape/shape.h"
 
 static const char *const kinds[OB_DO_KINDS] = {
 	[OB_DO_CREATE] = "create",     [OB_DO_REMOVE] = "remove",   [OB_DO_PAUSE] = "pause",
@@ -186,23 +187,27 @@ static bool needs(reading *r, unsigned needed, unsigned allowed)
 	return true;
 }
 
-// Returns the shape of this name that viewers may create; OB_SHAPE_NONE: there is none.
-static ob_shape find_shape(const char *word)
+// True for a shape that viewers may create: its size says all.
+static bool is_offered(ob_shape shape)
 {
-	static const ob_shape offered[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
-	for (size_t i = 0; i < sizeof offered / sizeof *offered; i++) {
-		if (strcmp(ob_shape_name(offered[i]), word) == 0)
-			return offered[i];
-	}
-	return OB_SHAPE_NONE;
+	return ob_shape_is_bounded(shape) && !ob_shape_is(shape, OB_HULLED);
+}
+
+static bool refuse_shape(reading *r)
+{
+	char text[128] = "expected one of";
+	for (int s = OB_SHAPE_NONE + 1; s < OB_SHAPE_KINDS; s++)
+		if (is_offered((ob_shape)s))
+			snprintf(text + strlen(text), sizeof text - strlen(text), " %s", ob_shape_name((ob_shape)s));
+	return fail(r, text, "shape") == 0;
 }
 
 static bool make_object(reading *r, ob_object_def *def)
 {
-	const ob_shape shape = find_shape(r->word[SHAPE]);
+	const ob_shape shape = ob_shape_named(r->word[SHAPE]);
 	const double *q = r->value[ATTITUDE], *c = r->value[COLOUR];
-	if (!shape)
-		return fail(r, "expected box, sphere, capsule or cylinder", "shape") == 0;
+	if (!is_offered(shape))
+		return refuse_shape(r);
 	*def = (ob_object_def){
 		.passport = { .shape = (uint16_t)shape,
 			      .size = vec3(r, SIZE),

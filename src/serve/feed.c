@@ -5,6 +5,8 @@
 
 #include <ob/motion.h>
 
+#include "shape/shape.h"
+
 static const double tolerated = 1. / 256; // of the radius
 static const double unseen = .25 / 60; // s: also the share of the motion of a moving object
 static const double v_unit = 1e-3, w_unit = 2e-3; // m/s, rad/s: units of 16-bit velocities
@@ -265,7 +267,7 @@ static void put_object(ob_message *out, const ob_feed_source *source, const know
 	put_vec3(out, p->inertia);
 	for (int i = 0; i < 3; i++)
 		ob_message_put_f32(out, p->colour[i]);
-	if (p->shape == OB_SHAPE_HULL)
+	if (ob_shape_is(p->shape, OB_HULLED))
 		put_hull(out, source, p->hull);
 	if (p->mesh)
 		ob_message_put_u8(out, p->mesh);

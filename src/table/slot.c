@@ -63,9 +63,14 @@ void ob_prefetch_slot(const ob_universe *u, uint32_t id)
 	prefetch_lines(&u->slot[id], sizeof u->slot[id]);
 }
 
+const ob_hull *ob_hull_at(const ob_universe *u, uint32_t hull)
+{
+	return hull < u->header.sizes.hulls ? u->hull + hull : NULL;
+}
+
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
 {
-	return ob_shape_is(p->shape, OB_HULLED) && p->hull < u->header.sizes.hulls ? u->hull + p->hull : NULL;
+	return ob_shape_is(p->shape, OB_HULLED) ? ob_hull_at(u, p->hull) : NULL;
 }
 
 bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h)

@@ -150,6 +150,7 @@ uint64_t ob_motion_version(const ob_universe *u, uint32_t id); // number of its 
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id);
 void ob_prefetch_versions(const ob_universe *u, uint32_t id); // read by the two before
 void ob_prefetch_slot(const ob_universe *u, uint32_t id); // all of it
+const ob_hull *ob_hull_at(const ob_universe *u, uint32_t hull); // NULL: no such hull
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p); // NULL: not a hull
 // The data of the step (step_data.h); ordered by the gate.
 ob_step_data *ob_universe_step_data(const ob_universe *u);

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "baseline/ode_baseline.h"
-#include "ode/ode_body.h"
+#include "shape/shape.h"
 
 #include "../check.h"
 
@@ -46,7 +46,7 @@ static void put(ob_universe *u, uint32_t id, uint32_t generation, ob_shape shape
 	if (!(mass > 0))
 		p.flags |= OB_OBJECT_STATIC;
 	else
-		p.inertia = ob_ode_inertia(shape, p.size, mass);
+		p.inertia = ob_shape_inertia(shape, p.size, NULL, mass);
 	ob_motion m = { .p = at, .q = ob_quat_identity(), .valid_until = INFINITY };
 	ob_publish_motion(u, id, &m);
 	ob_write_passport(u, id, &p);

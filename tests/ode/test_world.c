@@ -3,6 +3,7 @@
 
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
+#include "shape/shape.h"
 
 #include "../check.h"
 
@@ -33,7 +34,7 @@ static void add(ob_ode_world *w, uint32_t id, ob_shape shape, ob_vec3 p, double 
 			  .mass = 2,
 			  .friction = .5,
 			  .restitution = restitution };
-	o.inertia = ob_ode_inertia(shape, o.size, o.mass);
+	o.inertia = ob_shape_inertia(shape, o.size, NULL, o.mass);
 	ob_state s = { .pose = { p, { 1, 0, 0, 0 } } };
 	ob_ode_world_add(w, &o, &s);
 }
@@ -183,7 +184,7 @@ static void test_boxed(void)
 	ob_passport plane = { .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE, .friction = 1 };
 	ob_ode_world_add(w, &plane, &(ob_state){ .pose = { { 0, 0, 0 }, ob_quat_identity() } });
 	ob_passport p = { .id = 1, .shape = OB_SHAPE_BOX, .size = { .5, .5, .5 }, .mass = 1, .friction = .5 };
-	p.inertia = ob_ode_inertia(p.shape, p.size, p.mass);
+	p.inertia = ob_shape_inertia(p.shape, p.size, NULL, p.mass);
 	double half = .5 * (cos(.6) + sin(.6)); // bounding box of a cube turned by .6 rad
 	ob_quat turned = ob_quat_turn(ob_quat_identity(), ob_v3(.6, 0, 0));
 	ob_ode_world_add(w, &p, &(ob_state){ .pose = { { 0, 0, half + .01 }, turned } });
@@ -215,7 +216,7 @@ static void test_giving_up(void)
 	add(w, 1, OB_SHAPE_BOX, ob_v3(0, 0, 3), 0);
 	add(w, 2, OB_SHAPE_BOX, ob_v3(5, 0, 3), 0);
 	ob_passport p = { .id = 3, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_BOX, .size = { 1, 1, 1 }, .mass = 1 };
-	p.inertia = ob_ode_inertia(p.shape, p.size, p.mass);
+	p.inertia = ob_shape_inertia(p.shape, p.size, NULL, p.mass);
 	ob_ode_world_add(w, &p, &(ob_state){ { { 0, 0, 9 }, { 1, 0, 0, 0 } }, { 0, 0, 0 }, { 1e200, 1e200, 0 } });
 	bool stepped = true;
 	for (int i = 0; i < 10 && stepped; i++)

@@ -50,7 +50,7 @@ class Send(program.Case):
 		self.assertTrue(program.wait_until(lambda: "crate" not in self.objects()))
 		self.send(self.name, "remove", "crate", code=1, saying='has no object "crate"')
 		self.send(self.name, "message", "new", "x", code=1, saying="has no script")
-		self.send(self.name, "create", "plane {}", code=1, saying="only boxes, spheres, capsules, cylinders and hulls")
+		self.send(self.name, "create", "plane {}", code=1, saying="only objects with a size")
 		self.send(self.name, "create", "hull { points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } } }", code=1, saying="four different points")
 		self.send(self.name, "create", "sphere { radius = -1 }", code=1, saying=r"sphere\.radius: expected a number from 1e-06")
 		self.send(self.name, "colour", "new", "green", code=1, saying="#rrggbb")
