@@ -17,7 +17,7 @@ bool ob_cluster_create(const ob_universe *u, ob_cluster **out)
 	if (!c)
 		return false;
 	c->parts = (ob_rank_parts){ ob_halo_create(u), ob_holdings_create(u), ob_regions_create(u) };
-	c->islands = ob_rank_islands_create(u);
+	c->islands = ob_rank_islands_create(u, &c->parts);
 	return c->parts.halo && c->parts.holdings && c->parts.regions && c->islands;
 }
 
@@ -37,6 +37,13 @@ void ob_cluster_destroy(ob_cluster *c)
 }
 
 // ---- pairs of two ranks' bodies
+
+void ob_cluster_note(ob_universe *u, ob_mail *list, uint32_t pair)
+{
+	ob_mail_append(list, &pair, sizeof pair);
+	if (list->lost)
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+}
 
 static bool take_last(ob_mail *list, uint32_t *pair)
 {
@@ -60,17 +67,14 @@ static bool list_links(ob_cluster *c, ob_universe *u, bool late)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const size_t all = c->links_across.used / sizeof(uint32_t);
-	bool fits = true;
 	ob_mail_clear(&c->linked);
 	for (size_t i = 0; i < all; i++) {
 		const uint32_t pair = pair_at(&c->links_across, i);
 		const ob_pair_key *k = &data->pair[pair];
 		if ((late ? k->late : k->expected) && ob_pair_is_across(u, k))
-			fits &= ob_mail_append(&c->linked, &pair, sizeof pair);
+			ob_cluster_note(u, &c->linked, pair);
 	}
-	if (!fits)
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-	return fits;
+	return !c->linked.lost;
 }
 
 // Finds pairs that are expected to touch and link two ranks' bodies, after bodies got their homes. All ranks know these
@@ -78,16 +82,13 @@ static bool list_links(ob_cluster *c, ob_universe *u, bool late)
 static void find_links(ob_cluster *c, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	bool fits = true;
 	ob_mail_clear(&c->links_across);
 	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		if (k->expected && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
 		    ob_pair_is_across(u, k))
-			fits &= ob_mail_append(&c->links_across, &i, sizeof i);
+			ob_cluster_note(u, &c->links_across, i);
 	}
-	if (!fits)
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
 }
 
 // Clears links between ranks after islands have been shared out. Late contacts are merged, so no longer late. A pair
@@ -181,7 +182,7 @@ bool ob_cluster_share_islands(ob_cluster *c, ob_universe *u, bool *elsewhere)
 		return false;
 	const uint32_t *pair = (const uint32_t *)(const void *)c->linked.bytes,
 		       pairs = (uint32_t)(c->linked.used / sizeof *pair);
-	if (!ob_rank_islands_share(c->islands, u, &c->peers, &c->parts, pair, pairs, elsewhere))
+	if (!ob_rank_islands_share(c->islands, u, &c->peers, pair, pairs, elsewhere))
 		return false;
 	forget_links(c, u);
 	return true;

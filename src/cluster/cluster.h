@@ -21,6 +21,9 @@ typedef struct ob_cluster {
 	ob_mail parted, checked, links_across, linked;
 } ob_cluster;
 
+// Appends a pair to one of these lists. Without memory the step fails.
+void ob_cluster_note(ob_universe *u, ob_mail *list, uint32_t pair);
+
 // Creates what several ranks need. *c: NULL on a single rank. false: no memory.
 bool ob_cluster_create(const ob_universe *u, ob_cluster **c);
 void ob_cluster_destroy(ob_cluster *c);

@@ -223,7 +223,7 @@ static bool was_solved(const ob_universe *u, uint32_t id)
 }
 
 // Packs a body; after: with the motion found in this step.
-static bool pack_body(ob_mail *to, const ob_universe *u, uint32_t id, bool after)
+static void pack_body(ob_mail *to, const ob_universe *u, uint32_t id, bool after)
 {
 	body_parcel b = { .head = { OB_PARCEL_BODY, after ? sizeof b : offsetof(body_parcel, after) },
 			  .id = id,
@@ -232,16 +232,16 @@ static bool pack_body(ob_mail *to, const ob_universe *u, uint32_t id, bool after
 			  .before = *ob_newest_motion(u, id) };
 	if (after)
 		b.after = *ob_staged_motion(u, id);
-	return ob_mail_append(to, &b, b.head.bytes);
+	ob_mail_append(to, &b, b.head.bytes);
 }
 
-static bool pack_pair(ob_mail *to, const ob_universe *u, uint32_t pair)
+static void pack_pair(ob_mail *to, const ob_universe *u, uint32_t pair)
 {
 	const ob_pair_key *k = &ob_universe_step_data(u)->pair[pair];
 	const pair_parcel p = {
 		{ OB_PARCEL_PAIR, sizeof p }, pair, k->clear_until, k->clear_as_of, k->expected, k->limit
 	};
-	return ob_mail_append(to, &p, sizeof p);
+	ob_mail_append(to, &p, sizeof p);
 }
 
 static bool take_body(ob_halo *h, ob_universe *u, const char *from, size_t bytes)
@@ -291,21 +291,9 @@ bool ob_halo_take(ob_halo *h, ob_universe *u, const char *parcel, const ob_parce
 					    : head->kind == OB_PARCEL_PAIR && take_pair(u, parcel, head->bytes);
 }
 
-// Takes what the other ranks have sent. false: the step has failed.
-static bool take_all(ob_halo *h, ob_universe *u, const ob_peers *p, const char *all, const size_t *at)
+static bool take(void *halo, ob_universe *u, const char *parcel, const ob_parcel *head, uint32_t from)
 {
-	const char *parcel;
-	ob_parcel head;
-	bool sound = true;
-	for (uint32_t r = 0; all && sound && r < p->ranks; r++) {
-		const char *from = all + at[r] + sizeof(ob_peers_head);
-		size_t left = at[r + 1] - at[r] - sizeof(ob_peers_head);
-		while (r != p->rank && sound && (parcel = ob_parcel_next(&from, &left, &head, &sound)))
-			sound = ob_halo_take(h, u, parcel, &head);
-		if (!sound)
-			ob_peers_blame(p, u, r);
-	}
-	return all && sound;
+	return ob_halo_take(halo, u, parcel, head);
 }
 
 // ---- exchanges
@@ -314,10 +302,9 @@ bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t checks = ob_checks_count(data);
-	const size_t *at;
-	bool meet = false, fits = true;
+	bool meet = false;
 	for (uint32_t r = 0; r < h->ranks; r++)
-		fits &= ob_peers_begin(&h->out[r]);
+		ob_peers_begin(&h->out[r]);
 	for (uint32_t i = 0; h->partial && i < checks; i++) {
 		const ob_pair_key *k = &data->pair[data->check[i]];
 		if (!ob_pair_is_across(u, k))
@@ -327,18 +314,11 @@ bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p)
 			const uint32_t id = side ? k->b : k->a, to = ob_home_rank(u, side ? k->a : k->b);
 			if (ob_home_rank(u, id) != p->rank || h->told[id] & bit_of(to))
 				continue;
-			fits &= pack_body(&h->out[to], u, id, was_solved(u, id));
+			pack_body(&h->out[to], u, id, was_solved(u, id));
 			note_told(h, id, to);
 		}
 	}
-	if (!fits) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return false;
-	}
-	if (!meet)
-		return true;
-	const char *all = ob_peers_deal(p, u, (ob_peers_head){ .phase = OB_PEERS_MEET }, h->out, &at);
-	return take_all(h, u, p, all, at);
+	return !meet || ob_parcels_exchange(p, u, OB_PEERS_MEET, h->out, true, take, h);
 }
 
 void ob_halo_rehome(ob_halo *h, ob_universe *u, uint32_t id, uint32_t simulator)
@@ -349,56 +329,44 @@ void ob_halo_rehome(ob_halo *h, ob_universe *u, uint32_t id, uint32_t simulator)
 	h->told[id] = 0;
 }
 
-bool ob_halo_give(const ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *mail)
+void ob_halo_give(const ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *mail)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t to = ob_home_rank(u, id);
 	ob_pair_place at;
-	bool fits = !h->partial || pack_body(mail, u, id, false);
+	if (h->partial)
+		pack_body(mail, u, id, false);
 	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
 		const uint32_t other = at.side ? data->pair[at.pair].a : data->pair[at.pair].b;
-		fits &= pack_pair(mail, u, at.pair);
+		pack_pair(mail, u, at.pair);
 		data->pair[at.pair].late = 0; // islands were merged for it; without this it would stay late here
 		if (h->partial && ob_object_in_range(data, other) && is_dynamic(data, other) &&
 		    ob_home_rank(u, other) != to)
-			fits &= pack_body(mail, u, other, data->count->merged && was_solved(u, other));
+			pack_body(mail, u, other, data->count->merged && was_solved(u, other));
 	}
-	return fits;
 }
 
 bool ob_halo_share_pairs(ob_halo *h, ob_universe *u, ob_peers *p)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const size_t *at;
-	bool fits = ob_peers_begin(&h->out[0]);
+	ob_peers_begin(&h->out[0]);
 	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		if (k->a != k->b && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
 		    ob_pair_is_checked_here(u, k))
-			fits &= pack_pair(&h->out[0], u, i);
+			pack_pair(&h->out[0], u, i);
 	}
-	if (!fits) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return false;
-	}
-	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_GATHER }, &h->out[0], &at);
-	return take_all(h, u, p, all, at);
+	return ob_parcels_exchange(p, u, OB_PEERS_GATHER, &h->out[0], false, take, h);
 }
 
 bool ob_halo_gather(ob_halo *h, ob_universe *u, ob_peers *p)
 {
 	const uint32_t ids = ob_universe_ids(u);
-	const size_t *at;
-	bool fits = ob_peers_begin(&h->out[0]);
+	ob_peers_begin(&h->out[0]);
 	for (uint32_t id = 0; id < ids; id++)
 		if (h->owner[id] == 1 + p->rank && h->owed[id])
-			fits &= pack_body(&h->out[0], u, id, false);
-	if (!fits) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return false;
-	}
-	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_LOOK }, &h->out[0], &at);
-	if (!take_all(h, u, p, all, at))
+			pack_body(&h->out[0], u, id, false);
+	if (!ob_parcels_exchange(p, u, OB_PEERS_LOOK, &h->out[0], false, take, h))
 		return false;
 	h->partial = false;
 	memset(h->owed, 0, ids * sizeof *h->owed);

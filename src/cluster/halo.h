@@ -68,8 +68,8 @@ bool ob_halo_gather(ob_halo *h, ob_universe *u, ob_peers *p);
 bool ob_halo_share_pairs(ob_halo *h, ob_universe *u, ob_peers *p);
 // Moves the body to that simulator from now on; called by all ranks.
 void ob_halo_rehome(ob_halo *h, ob_universe *u, uint32_t id, uint32_t simulator);
-// Packs the motions and pairs that the new rank of the body needs; it was this rank's. false: no memory.
-bool ob_halo_give(const ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *mail);
+// Packs the motions and pairs that the new rank of the body needs; it was this rank's.
+void ob_halo_give(const ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *mail);
 // Unpacks a parcel of it from another rank. false: it is malformed.
 bool ob_halo_take(ob_halo *h, ob_universe *u, const char *parcel, const ob_parcel *head);
 

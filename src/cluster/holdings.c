@@ -123,19 +123,19 @@ static size_t parcel_bytes(const ob_universe *u)
 	return ob_solver_is_two_sided(ob_universe_settings(u)->solver) ? sizeof(parcel) : offsetof(parcel, impulse_b);
 }
 
-static bool pack(ob_mail *to, const ob_universe *u, uint32_t pair, uint32_t record)
+static void pack(ob_mail *to, const ob_universe *u, uint32_t pair, uint32_t record)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const int version = version_of(u, record);
 	const size_t bytes = parcel_bytes(u);
 	parcel p = { .head = { OB_PARCEL_KEPT, (uint32_t)bytes }, .pair = pair };
 	if (version < 0)
-		return true;
+		return;
 	p.stamp = data->record[record].stamp[version];
 	p.state = data->record[record].version[version];
 	if (bytes == sizeof p)
 		memcpy(p.impulse_b, data->impulse_b[record][version], sizeof p.impulse_b);
-	return ob_mail_append(to, &p, bytes);
+	ob_mail_append(to, &p, bytes);
 }
 
 // Writes contents that another rank has sent; holder: 1 + the rank that holds them from now on, or ALL.
@@ -165,53 +165,40 @@ bool ob_holdings_take(ob_holdings *h, const ob_universe *u, const char *from, si
 	return take(h, u, from, bytes, (uint16_t)(1 + ob_universe_rank(u)));
 }
 
-bool ob_holdings_give(ob_holdings *h, const ob_universe *u, uint32_t id, ob_mail *mail)
+void ob_holdings_give(ob_holdings *h, const ob_universe *u, uint32_t id, ob_mail *mail)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t to = ob_home_rank(u, id);
-	bool fits = true;
 	ob_pair_place at;
 	for (uint32_t link = data->first_pair[id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
 		ob_pair_key *k = &data->pair[at.pair];
 		k->in_island = 0;
 		if (k->record >= data->pairs_max || !ob_holdings_here_alone(h, u, k->record))
 			continue;
-		fits &= pack(mail, u, at.pair, k->record);
+		pack(mail, u, at.pair, k->record);
 		give_away(u, k->record);
 		h->holder[k->record] = (uint16_t)(1 + to);
 	}
-	return fits;
+}
+
+static bool take_for_all(void *h, ob_universe *u, const char *from, const ob_parcel *head, uint32_t rank)
+{
+	return head->kind == OB_PARCEL_KEPT && take(h, u, from, head->bytes, ALL);
 }
 
 bool ob_holdings_gather(ob_holdings *h, ob_universe *u, ob_peers *p)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const size_t *at;
-	const char *taken;
-	bool fits = ob_peers_begin(&h->out), sound = true;
-	ob_parcel head;
+	ob_peers_begin(&h->out);
 	for (uint32_t pair = 0; pair < ob_pairs_end(data); pair++) {
 		const ob_pair_key *k = &data->pair[pair];
 		if (k->a == k->b || k->record >= data->pairs_max || h->holder[k->record] == ALL)
 			continue;
 		if (h->holder[k->record] == 1 + p->rank)
-			fits &= pack(&h->out, u, pair, k->record);
+			pack(&h->out, u, pair, k->record);
 		h->holder[k->record] = ALL;
 	}
-	if (!fits) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return false;
-	}
-	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_GATHER }, &h->out, &at);
-	for (uint32_t r = 0; all && sound && r < p->ranks; r++) {
-		const char *from = all + at[r] + sizeof(ob_peers_head);
-		size_t left = at[r + 1] - at[r] - sizeof(ob_peers_head);
-		while (r != p->rank && sound && (taken = ob_parcel_next(&from, &left, &head, &sound)))
-			sound = head.kind == OB_PARCEL_KEPT && take(h, u, taken, head.bytes, ALL);
-		if (!sound)
-			ob_peers_blame(p, u, r);
-	}
-	return all && sound;
+	return ob_parcels_exchange(p, u, OB_PEERS_GATHER, &h->out, false, take_for_all, h);
 }
 
 // Contents of an island's pairs are prefetched in three steps: keys, stamps, contents.

@@ -33,8 +33,8 @@ void ob_holdings_prefetch(const ob_holdings *h, uint32_t record);
 bool ob_holdings_here_alone(const ob_holdings *h, const ob_universe *u, uint32_t record);
 
 // Packs the contents of the pairs of an object that moved from this rank to another; this rank lists the pairs no
-// longer. false: no memory.
-bool ob_holdings_give(ob_holdings *h, const ob_universe *u, uint32_t id, ob_mail *mail);
+// longer.
+void ob_holdings_give(ob_holdings *h, const ob_universe *u, uint32_t id, ob_mail *mail);
 // Unpacks a parcel of it from another rank. false: it is malformed.
 bool ob_holdings_take(ob_holdings *h, const ob_universe *u, const char *parcel, size_t bytes);
 // Exchanges contents, between two steps, by all ranks: then all have all. false: the step has failed.

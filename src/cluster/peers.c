@@ -162,11 +162,11 @@ static uint64_t own_look(const ob_universe *u)
 	return always ? 0 : ob_gate_pause_step(u);
 }
 
-bool ob_peers_begin(ob_mail *mail)
+void ob_peers_begin(ob_mail *mail)
 {
 	const ob_peers_head empty = { 0 };
 	ob_mail_clear(mail);
-	return ob_mail_append(mail, &empty, sizeof empty);
+	ob_mail_append(mail, &empty, sizeof empty);
 }
 
 static void complete_head(const ob_peers *p, ob_universe *u, ob_peers_head *head)
@@ -198,8 +198,9 @@ static const char *take(ob_peers *p, ob_universe *u, const char *all, const size
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at)
 {
 	complete_head(p, u, &head);
-	memcpy(mail->bytes, &head, sizeof head);
-	const char *all = p->gather(p->wire, mail->bytes, mail->used, at);
+	if (!mail->lost)
+		memcpy(mail->bytes, &head, sizeof head);
+	const char *all = mail->lost ? NULL : p->gather(p->wire, mail->bytes, mail->used, at);
 	return take(p, u, all, all ? *at : NULL);
 }
 
@@ -207,8 +208,10 @@ const char *ob_peers_deal(ob_peers *p, ob_universe *u, ob_peers_head head, ob_ma
 {
 	const void **mine = calloc(p->ranks, sizeof *mine);
 	size_t *bytes = calloc(p->ranks, sizeof *bytes);
-	const bool fits = mine && bytes;
+	bool fits = mine && bytes;
 	complete_head(p, u, &head);
+	for (uint32_t r = 0; r < p->ranks; r++)
+		fits = fits && !mail[r].lost;
 	for (uint32_t r = 0; fits && r < p->ranks; r++) {
 		memcpy(mail[r].bytes, &head, sizeof head);
 		mine[r] = mail[r].bytes;
@@ -239,6 +242,25 @@ const char *ob_parcel_next(const char **from, size_t *bytes, ob_parcel *p, bool 
 void ob_peers_blame(const ob_peers *p, ob_universe *u, uint32_t rank)
 {
 	blame(p, u, rank, "is of a rank that has sent what makes no sense");
+}
+
+bool ob_parcels_exchange(ob_peers *p, ob_universe *u, uint64_t phase, ob_mail *mail, bool each, ob_parcel_take take_it,
+			 void *with)
+{
+	const ob_peers_head head = { .phase = phase };
+	const size_t *at;
+	const char *parcel, *all = (each ? ob_peers_deal : ob_peers_exchange)(p, u, head, mail, &at);
+	ob_parcel of;
+	bool sound = true;
+	for (uint32_t r = 0; all && sound && r < p->ranks; r++) {
+		const char *from = all + at[r] + sizeof head;
+		size_t left = at[r + 1] - at[r] - sizeof head;
+		while (r != p->rank && sound && (parcel = ob_parcel_next(&from, &left, &of, &sound)))
+			sound = take_it(with, u, parcel, &of, r);
+		if (!sound)
+			ob_peers_blame(p, u, r);
+	}
+	return all && sound;
 }
 
 void ob_peers_leave(ob_peers *p)

@@ -66,6 +66,7 @@ typedef enum ob_parcel_kind {
 	OB_PARCEL_KEPT, // contents of a pair (holdings.h)
 	OB_PARCEL_BODY, // this and the next: halo.h
 	OB_PARCEL_PAIR,
+	OB_PARCEL_COST, // of a body (regions.h)
 } ob_parcel_kind;
 typedef struct ob_parcel {
 	uint32_t kind, bytes; // size with this head: a multiple of 8
@@ -74,11 +75,11 @@ typedef struct ob_parcel {
 // Digest of the state before a phase, before any of it is committed, that all ranks share: the number of pairs, and the
 // bodies that query for others.
 uint64_t ob_peers_digest(const ob_universe *u);
-// Empties the mail and leaves room for a head. false: no memory.
-bool ob_peers_begin(ob_mail *mail);
+// Empties the mail and leaves room for a head.
+void ob_peers_begin(ob_mail *mail);
 // Sends the mail with this head. Returns the mails of all ranks, with heads, in the order of ranks: rank r's from at[r]
-// to at[r + 1], valid until the next call. NULL: the others are at another point of the run, or one has left, and the
-// step has failed. Then all know the move requested on rank 0 (ob_peers.move), and the next step with work, or with a
+// to at[r + 1], valid until the next call. NULL: the others are at another point of the run, or one has left, or
+// there is no memory, and the step has failed. Then all know the move requested on rank 0 (ob_peers.move), and the next step with work, or with a
 // reader of all motions (ob_peers.look). They also know the numbers of islands and of awake bodies.
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
 // The same with another mail for each rank, mail[rank].
@@ -86,6 +87,12 @@ const char *ob_peers_deal(ob_peers *p, ob_universe *u, ob_peers_head head, ob_ma
 // Returns the next parcel at *from, which has *bytes left, and moves both past it. NULL: there is none; *sound becomes
 // false if it is malformed. p: its head.
 const char *ob_parcel_next(const char **from, size_t *bytes, ob_parcel *p, bool *sound);
+// Takes a parcel from a rank. Returns false if it is malformed.
+typedef bool (*ob_parcel_take)(void *with, ob_universe *u, const char *parcel, const ob_parcel *head, uint32_t from);
+// Sends parcels to the other ranks, by one mail to all or (each) by mail[rank], and takes those that they have sent.
+// false: the step has failed.
+bool ob_parcels_exchange(ob_peers *p, ob_universe *u, uint64_t phase, ob_mail *mail, bool each, ob_parcel_take take,
+			 void *with);
 // Fails the step: the rank has sent malformed data.
 void ob_peers_blame(const ob_peers *p, ob_universe *u, uint32_t rank);
 bool ob_peers_join(ob_peers *p, const ob_universe *u, ob_error *e);

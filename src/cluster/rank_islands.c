@@ -57,6 +57,7 @@ typedef struct leaving {
 } leaving;
 
 struct ob_rank_islands {
+	const ob_rank_parts *parts;
 	uint32_t rank, ranks;
 	uint32_t islands;
 	island *island; // [object]
@@ -73,12 +74,13 @@ struct ob_rank_islands {
 	ob_mail *dealt; // [ranks]
 };
 
-ob_rank_islands *ob_rank_islands_create(const ob_universe *u)
+ob_rank_islands *ob_rank_islands_create(const ob_universe *u, const ob_rank_parts *parts)
 {
 	const uint32_t objects = ob_universe_capacity(u);
 	ob_rank_islands *s = calloc(1, sizeof *s);
 	if (!s)
 		return NULL;
+	s->parts = parts;
 	s->rank = ob_universe_rank(u);
 	s->ranks = ob_universe_ranks(u);
 	s->island = calloc(objects, sizeof *s->island);
@@ -145,7 +147,7 @@ static void add_body(island *is, const ob_universe *u, const ob_regions *regions
 	is->votes = is->to == at ? is->votes + 1 : is->votes - 1;
 }
 
-static void find_islands(ob_rank_islands *s, ob_universe *u, const ob_regions *regions)
+static void find_islands(ob_rank_islands *s, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t *body, *root, n = ob_involved_bodies(u, &body, &root);
@@ -156,7 +158,7 @@ static void find_islands(ob_rank_islands *s, ob_universe *u, const ob_regions *r
 			s->island[s->islands++] = (island){ .root = body[i], .pinned = NONE };
 		}
 	for (uint32_t i = 0; i < n; i++)
-		add_body(&s->island[s->island_of[root[body[i]]]], u, regions, body[i]);
+		add_body(&s->island[s->island_of[root[body[i]]]], u, s->parts->regions, body[i]);
 	for (uint32_t i = 0; i < s->islands; i++) {
 		island *is = &s->island[i];
 		if (is->pinned != NONE)
@@ -171,11 +173,10 @@ static uint32_t own_end(const ob_universe *u, const ob_pair_key *k, uint32_t ran
 	return ob_home_rank(u, k->a) == rank ? k->a : ob_home_rank(u, k->b) == rank ? k->b : NONE;
 }
 
-static bool add_ends(ob_rank_islands *s, ob_universe *u, const uint32_t *pair, uint32_t pairs, uint64_t *ends)
+static void add_ends(ob_rank_islands *s, ob_universe *u, const uint32_t *pair, uint32_t pairs, uint64_t *ends)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t *body, *root;
-	bool fits = true;
 	ob_involved_bodies(u, &body, &root);
 	for (uint32_t i = 0; i < pairs; i++) {
 		const uint32_t id = own_end(u, &data->pair[pair[i]], s->rank);
@@ -184,15 +185,13 @@ static bool add_ends(ob_rank_islands *s, ob_universe *u, const uint32_t *pair, u
 		island *is = &s->island[s->island_of[root[id]]];
 		const end e = { .root = is->root, .to = is->to, .pinned = is->pinned, .work = is->work };
 		is->meets = true;
-		fits &= ob_mail_append(&s->out, &e, sizeof e);
+		ob_mail_append(&s->out, &e, sizeof e);
 		++*ends;
 	}
-	return fits;
 }
 
-static bool add_loads(ob_rank_islands *s, const ob_universe *u, uint64_t *loads)
+static void add_loads(ob_rank_islands *s, const ob_universe *u, uint64_t *loads)
 {
-	bool fits = true;
 	memset(s->load, 0, s->ranks * sizeof *s->load);
 	for (uint32_t i = 0; i < s->islands; i++)
 		s->load[rank_of(u, s->island[i].to)] += s->island[i].work;
@@ -200,10 +199,9 @@ static bool add_loads(ob_rank_islands *s, const ob_universe *u, uint64_t *loads)
 		const load of = { r, s->load[r] };
 		if (!of.work)
 			continue;
-		fits &= ob_mail_append(&s->out, &of, sizeof of);
+		ob_mail_append(&s->out, &of, sizeof of);
 		++*loads;
 	}
-	return fits;
 }
 
 // True if the island may go to another rank for balance alone.
@@ -212,24 +210,25 @@ static bool may_spill(const ob_rank_islands *s, const ob_universe *u, const isla
 	return !is->meets && is->pinned == NONE && rank_of(u, is->to) == s->rank;
 }
 
-static bool write_summary(ob_rank_islands *s, ob_universe *u, const ob_regions *regions, const uint32_t *pair,
-			  uint32_t pairs, uint32_t fliers)
+static void write_summary(ob_rank_islands *s, ob_universe *u, const uint32_t *pair, uint32_t pairs, uint32_t fliers)
 {
-	summary own = {
-		.islands = s->islands, .moves = fliers > 0, .least = UINT64_MAX, .work = ob_regions_work_of(regions)
-	};
+	summary own = { .islands = s->islands,
+			.moves = fliers > 0,
+			.least = UINT64_MAX,
+			.work = ob_regions_work_of(s->parts->regions) };
 	const size_t at = s->out.used;
-	bool fits = ob_mail_append(&s->out, &own, sizeof own);
-	fits = fits && (is_merging(u) || add_loads(s, u, &own.loads)) && add_ends(s, u, pair, pairs, &own.ends);
+	ob_mail_append(&s->out, &own, sizeof own);
+	if (!is_merging(u))
+		add_loads(s, u, &own.loads);
+	add_ends(s, u, pair, pairs, &own.ends);
 	for (uint32_t i = 0; i < s->islands && !is_merging(u); i++) {
 		const island *is = &s->island[i];
 		own.moves |= !is->meets && rank_of(u, is->to) != s->rank;
 		if (may_spill(s, u, is) && is->work < own.least)
 			own.least = is->work;
 	}
-	if (fits)
+	if (!s->out.lost)
 		memcpy(s->out.bytes + at, &own, sizeof own);
-	return fits;
 }
 
 // ---- totals of all ranks
@@ -283,7 +282,8 @@ static bool take_end(ob_rank_islands *s, const ob_universe *u, const char **next
 	memcpy(&e, next[rank], sizeof e);
 	next[rank] += sizeof e;
 	left[rank]--;
-	return is_sound_end(u, &e) && ob_mail_append(&s->ends, &e, sizeof e);
+	ob_mail_append(&s->ends, &e, sizeof e);
+	return is_sound_end(u, &e) && !s->ends.lost;
 }
 
 // Reads the ends of all ranks. false: a rank has sent others than those of its bodies; or no memory.
@@ -420,7 +420,7 @@ static void leave_room_to_others(ob_rank_islands *s, uint64_t most)
 }
 
 // Gives islands to less loaded ranks, the largest first.
-static void spill(ob_rank_islands *s, const ob_universe *u, ob_regions *regions, uint64_t most)
+static void spill(ob_rank_islands *s, const ob_universe *u, uint64_t most)
 {
 	const uint32_t each = ob_universe_simulators(u) / s->ranks;
 	uint32_t n = 0;
@@ -440,7 +440,7 @@ static void spill(ob_rank_islands *s, const ob_universe *u, ob_regions *regions,
 		s->load[s->rank] -= is->work;
 		s->load[to] += is->work;
 		is->to = to * each;
-		ob_regions_spill(regions, is->work);
+		ob_regions_spill(s->parts->regions, is->work);
 	}
 }
 
@@ -474,67 +474,61 @@ static uint32_t list_leaving(ob_rank_islands *s, ob_universe *u)
 }
 
 // Packs new homes of bodies, for all ranks.
-static bool put_homes(ob_rank_islands *s, const ob_universe *u, const leaving *body, uint32_t n, uint32_t simulator,
+static void put_homes(ob_rank_islands *s, const ob_universe *u, const leaving *body, uint32_t n, uint32_t simulator,
 		      bool solved)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const homes_parcel h = { { OB_PARCEL_HOMES, (uint32_t)(sizeof h + n * sizeof *h.body) }, simulator, n, solved };
-	bool fits = true;
 	for (uint32_t r = 0; r < s->ranks; r++) {
-		fits &= ob_mail_append(&s->dealt[r], &h, sizeof h);
+		ob_mail_append(&s->dealt[r], &h, sizeof h);
 		for (uint32_t i = 0; i < n; i++) {
 			const uint32_t of[2] = { body[i].id, data->effort[body[i].id] };
-			fits &= ob_mail_append(&s->dealt[r], of, sizeof of);
+			ob_mail_append(&s->dealt[r], of, sizeof of);
 		}
 	}
-	return fits;
 }
 
-static void rehome(ob_rank_islands *s, ob_universe *u, ob_halo *halo, uint32_t id, uint32_t simulator)
+static void rehome(ob_rank_islands *s, ob_universe *u, uint32_t id, uint32_t simulator)
 {
-	ob_halo_rehome(halo, u, id, simulator);
+	ob_halo_rehome(s->parts->halo, u, id, simulator);
 	s->moved[s->moved_count++] = id;
 }
 
-static bool give_bodies(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts)
+static void give_bodies(ob_rank_islands *s, ob_universe *u)
 {
-	bool fits = true;
 	for (uint32_t i = 0; i < s->moved_count; i++) {
 		ob_mail *to = &s->dealt[ob_home_rank(u, s->moved[i])];
-		fits &= ob_holdings_give(parts->holdings, u, s->moved[i], to) &&
-			ob_halo_give(parts->halo, u, s->moved[i], to);
+		ob_holdings_give(s->parts->holdings, u, s->moved[i], to);
+		ob_halo_give(s->parts->halo, u, s->moved[i], to);
 	}
-	return fits;
 }
 
 // Packs the bodies that leave, for each rank; their homes come first.
-static bool pack(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts, const uint32_t *flier, uint32_t fliers)
+static void pack(ob_rank_islands *s, ob_universe *u, const uint32_t *flier, uint32_t fliers)
 {
 	const uint32_t n = list_leaving(s, u);
-	bool fits = true;
 	s->moved_count = 0;
 	for (uint32_t r = 0; r < s->ranks; r++)
-		fits &= ob_peers_begin(&s->dealt[r]);
+		ob_peers_begin(&s->dealt[r]);
 	for (uint32_t i = 0, k; i < n; i = k) {
 		const uint32_t to = s->island[s->leaving[i].island].to;
 		for (k = i; k < n && s->leaving[k].island == s->leaving[i].island; k++)
-			rehome(s, u, parts->halo, s->leaving[k].id, to);
-		fits &= put_homes(s, u, s->leaving + i, k - i, to, true);
+			rehome(s, u, s->leaving[k].id, to);
+		put_homes(s, u, s->leaving + i, k - i, to, true);
 	}
 	ob_involved_drop(u, s->leaves);
 	for (uint32_t i = 0; i < fliers; i++) {
 		const leaving one = { .id = flier[i] };
-		const uint32_t to = ob_regions_at(parts->regions, flier[i]);
-		rehome(s, u, parts->halo, flier[i], to);
-		fits &= put_homes(s, u, &one, 1, to, false);
+		const uint32_t to = ob_regions_at(s->parts->regions, flier[i]);
+		rehome(s, u, flier[i], to);
+		put_homes(s, u, &one, 1, to, false);
 	}
-	return fits && give_bodies(s, u, parts);
+	give_bodies(s, u);
 }
 
 // ---- received bodies
 
-static bool take_homes(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts, const char *parcel, size_t bytes,
-		       uint32_t from)
+static bool take_homes(ob_rank_islands *s, ob_universe *u, const char *parcel, size_t bytes, uint32_t from)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	homes_parcel h;
@@ -550,11 +544,11 @@ static bool take_homes(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *
 		const uint32_t id = of[0];
 		if (id >= ob_universe_ids(u) || ob_home_rank(u, id) != from)
 			return false;
-		rehome(s, u, parts->halo, id, h.simulator);
+		rehome(s, u, id, h.simulator);
 		if (rank_of(u, h.simulator) != s->rank)
 			continue;
 		data->effort[id] = of[1];
-		ob_regions_take(parts->regions, id, h.simulator);
+		ob_regions_take(s->parts->regions, id, h.simulator);
 		first = first == NONE ? id : first;
 		if (h.solved)
 			ob_involved_join(u, first, id);
@@ -562,24 +556,17 @@ static bool take_homes(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *
 	return true;
 }
 
-static bool take_parcels(ob_rank_islands *s, ob_universe *u, const ob_rank_parts *parts, const char *from, size_t bytes,
-			 uint32_t rank)
+static bool take_parcel(void *islands, ob_universe *u, const char *parcel, const ob_parcel *head, uint32_t from)
 {
-	const char *parcel;
-	ob_parcel head;
-	bool sound = true;
-	while (sound && (parcel = ob_parcel_next(&from, &bytes, &head, &sound)))
-		switch (head.kind) {
-		case OB_PARCEL_HOMES:
-			sound = take_homes(s, u, parts, parcel, head.bytes, rank);
-			break;
-		case OB_PARCEL_KEPT:
-			sound = ob_holdings_take(parts->holdings, u, parcel, head.bytes);
-			break;
-		default:
-			sound = ob_halo_take(parts->halo, u, parcel, &head);
-		}
-	return sound;
+	ob_rank_islands *s = islands;
+	switch (head->kind) {
+	case OB_PARCEL_HOMES:
+		return take_homes(s, u, parcel, head->bytes, from);
+	case OB_PARCEL_KEPT:
+		return ob_holdings_take(s->parts->holdings, u, parcel, head->bytes);
+	default:
+		return ob_halo_take(s->parts->halo, u, parcel, head);
+	}
 }
 
 // Makes moved bodies due at their new home, and schedules the pairs that are now checked here at once.
@@ -591,27 +578,17 @@ static void note_moved(const ob_rank_islands *s, ob_universe *u)
 	}
 }
 
-static bool move(ob_rank_islands *s, ob_universe *u, ob_peers *p, const ob_rank_parts *parts, const uint32_t *flier,
-		 uint32_t fliers)
+static bool move(ob_rank_islands *s, ob_universe *u, ob_peers *p, const uint32_t *flier, uint32_t fliers)
 {
-	const size_t *at;
-	if (!pack(s, u, parts, flier, fliers)) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+	pack(s, u, flier, fliers);
+	if (!ob_parcels_exchange(p, u, OB_PEERS_MOVE, s->dealt, true, take_parcel, s))
 		return false;
-	}
-	const char *all = ob_peers_deal(p, u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, s->dealt, &at);
-	for (uint32_t r = 0; all && r < s->ranks; r++)
-		if (r != s->rank && !take_parcels(s, u, parts, all + at[r] + sizeof(ob_peers_head),
-						  at[r + 1] - at[r] - sizeof(ob_peers_head), r)) {
-			ob_peers_blame(p, u, r);
-			return false;
-		}
 	note_moved(s, u);
-	return all;
+	return true;
 }
 
-bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, const ob_rank_parts *parts,
-			   const uint32_t *pair, uint32_t pairs, bool *islands)
+bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, const uint32_t *pair, uint32_t pairs,
+			   bool *islands)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const size_t *at;
@@ -620,24 +597,22 @@ bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, cons
 	*islands = true;
 	if (is_merging(u) && !pairs)
 		return true;
-	const uint32_t *flier = is_merging(u) ? NULL : ob_regions_find_fliers(parts->regions, u, &fliers);
-	find_islands(s, u, parts->regions);
-	if (!ob_peers_begin(&s->out) || !write_summary(s, u, parts->regions, pair, pairs, fliers)) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return false;
-	}
+	const uint32_t *flier = is_merging(u) ? NULL : ob_regions_find_fliers(s->parts->regions, u, &fliers);
+	find_islands(s, u);
+	ob_peers_begin(&s->out);
+	write_summary(s, u, pair, pairs, fliers);
 	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_SHARE }, &s->out, &at);
 	if (!all || !add_up(s, u, p, all, at, pair, pairs, &t))
 		return false;
 	*islands = t.islands;
 	if (!is_merging(u))
-		spill(s, u, parts->regions, t.most);
-	if (t.moves && !move(s, u, p, parts, flier, fliers))
+		spill(s, u, t.most);
+	if (t.moves && !move(s, u, p, flier, fliers))
 		return false;
 	for (uint32_t i = 0; i < pairs; i++) {
 		const ob_pair_key *k = &data->pair[pair[i]];
 		if (ob_home_rank(u, k->a) == s->rank && ob_home_rank(u, k->b) == s->rank)
 			ob_involved_join(u, k->a, k->b);
 	}
-	return is_merging(u) || ob_regions_renew(parts->regions, u, p, &t.work);
+	return is_merging(u) || ob_regions_renew(s->parts->regions, u, p, &t.work);
 }

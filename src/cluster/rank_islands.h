@@ -23,11 +23,6 @@
 #include "cluster/holdings.h"
 #include "cluster/regions.h"
 
-typedef struct ob_rank_islands ob_rank_islands;
-
-ob_rank_islands *ob_rank_islands_create(const ob_universe *u); // NULL: no memory
-void ob_rank_islands_destroy(ob_rank_islands *s); // NULL is allowed
-
 // The parts of a rank's state that follow when islands move.
 typedef struct ob_rank_parts {
 	ob_halo *halo;
@@ -35,10 +30,15 @@ typedef struct ob_rank_parts {
 	ob_regions *regions;
 } ob_rank_parts;
 
+typedef struct ob_rank_islands ob_rank_islands;
+
+ob_rank_islands *ob_rank_islands_create(const ob_universe *u, const ob_rank_parts *parts); // NULL: no memory
+void ob_rank_islands_destroy(ob_rank_islands *s); // NULL is allowed
+
 // Moves islands between ranks. All ranks call it, when each has found the islands of its bodies and before it lists
 // their members. pair: [pairs], links of two ranks' bodies, the same on all ranks. islands: set to true if any rank has
 // any. false: the step has failed.
-bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, const ob_rank_parts *parts,
-			   const uint32_t *pair, uint32_t pairs, bool *islands);
+bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, const uint32_t *pair, uint32_t pairs,
+			   bool *islands);
 
 #endif

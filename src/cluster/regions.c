@@ -398,40 +398,34 @@ ob_regions_work ob_regions_work_of(const ob_regions *r)
 	return r->work;
 }
 
-// Cost of a body.
-typedef struct cost {
+typedef struct cost_parcel {
+	ob_parcel head;
 	uint64_t id, spent;
-} cost;
+} cost_parcel;
+
+static bool take_cost(void *regions, ob_universe *u, const char *parcel, const ob_parcel *head, uint32_t from)
+{
+	ob_regions *r = regions;
+	cost_parcel c;
+	if (head->kind != OB_PARCEL_COST || head->bytes != sizeof c)
+		return false;
+	memcpy(&c, parcel, sizeof c);
+	if (c.id >= ob_universe_ids(u))
+		return false;
+	r->spent[c.id] = c.spent;
+	return true;
+}
 
 // Exchanges the costs of all ranks' bodies. false: the step has failed.
 static bool share_costs(ob_regions *r, ob_universe *u, ob_peers *p)
 {
-	const uint32_t ids = ob_universe_ids(u);
-	const size_t *at;
-	bool fits = ob_peers_begin(&r->out), sound = true;
-	for (uint32_t id = 0; id < ids; id++) {
-		const cost c = { id, r->spent[id] };
+	ob_peers_begin(&r->out);
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		const cost_parcel c = { { OB_PARCEL_COST, sizeof c }, id, r->spent[id] };
 		if (r->home[id] && ob_worker_is_here(u, ob_home_of(u, id)))
-			fits &= ob_mail_append(&r->out, &c, sizeof c);
+			ob_mail_append(&r->out, &c, sizeof c);
 	}
-	if (!fits) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return false;
-	}
-	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_CUT }, &r->out, &at);
-	for (uint32_t rank = 0; all && sound && rank < p->ranks; rank++) {
-		const char *from = all + at[rank] + sizeof(ob_peers_head);
-		cost c;
-		for (; sound && from < all + at[rank + 1]; from += sizeof c) {
-			memcpy(&c, from, sizeof c);
-			sound = c.id < ids;
-			if (sound)
-				r->spent[c.id] = c.spent;
-		}
-		if (!sound)
-			ob_peers_blame(p, u, rank);
-	}
-	return all && sound;
+	return ob_parcels_exchange(p, u, OB_PEERS_CUT, &r->out, false, take_cost, r);
 }
 
 bool ob_regions_renew(ob_regions *r, ob_universe *u, ob_peers *p, const ob_regions_work *sum)

@@ -216,12 +216,6 @@ static bool is_whole(const ob_committer *c, const ob_universe *u, const ob_mail_
 	return !c->cluster || ob_universe_shares_contacts(u) || ob_worker_is_here(u, from->worker);
 }
 
-static void note_pair(ob_universe *u, ob_mail *list, uint32_t pair)
-{
-	if (!ob_mail_append(list, &pair, sizeof pair))
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-}
-
 static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const ob_found_contact *r = from->data;
@@ -239,7 +233,7 @@ static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail
 		return "has found a contact that makes no sense";
 	const uint32_t record = ob_write_contact_key(u, r);
 	if (!r->active && k->record != OB_NO_RECORD && !here)
-		note_pair(u, &c->cluster->parted, r->pair);
+		ob_cluster_note(u, &c->cluster->parted, r->pair);
 	if (record == OB_NO_RECORD)
 		return NULL;
 	const int version = whole ? ob_write_contact_state(u, r, record) : -1;
@@ -351,9 +345,9 @@ static const char *commit_check(ob_committer *c, ob_universe *u, const ob_mail_r
 		return "has found about a pair what makes no sense";
 	ob_write_check(u, r);
 	if (!ob_worker_is_here(u, from->worker))
-		note_pair(u, &c->cluster->checked, r->pair);
+		ob_cluster_note(u, &c->cluster->checked, r->pair);
 	if (c->cluster && (r->late || r->expected) && ob_pair_is_across(u, &ob_universe_step_data(u)->pair[r->pair]))
-		note_pair(u, &c->cluster->links_across, r->pair);
+		ob_cluster_note(u, &c->cluster->links_across, r->pair);
 	return NULL;
 }
 

@@ -48,25 +48,24 @@ static uint32_t contact_bytes_for_others(const ob_committer *c, const ob_univers
 }
 
 // Appends a result to the mails of other ranks. all: of every rank; else of those that have neighbours of the body.
-static bool put_result(ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool all)
+static void put_result(ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool all)
 {
 	ob_found_result whole;
 	ob_mail_record restored = { .worker = r->worker, .kind = OB_RECORD_RESTORED, .bytes = sizeof whole };
 	const ob_found_result *found = r->data; // valid up to its motion, in both layouts
 	if (!ob_committer_is_result(u, r) || !ob_is_sound_state(found->state)) // the commit will report it
-		return true;
+		return;
 	const bool restores = ob_halo_tell(c->cluster->parts.halo, u, found->id, all, c->to);
 	if (restores)
 		restored.data = ob_committer_result_of(u, r, &whole);
-	bool fits = true, kept; // kept is not used: the commit here tests the motion itself
+	bool kept; // not used: the commit here tests the motion itself
 	for (uint32_t to = 0; to < c->ranks; to++) {
 		if (to == c->rank || !c->to[to])
 			continue;
 		if (!restores)
 			c->told[to] = ob_committer_digest_before(c, u, found->id, c->told[to], &kept);
-		fits &= ob_mail_append_record(&c->dealt[to], restores ? &restored : r);
+		ob_mail_append_record(&c->dealt[to], restores ? &restored : r);
 	}
-	return fits;
 }
 
 // Finds the ranks that need the result of a check of two ranks' bodies: all, if the pair links them or did; else the
@@ -84,24 +83,22 @@ static void find_concerned(ob_committer *c, const ob_universe *u, const ob_mail_
 		c->to[ob_home_rank(u, side ? k->b : k->a)] = true;
 }
 
-static bool put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool all)
+static void put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool all)
 {
 	ob_mail_record told = *r;
-	bool fits = true;
-	if (r->kind == OB_RECORD_RESULT)
-		return put_result(c, u, r, all);
+	if (r->kind == OB_RECORD_RESULT) {
+		put_result(c, u, r, all);
+		return;
+	}
 	if (r->kind == OB_RECORD_EFFORT) // it concerns an island, which no other rank has
-		return true;
+		return;
 	if (r->kind == OB_RECORD_CHECK)
 		find_concerned(c, u, r);
 	if (r->kind == OB_RECORD_CONTACT && !(told.bytes = contact_bytes_for_others(c, u, r)))
-		return true;
-	for (uint32_t to = 0; to < c->ranks; to++) {
-		if (to == c->rank || (r->kind == OB_RECORD_CHECK && !c->to[to]))
-			continue;
-		fits &= ob_mail_append_record(&c->dealt[to], &told);
-	}
-	return fits;
+		return;
+	for (uint32_t to = 0; to < c->ranks; to++)
+		if (to != c->rank && (r->kind != OB_RECORD_CHECK || c->to[to]))
+			ob_mail_append_record(&c->dealt[to], &told);
 }
 
 // Sends each rank the records that it needs: results and checks concern ranks nearby.
@@ -111,19 +108,17 @@ static const char *deal_records(ob_committer *c, ob_universe *u, ob_peers_head h
 	const uint64_t nothing = 0;
 	ob_record_reader own = { .mail = ob_committer_mail_of(c, c->rank) };
 	ob_mail_record r;
-	bool fits = true;
-	for (uint32_t to = 0; to < c->ranks; to++)
-		fits &= ob_peers_begin(&c->dealt[to]) && ob_mail_append(&c->dealt[to], &nothing, sizeof nothing);
+	for (uint32_t to = 0; to < c->ranks; to++) {
+		ob_peers_begin(&c->dealt[to]);
+		ob_mail_append(&c->dealt[to], &nothing, sizeof nothing);
+	}
 	memset(c->told, 0, c->ranks * sizeof *c->told);
 	memset(c->heard, 0, c->ranks * sizeof *c->heard);
-	while (fits && ob_committer_next(c, u, &own, &r))
-		fits = put_for_each(c, u, &r, all);
-	if (!fits) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return NULL;
-	}
+	while (ob_committer_next(c, u, &own, &r))
+		put_for_each(c, u, &r, all);
 	for (uint32_t to = 0; to < c->ranks; to++)
-		memcpy(c->dealt[to].bytes + sizeof head, &c->told[to], sizeof *c->told);
+		if (!c->dealt[to].lost)
+			memcpy(c->dealt[to].bytes + sizeof head, &c->told[to], sizeof *c->told);
 	if (!all && head.phase == OB_PHASE_ISLANDS)
 		ob_halo_part(c->cluster->parts.halo);
 	c->ahead = sizeof head + sizeof *c->told;
@@ -134,13 +129,9 @@ static const char *say_to_all(ob_committer *c, ob_universe *u, ob_peers_head hea
 {
 	ob_mail own = ob_committer_mail_of(c, c->rank);
 	ob_mail_record r;
-	bool fits = ob_peers_begin(&c->out);
-	while (fits && ob_mail_next(u, &own, &r))
-		fits = ob_mail_append_record(&c->out, &r);
-	if (!fits) {
-		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
-		return NULL;
-	}
+	ob_peers_begin(&c->out);
+	while (ob_mail_next(u, &own, &r))
+		ob_mail_append_record(&c->out, &r);
 	c->ahead = sizeof head;
 	return ob_peers_exchange(&c->cluster->peers, u, head, &c->out, &c->at);
 }

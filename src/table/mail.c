@@ -25,14 +25,15 @@ static bool wait_for_signal(ob_universe *u, uint32_t worker, uint32_t taken)
 	return !ob_gate_stopped(u);
 }
 
-// Makes room for so many more bytes.
+// Makes room for so many more bytes. Once that fails, it goes on to.
 static bool grow(ob_mail *m, size_t more)
 {
-	if (m->used + more <= m->max)
+	if (!m->lost && m->used + more <= m->max)
 		return true;
 	const size_t max = 2 * (m->used + more);
-	char *larger = realloc(m->bytes, max);
-	if (!larger)
+	char *larger = m->lost ? NULL : realloc(m->bytes, max);
+	m->lost = !larger;
+	if (m->lost)
 		return false;
 	m->bytes = larger;
 	m->max = max;
@@ -95,26 +96,26 @@ bool ob_mail_collect(ob_universe *u, ob_mail *m)
 void ob_mail_clear(ob_mail *m)
 {
 	m->used = m->at = m->end = m->part = 0;
+	m->lost = false;
 }
 
-bool ob_mail_append(ob_mail *m, const void *bytes, size_t n)
+void ob_mail_append(ob_mail *m, const void *bytes, size_t n)
 {
 	if (!grow(m, n))
-		return false;
+		return;
 	if (n)
 		memcpy(m->bytes + m->used, bytes, n);
 	m->used += n;
-	return true;
 }
 
-bool ob_mail_append_record(ob_mail *m, const ob_mail_record *r)
+void ob_mail_append_record(ob_mail *m, const ob_mail_record *r)
 {
 	const ob_record_head head = { r->kind, r->bytes };
 	part_head part = { r->worker, 0 };
 	if (m->part)
 		memcpy(&part, m->bytes + m->part - 1, sizeof part);
 	if (!grow(m, sizeof part + sizeof head + r->bytes))
-		return false;
+		return;
 	if (!m->part || part.worker != r->worker) {
 		part = (part_head){ r->worker, 0 };
 		m->part = 1 + m->used;
@@ -125,7 +126,6 @@ bool ob_mail_append_record(ob_mail *m, const ob_mail_record *r)
 	memcpy(m->bytes + m->used, &head, sizeof head);
 	memcpy(m->bytes + m->used + sizeof head, r->data, r->bytes);
 	m->used += sizeof head + r->bytes;
-	return true;
 }
 
 // Prefetches as many bytes as were just read: mails are long, and read once.

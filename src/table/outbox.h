@@ -78,6 +78,7 @@ typedef struct ob_mail {
 	char *bytes; // all submitted records, by simulator
 	size_t used, max, at;
 	size_t part; // 1 + offset of the head of the part that records are appended to; 0 = none
+	bool lost; // memory has run out: what was appended since is missing
 	uint32_t worker; // simulator of the records being read
 	size_t end; // end of its part
 } ob_mail;
@@ -90,11 +91,11 @@ typedef struct ob_mail_record {
 // Waits until all local participants of the phase have arrived, and copies their outboxes. A wrong checksum is blamed
 // on its simulator (ob_step_blame). Returns false on STOP.
 bool ob_mail_collect(ob_universe *u, ob_mail *m);
-// Clears it; appends bytes to its contents. Returns false if memory runs out.
+// Clears it; appends bytes to its contents.
 void ob_mail_clear(ob_mail *m);
-bool ob_mail_append(ob_mail *m, const void *bytes, size_t n);
+void ob_mail_append(ob_mail *m, const void *bytes, size_t n);
 // Appends a record, as ob_mail_next returns it. A mail has the simulators one after the other.
-bool ob_mail_append_record(ob_mail *m, const ob_mail_record *r);
+void ob_mail_append_record(ob_mail *m, const ob_mail_record *r);
 // Next record; false: none.
 bool ob_mail_next(ob_universe *u, ob_mail *m, ob_mail_record *out);
 // Next end of a simulator's phase, an ob_outbox_end; false: none.

@@ -93,9 +93,9 @@ static void move(rank *r)
 			leaving[left++] = id;
 	}
 	for (uint32_t to = 0; to < RANKS; to++)
-		r->wrong += !ob_peers_begin(&r->mail[to]);
+		ob_peers_begin(&r->mail[to]);
 	for (uint32_t i = 0; i < left; i++)
-		r->wrong += !ob_halo_give(r->h, r->u, leaving[i], &r->mail[s->home[leaving[i]]]);
+		ob_halo_give(r->h, r->u, leaving[i], &r->mail[s->home[leaving[i]]]);
 	const char *all = ob_peers_deal(&r->p, r->u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, r->mail, &at);
 	for (uint32_t from = 0; all && from < RANKS; from++) {
 		const char *rest = all + at[from] + sizeof(ob_peers_head);

@@ -60,7 +60,8 @@ static const uint64_t words[3] = { 1, 2, 3 };
 static const char *exchange(ob_peers *p, ob_universe *u, ob_mail *mail)
 {
 	const size_t *at;
-	CHECK(ob_peers_begin(mail) && ob_mail_append(mail, words, sizeof words));
+	ob_peers_begin(mail);
+	ob_mail_append(mail, words, sizeof words);
 	const ob_peers_head head = { .phase = OB_PHASE_ISLANDS, .digest = ob_peers_digest(u) };
 	const char *all = ob_peers_exchange(p, u, head, mail, &at);
 	for (int r = 0; all && r < 2; r++)
@@ -79,6 +80,27 @@ static void check_mail(void)
 	open_two(&s, &l);
 	CHECK(exchange(&p, l.u, &mail));
 	CHECK(ob_step_failed(l.u, NULL) == OB_STEP_OK && wire.calls == 1);
+	ob_mail_finish(&mail);
+	close_two(s, &l);
+}
+
+// A mail that memory did not suffice for is not sent.
+static void check_lost(void)
+{
+	little_scene *s;
+	little_universe l;
+	echo wire = { .calls = 0 };
+	ob_peers p = { .ranks = 2, .gather = gather, .wire = &wire };
+	const size_t *at;
+	ob_mail mail = { 0 };
+	open_two(&s, &l);
+	ob_peers_begin(&mail);
+	mail.lost = true;
+	ob_mail_append(&mail, words, sizeof words);
+	CHECK(!ob_peers_exchange(&p, l.u, (ob_peers_head){ .phase = OB_PEERS_CUT }, &mail, &at) && wire.calls == 0);
+	CHECK(ob_step_failed(l.u, NULL) == OB_STEP_MEMORY_FULL);
+	ob_mail_clear(&mail);
+	CHECK(!mail.lost);
 	ob_mail_finish(&mail);
 	close_two(s, &l);
 }
@@ -161,6 +183,7 @@ static void check_joining(void)
 int main(void)
 {
 	check_mail();
+	check_lost();
 	check_difference(1 + offsetof(ob_peers_head, digest), DIGEST_OF_CRATE, "object \"crate\"");
 	check_difference(1 + offsetof(ob_peers_head, digest), 0, "otherwise");
 	check_difference(1 + offsetof(ob_peers_head, phase), 0, "otherwise");

@@ -177,7 +177,7 @@ static void share(rank *r, bool late)
 	bool islands;
 	const uint32_t n = list_links_across(r, late, pair);
 	r->met = n;
-	r->wrong += !ob_rank_islands_share(r->islands, r->u, &r->p, &r->parts, pair, n, &islands) || !islands;
+	r->wrong += !ob_rank_islands_share(r->islands, r->u, &r->p, pair, n, &islands) || !islands;
 	ob_islands_list_members(r->u);
 	ob_islands_deal(r->u, r->parts.regions);
 	ob_islands_list_dealt_pairs(r->u, r->parts.halo);
@@ -342,7 +342,7 @@ static void open_rank(rank *r, story *s, const little_scene *scene, uint32_t num
 	r->u->rank = number;
 	r->u->ranks = RANKS;
 	r->parts = (ob_rank_parts){ ob_halo_create(r->u), ob_holdings_create(r->u), ob_regions_create(r->u) };
-	r->islands = ob_rank_islands_create(r->u);
+	r->islands = ob_rank_islands_create(r->u, &r->parts);
 	r->wire = (little_wire){ .x = &s->x, .rank = number };
 	r->p = little_peers(&r->wire);
 	ob_requery_reset(r->u);
