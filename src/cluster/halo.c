@@ -87,20 +87,15 @@ void ob_halo_destroy(ob_halo *h)
 	free(h);
 }
 
-static bool is_dynamic(const ob_step_data *data, uint32_t id)
-{
-	return ob_schedule_is_dynamic(&data->schedule[id]);
-}
-
 void ob_halo_settle(ob_halo *h, ob_universe *u)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		if (h->known[id].version != ob_motion_version(u, id))
 			h->known[id].version = 0; // another motion was published, which needs no digest
-		if (!is_dynamic(data, id))
+		if (!ob_schedule_is_dynamic(&data->schedule[id]))
 			h->owner[id] = 0;
-		if (h->owner[id] || !is_dynamic(data, id))
+		if (h->owner[id] || !ob_schedule_is_dynamic(&data->schedule[id]))
 			continue;
 		ob_home_set(u, id, ob_home_of(u, id)); // keeps it when the number of objects changes
 		h->owner[id] = (uint16_t)(1 + ob_home_rank(u, id));
@@ -340,7 +335,7 @@ void ob_halo_give(const ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *
 		const uint32_t other = at.side ? data->pair[at.pair].a : data->pair[at.pair].b;
 		pack_pair(mail, u, at.pair);
 		data->pair[at.pair].late = 0; // islands were merged for it; without this it would stay late here
-		if (h->partial && ob_object_in_range(data, other) && is_dynamic(data, other) &&
+		if (h->partial && ob_object_in_range(data, other) && ob_schedule_is_dynamic(&data->schedule[other]) &&
 		    ob_home_rank(u, other) != to)
 			pack_body(mail, u, other, data->count->merged && was_solved(u, other));
 	}

@@ -195,29 +195,22 @@ static const char *take(ob_peers *p, ob_universe *u, const char *all, const size
 	return all;
 }
 
-const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at)
+const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, bool each,
+			      const size_t **at)
 {
-	complete_head(p, u, &head);
-	if (!mail->lost)
-		memcpy(mail->bytes, &head, sizeof head);
-	const char *all = mail->lost ? NULL : p->gather(p->wire, mail->bytes, mail->used, at);
-	return take(p, u, all, all ? *at : NULL);
-}
-
-const char *ob_peers_deal(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at)
-{
-	const void **mine = calloc(p->ranks, sizeof *mine);
-	size_t *bytes = calloc(p->ranks, sizeof *bytes);
+	const uint32_t mails = each ? p->ranks : 1;
+	const void **mine = calloc(mails, sizeof *mine);
+	size_t *bytes = calloc(mails, sizeof *bytes);
+	const char *all = NULL;
 	bool fits = mine && bytes;
 	complete_head(p, u, &head);
-	for (uint32_t r = 0; r < p->ranks; r++)
-		fits = fits && !mail[r].lost;
-	for (uint32_t r = 0; fits && r < p->ranks; r++) {
+	for (uint32_t r = 0; r < mails && (fits = fits && !mail[r].lost); r++) {
 		memcpy(mail[r].bytes, &head, sizeof head);
 		mine[r] = mail[r].bytes;
 		bytes[r] = mail[r].used;
 	}
-	const char *all = fits ? p->deal(p->wire, mine, bytes, at) : NULL;
+	if (fits)
+		all = each ? p->deal(p->wire, mine, bytes, at) : p->gather(p->wire, *mine, *bytes, at);
 	free(mine);
 	free(bytes);
 	return take(p, u, all, all ? *at : NULL);
@@ -249,7 +242,7 @@ bool ob_parcels_exchange(ob_peers *p, ob_universe *u, uint64_t phase, ob_mail *m
 {
 	const ob_peers_head head = { .phase = phase };
 	const size_t *at;
-	const char *parcel, *all = (each ? ob_peers_deal : ob_peers_exchange)(p, u, head, mail, &at);
+	const char *parcel, *all = ob_peers_exchange(p, u, head, mail, each, &at);
 	ob_parcel of;
 	bool sound = true;
 	for (uint32_t r = 0; all && sound && r < p->ranks; r++) {

@@ -77,13 +77,13 @@ typedef struct ob_parcel {
 uint64_t ob_peers_digest(const ob_universe *u);
 // Empties the mail and leaves room for a head.
 void ob_peers_begin(ob_mail *mail);
-// Sends the mail with this head. Returns the mails of all ranks, with heads, in the order of ranks: rank r's from at[r]
-// to at[r + 1], valid until the next call. NULL: the others are at another point of the run, or one has left, or
-// there is no memory, and the step has failed. Then all know the move requested on rank 0 (ob_peers.move), and the next step with work, or with a
-// reader of all motions (ob_peers.look). They also know the numbers of islands and of awake bodies.
-const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
-// The same with another mail for each rank, mail[rank].
-const char *ob_peers_deal(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, const size_t **at);
+// Sends the mail with this head to all ranks; each: mail[rank] to each. Returns the mails of all ranks, with heads, in
+// the order of ranks: rank r's from at[r] to at[r + 1], valid until the next call. NULL: the others are at another point
+// of the run, or one has left, or there is no memory, and the step has failed. Then all know the move requested on rank
+// 0 (ob_peers.move), and the next step with work, or with a reader of all motions (ob_peers.look). They also know the
+// numbers of islands and of awake bodies.
+const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, bool each,
+			      const size_t **at);
 // Returns the next parcel at *from, which has *bytes left, and moves both past it. NULL: there is none; *sound becomes
 // false if it is malformed. p: its head.
 const char *ob_parcel_next(const char **from, size_t *bytes, ob_parcel *p, bool *sound);

@@ -126,11 +126,6 @@ static bool is_merging(const ob_universe *u)
 	return ob_universe_step_data(u)->count->merged;
 }
 
-static uint32_t rank_of(const ob_universe *u, uint32_t simulator)
-{
-	return ob_universe_rank_of(u, simulator);
-}
-
 // ---- this rank's islands
 
 // Votes for the simulator in whose region most of the island's bodies are (Boyer and Moore, MJRTY: a fast majority vote
@@ -163,7 +158,7 @@ static void find_islands(ob_rank_islands *s, ob_universe *u)
 		island *is = &s->island[i];
 		if (is->pinned != NONE)
 			is->to = data->pin[is->pinned] - 1;
-		else if (is_merging(u) && rank_of(u, is->to) != s->rank) // it is solved here already
+		else if (is_merging(u) && ob_universe_rank_of(u, is->to) != s->rank) // it is solved here already
 			is->to = ob_home_of(u, is->root);
 	}
 }
@@ -194,7 +189,7 @@ static void add_loads(ob_rank_islands *s, const ob_universe *u, uint64_t *loads)
 {
 	memset(s->load, 0, s->ranks * sizeof *s->load);
 	for (uint32_t i = 0; i < s->islands; i++)
-		s->load[rank_of(u, s->island[i].to)] += s->island[i].work;
+		s->load[ob_universe_rank_of(u, s->island[i].to)] += s->island[i].work;
 	for (uint32_t r = 0; r < s->ranks; r++) {
 		const load of = { r, s->load[r] };
 		if (!of.work)
@@ -207,7 +202,7 @@ static void add_loads(ob_rank_islands *s, const ob_universe *u, uint64_t *loads)
 // True if the island may go to another rank for balance alone.
 static bool may_spill(const ob_rank_islands *s, const ob_universe *u, const island *is)
 {
-	return !is->meets && is->pinned == NONE && rank_of(u, is->to) == s->rank;
+	return !is->meets && is->pinned == NONE && ob_universe_rank_of(u, is->to) == s->rank;
 }
 
 static void write_summary(ob_rank_islands *s, ob_universe *u, const uint32_t *pair, uint32_t pairs, uint32_t fliers)
@@ -223,7 +218,7 @@ static void write_summary(ob_rank_islands *s, ob_universe *u, const uint32_t *pa
 	add_ends(s, u, pair, pairs, &own.ends);
 	for (uint32_t i = 0; i < s->islands && !is_merging(u); i++) {
 		const island *is = &s->island[i];
-		own.moves |= !is->meets && rank_of(u, is->to) != s->rank;
+		own.moves |= !is->meets && ob_universe_rank_of(u, is->to) != s->rank;
 		if (may_spill(s, u, is) && is->work < own.least)
 			own.least = is->work;
 	}
@@ -461,7 +456,7 @@ static uint32_t list_leaving(ob_rank_islands *s, ob_universe *u)
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < s->islands; i++) {
 		island *is = &s->island[i];
-		is->leaves = rank_of(u, is->to) != s->rank;
+		is->leaves = ob_universe_rank_of(u, is->to) != s->rank;
 		s->leaves[is->root] = is->leaves;
 	}
 	for (uint32_t i = 0; i < bodies; i++) {
@@ -545,7 +540,7 @@ static bool take_homes(ob_rank_islands *s, ob_universe *u, const char *parcel, s
 		if (id >= ob_universe_ids(u) || ob_home_rank(u, id) != from)
 			return false;
 		rehome(s, u, id, h.simulator);
-		if (rank_of(u, h.simulator) != s->rank)
+		if (ob_universe_rank_of(u, h.simulator) != s->rank)
 			continue;
 		data->effort[id] = of[1];
 		ob_regions_take(s->parts->regions, id, h.simulator);
@@ -601,7 +596,7 @@ bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, cons
 	find_islands(s, u);
 	ob_peers_begin(&s->out);
 	write_summary(s, u, pair, pairs, fliers);
-	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_SHARE }, &s->out, &at);
+	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_SHARE }, &s->out, false, &at);
 	if (!all || !add_up(s, u, p, all, at, pair, pairs, &t))
 		return false;
 	*islands = t.islands;

@@ -86,11 +86,6 @@ void ob_regions_destroy(ob_regions *r)
 	free(r);
 }
 
-static bool is_dynamic(const ob_step_data *data, uint32_t id)
-{
-	return data->schedule[id].state >= OB_SCHEDULE_AWAKE;
-}
-
 // Returns the simulator where first .. first + count - 1 are halved: a rank's first, if they are several ranks'.
 static uint32_t middle_of(const ob_regions *r, uint32_t first, uint32_t count)
 {
@@ -108,7 +103,7 @@ static void find_groups(ob_regions *r, const ob_universe *u)
 	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
 		const ob_pair_key *k = &data->pair[i];
 		if (k->active && ob_object_in_range(data, k->a) && ob_object_in_range(data, k->b) &&
-		    is_dynamic(data, k->a) && is_dynamic(data, k->b))
+		    ob_schedule_is_dynamic(&data->schedule[k->a]) && ob_schedule_is_dynamic(&data->schedule[k->b]))
 			ob_forest_join(r->parent, k->a, k->b);
 	}
 }
@@ -137,7 +132,7 @@ static uint32_t list_groups(ob_regions *r, const ob_universe *u)
 	double all = 0;
 	memset(r->room, 0, r->simulators * sizeof *r->room);
 	for (uint32_t id = 0; id < ids; id++) {
-		if (!is_dynamic(data, id))
+		if (!ob_schedule_is_dynamic(&data->schedule[id]))
 			continue;
 		const uint32_t root = ob_forest_root(r->parent, id);
 		if (root == id) {
@@ -286,7 +281,7 @@ static void cut_anew(ob_regions *r, const ob_universe *u)
 	find_groups(r, u);
 	share_out(r, r->group, list_groups(r, u), 0, r->simulators);
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
-		r->home[id] = is_dynamic(data, id) ? r->home[ob_forest_root(r->parent, id)] : 0;
+		r->home[id] = ob_schedule_is_dynamic(&data->schedule[id]) ? r->home[ob_forest_root(r->parent, id)] : 0;
 	r->is_cut = true;
 }
 
@@ -316,8 +311,8 @@ bool ob_regions_settle(ob_regions *r, ob_universe *u)
 	const uint32_t ids = ob_universe_ids(u);
 	uint32_t fresh = 0;
 	for (uint32_t id = 0; id < ids; id++) {
-		r->home[id] = is_dynamic(data, id) ? r->home[id] : 0;
-		fresh += is_dynamic(data, id) && !r->home[id];
+		r->home[id] = ob_schedule_is_dynamic(&data->schedule[id]) ? r->home[id] : 0;
+		fresh += ob_schedule_is_dynamic(&data->schedule[id]) && !r->home[id];
 	}
 	if (!fresh)
 		return false;
@@ -328,7 +323,7 @@ bool ob_regions_settle(ob_regions *r, ob_universe *u)
 		cut_anew(r, u);
 	}
 	for (uint32_t id = 0; id < ids; id++) {
-		if (!is_dynamic(data, id) || (r->home[id] && !first))
+		if (!ob_schedule_is_dynamic(&data->schedule[id]) || (r->home[id] && !first))
 			continue;
 		if (!r->home[id])
 			r->home[id] = 1 + find_home(r, data->bounds[id], 0);

@@ -380,7 +380,7 @@ static const char *commit_neighbours(ob_committer *c, ob_universe *u, const ob_m
 	return NULL;
 }
 
-static const char *commit_end(ob_universe *u, const ob_mail_record *from)
+static const char *commit_end(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const ob_outbox_end *end = from->data;
 	ob_step_data *data = ob_universe_step_data(u);
@@ -394,37 +394,38 @@ static const char *commit_end(ob_universe *u, const ob_mail_record *from)
 	return NULL;
 }
 
-// Commits a record. Returns NULL, or the error in it. Only kinds that fit the tasks of the phase are accepted.
+enum { // phases, as bits
+	ISLANDS = 1 << OB_PHASE_ISLANDS,
+	SCRIPTS = 1 << OB_PHASE_SCRIPTS,
+	PAIRS = 1 << OB_PHASE_FORECAST | 1 << OB_PHASE_LATE_CONTACTS,
+	BOXES = 1 << OB_PHASE_BROADPHASE_START | 1 << OB_PHASE_BROADPHASE,
+};
+
+// Kinds of records: phases whose tasks they fit, the function that commits them, and the error in any other phase.
+static const struct {
+	uint32_t phases;
+	const char *(*commit)(ob_committer *c, ob_universe *u, const ob_mail_record *r);
+	const char *error;
+} kinds[] = {
+	[OB_RECORD_END] = { UINT32_MAX, commit_end, NULL },
+	[OB_RECORD_RESULT] = { ISLANDS, commit_result, "has solved what was not to be solved" },
+	[OB_RECORD_RESTORED] = { ISLANDS, commit_result, "has solved what was not to be solved" },
+	[OB_RECORD_BOUNDS] = { ISLANDS, commit_bounds, "has moved what was not to be moved" },
+	[OB_RECORD_EFFORT] = { ISLANDS, commit_effort, "has counted what was not to be counted" },
+	[OB_RECORD_CONTACT] = { ISLANDS, commit_contact, "has found a contact out of turn" },
+	[OB_RECORD_TOUCH] = { ISLANDS, commit_touch, "has felt out of turn" },
+	[OB_RECORD_SCRIPT] = { SCRIPTS, commit_script, "has run a script out of turn" },
+	[OB_RECORD_POSTS] = { SCRIPTS, commit_posts, "has asked for a script out of turn" },
+	[OB_RECORD_CHECK] = { PAIRS, commit_check, "has checked a pair out of turn" },
+	[OB_RECORD_NEIGHBOURS] = { BOXES, commit_neighbours, "has found neighbours out of turn" },
+};
+
+// Commits a record. Returns NULL, or the error in it.
 static const char *commit_record(ob_committer *c, ob_universe *u, ob_phase phase, const ob_mail_record *r)
 {
-	const bool islands = phase == OB_PHASE_ISLANDS, scripts = phase == OB_PHASE_SCRIPTS,
-		   pairs = phase == OB_PHASE_FORECAST || phase == OB_PHASE_LATE_CONTACTS,
-		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
-	switch (r->kind) {
-	case OB_RECORD_END:
-		return commit_end(u, r);
-	case OB_RECORD_RESULT:
-	case OB_RECORD_RESTORED:
-		return islands ? commit_result(c, u, r) : "has solved what was not to be solved";
-	case OB_RECORD_BOUNDS:
-		return islands ? commit_bounds(c, u, r) : "has moved what was not to be moved";
-	case OB_RECORD_EFFORT:
-		return islands ? commit_effort(c, u, r) : "has counted what was not to be counted";
-	case OB_RECORD_CONTACT:
-		return islands ? commit_contact(c, u, r) : "has found a contact out of turn";
-	case OB_RECORD_TOUCH:
-		return islands ? commit_touch(c, u, r) : "has felt out of turn";
-	case OB_RECORD_SCRIPT:
-		return scripts ? commit_script(c, u, r) : "has run a script out of turn";
-	case OB_RECORD_POSTS:
-		return scripts ? commit_posts(c, u, r) : "has asked for a script out of turn";
-	case OB_RECORD_CHECK:
-		return pairs ? commit_check(c, u, r) : "has checked a pair out of turn";
-	case OB_RECORD_NEIGHBOURS:
-		return boxes ? commit_neighbours(c, u, r) : "has found neighbours out of turn";
-	default:
+	if (r->kind >= sizeof kinds / sizeof *kinds || !kinds[r->kind].commit)
 		return "has handed over what is unknown";
-	}
+	return kinds[r->kind].phases >> phase & 1 ? kinds[r->kind].commit(c, u, r) : kinds[r->kind].error;
 }
 
 static uint32_t mails(const ob_committer *c)
@@ -458,19 +459,18 @@ static bool fails(ob_committer *c, ob_universe *u)
 
 static bool collect(ob_committer *c, ob_universe *u, ob_phase phase)
 {
-	const bool islands = phase == OB_PHASE_ISLANDS, scripts = phase == OB_PHASE_SCRIPTS,
-		   boxes = phase == OB_PHASE_BROADPHASE_START || phase == OB_PHASE_BROADPHASE;
+	const uint32_t in = 1u << phase;
 	c->due = c->solved = 0;
 	c->all = NULL;
-	if (islands)
+	if (in & ISLANDS)
 		give_islands(c, u);
-	if (boxes)
+	if (in & BOXES)
 		give_queries(c, u);
-	if (scripts)
+	if (in & SCRIPTS)
 		give_scripts(c, u);
-	if (islands || boxes)
+	if (in & (ISLANDS | BOXES))
 		memset(c->had, 0, ob_universe_ids(u) * sizeof *c->had);
-	if (scripts)
+	if (in & SCRIPTS)
 		memset(c->had, 0, ob_universe_step_data(u)->script_cells * sizeof *c->had);
 	return ob_mail_collect(u, &c->mail);
 }

@@ -122,7 +122,7 @@ static const char *deal_records(ob_committer *c, ob_universe *u, ob_peers_head h
 	if (!all && head.phase == OB_PHASE_ISLANDS)
 		ob_halo_part(c->cluster->parts.halo);
 	c->ahead = sizeof head + sizeof *c->told;
-	return ob_peers_deal(&c->cluster->peers, u, head, c->dealt, &c->at);
+	return ob_peers_exchange(&c->cluster->peers, u, head, c->dealt, true, &c->at);
 }
 
 static const char *say_to_all(ob_committer *c, ob_universe *u, ob_peers_head head)
@@ -133,7 +133,7 @@ static const char *say_to_all(ob_committer *c, ob_universe *u, ob_peers_head hea
 	while (ob_mail_next(u, &own, &r))
 		ob_mail_append_record(&c->out, &r);
 	c->ahead = sizeof head;
-	return ob_peers_exchange(&c->cluster->peers, u, head, &c->out, &c->at);
+	return ob_peers_exchange(&c->cluster->peers, u, head, &c->out, false, &c->at);
 }
 
 bool ob_committer_exchange(ob_committer *c, ob_universe *u, ob_phase phase, uint64_t digest)

@@ -81,13 +81,6 @@ int ob_write_contact_state(ob_universe *u, const ob_found_contact *c, uint32_t r
 	return version;
 }
 
-static void write_contact(ob_universe *u, const ob_found_contact *c)
-{
-	const uint32_t record = ob_write_contact_key(u, c);
-	if (record != OB_NO_RECORD)
-		ob_write_contact_state(u, c, record);
-}
-
 void ob_write_touch(ob_universe *u, const ob_touch_record *r)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -157,6 +150,15 @@ uint32_t *ob_reserve_changes(ob_universe *u, uint32_t id, uint32_t neighbours, u
 
 // ---- by the worker that found the result
 
+// Hands over a record, if this simulator is contained. false: it can write the universe itself.
+static bool hand_over(ob_universe *u, ob_record_kind kind, const void *record, size_t bytes)
+{
+	if (!ob_universe_contained(u))
+		return false;
+	ob_outbox_put(u, kind, record, bytes, NULL, 0);
+	return true;
+}
+
 static void hand_over_result(ob_universe *u, const ob_found_result *r)
 {
 	const char *motion = (const char *)&r->motion;
@@ -181,13 +183,10 @@ void ob_commit_result(ob_universe *u, const ob_found_result *r)
 
 void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6])
 {
-	if (!ob_universe_contained(u)) {
-		ob_write_bounds(u, id, box);
-		return;
-	}
 	ob_bounds_record r = { .id = id };
 	memcpy(r.box, box, sizeof r.box);
-	ob_outbox_put(u, OB_RECORD_BOUNDS, &r, sizeof r, NULL, 0);
+	if (!hand_over(u, OB_RECORD_BOUNDS, &r, sizeof r))
+		ob_write_bounds(u, id, box);
 }
 
 void ob_commit_effort(ob_universe *u, uint32_t island, uint32_t share)
@@ -195,9 +194,7 @@ void ob_commit_effort(ob_universe *u, uint32_t island, uint32_t share)
 	const ob_effort_record r = { island, share < OB_MOST_EFFORT
 						     ? share
 						     : OB_MOST_EFFORT }; // so that sums stay within bounds
-	if (ob_universe_contained(u))
-		ob_outbox_put(u, OB_RECORD_EFFORT, &r, sizeof r, NULL, 0);
-	else
+	if (!hand_over(u, OB_RECORD_EFFORT, &r, sizeof r))
 		ob_write_effort(u, island, r.share);
 }
 
@@ -210,18 +207,17 @@ size_t ob_contact_bytes(const ob_found_contact *c)
 
 void ob_commit_contact(ob_universe *u, const ob_found_contact *c)
 {
-	if (ob_universe_contained(u))
-		ob_outbox_put(u, OB_RECORD_CONTACT, c, ob_contact_bytes(c), NULL, 0);
-	else
-		write_contact(u, c);
+	if (hand_over(u, OB_RECORD_CONTACT, c, ob_contact_bytes(c)))
+		return;
+	const uint32_t record = ob_write_contact_key(u, c);
+	if (record != OB_NO_RECORD)
+		ob_write_contact_state(u, c, record);
 }
 
 void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse, ob_vec3 point)
 {
 	const ob_touch_record r = { id, other, impulse, point };
-	if (ob_universe_contained(u))
-		ob_outbox_put(u, OB_RECORD_TOUCH, &r, sizeof r, NULL, 0);
-	else
+	if (!hand_over(u, OB_RECORD_TOUCH, &r, sizeof r))
 		ob_write_touch(u, &r);
 }
 
@@ -258,9 +254,7 @@ void ob_commit_check(ob_universe *u, uint32_t check, const ob_pair_key *k)
 				    .clear_until = k->clear_until,
 				    .clear_as_of = k->clear_as_of,
 				    .limit = k->limit };
-	if (ob_universe_contained(u))
-		ob_outbox_put(u, OB_RECORD_CHECK, &r, sizeof r, NULL, 0);
-	else
+	if (!hand_over(u, OB_RECORD_CHECK, &r, sizeof r))
 		ob_write_check(u, &r);
 }
 

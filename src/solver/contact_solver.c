@@ -38,11 +38,6 @@ static const double impact_threshold = .1; // m/s: faster changes are impacts; t
 
 static const double slop = 1e-4, max_slop_share = 1. / 8; // m; bound as a share of the tolerance
 
-static bool is_jacobi(const ob_solver *s)
-{
-	return s->settings->solver == OB_SOLVER_JACOBI;
-}
-
 // Returns the usual threshold, or a smaller one in proportion to the run's tolerance.
 static double within_tolerance(const ob_solver *s, double usual, double of_tolerance)
 {
@@ -158,7 +153,7 @@ void ob_solver_converge(ob_solver *s, double enough, uint32_t max_iterations)
 		.wake_threshold = enough,
 		.impact_threshold = INFINITY,
 		.first = true,
-		.jacobi = is_jacobi(s),
+		.jacobi = s->methods.jacobi,
 		.ghosts = s->methods.restless,
 		.resting_gap = resting_gap * s->island.unit.length,
 		.turning_gap = turning_gap * s->island.unit.length,
@@ -247,7 +242,7 @@ void ob_solver_iterate(ob_solver *s)
 		.wake_threshold = wake_threshold_of(s),
 		.impact_threshold = impact_threshold * w->unit.speed * w->h / w->substep,
 		.first = true,
-		.jacobi = is_jacobi(s),
+		.jacobi = s->methods.jacobi,
 		.ghosts = s->methods.restless,
 		.resting_gap = resting_gap * w->unit.length,
 		.turning_gap = turning_gap * w->unit.length,

@@ -83,7 +83,7 @@ static void take_lane(ob_solver *s, ob_contact *contact)
 {
 	ob_island_work *w = &s->island;
 	const ob_batch_kind kind = kind_of(s, contact);
-	uint32_t colour = free_colour(w, contact, s->settings->solver == OB_SOLVER_JACOBI), batch = NO_BATCH;
+	uint32_t colour = free_colour(w, contact, s->methods.jacobi), batch = NO_BATCH;
 	if (colour < OB_COLOURS)
 		batch = w->open_batch[colour][kind];
 	if (batch == NO_BATCH)
@@ -513,7 +513,7 @@ static void count_in_reach(ob_island_work *w)
 void ob_contacts_prepare(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
-	bool jacobi = s->settings->solver == OB_SOLVER_JACOBI;
+	bool jacobi = s->methods.jacobi;
 	if (w->order_stale)
 		order_batches(w);
 	count_in_reach(w);

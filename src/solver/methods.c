@@ -23,6 +23,7 @@ ob_methods ob_methods_of(const ob_run_settings *run)
 			     .read = ghosts ? ob_ghosts_read : read_nothing,
 			     .move = exact ? ob_body_move : ob_ode_bodies_move,
 			     .sides = ghosts ? 2 : 1,
+			     .jacobi = run->solver == OB_SOLVER_JACOBI,
 			     .restless = ghosts,
 			     .exact = exact,
 			     .boxes = boxes,

@@ -8,11 +8,6 @@
 static const double pushed_share = .3; // share of the penetration, per partial substep
 static const double most_share = 1.1; // largest factor on relative velocities, where a push has to give energy back
 
-static bool is_jacobi(const ob_solver *s)
-{
-	return s->settings->solver == OB_SOLVER_JACOBI;
-}
-
 // ---- a free pair
 
 typedef struct body_in_pair {
@@ -203,7 +198,7 @@ void ob_push_apart(ob_solver *s)
 		push_free(s, left);
 		return;
 	}
-	const bool jacobi = is_jacobi(s), aabb = s->methods.boxes && !jacobi;
+	const bool jacobi = s->methods.jacobi, aabb = s->methods.boxes && !jacobi;
 	const double before = potential_energy(w);
 	if (aabb)
 		memcpy(w->delta + 1, w->d + 1, w->bodies * sizeof *w->d);

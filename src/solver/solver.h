@@ -95,6 +95,7 @@ typedef struct ob_methods {
 	// Moves a body of the island through the partial substep. smooth: (m/s)^2, squares of larger changes are jumps.
 	void (*move)(struct ob_solver *s, uint32_t row, double smooth);
 	uint32_t sides; // contacts that a pair of two moving bodies becomes
+	bool jacobi; // all contacts are solved on the same state
 	bool restless; // bodies may change without being hit
 	bool exact; // free motion is in closed form
 	bool boxes; // axis-aligned boxes collide, in place of shapes

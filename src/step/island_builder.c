@@ -141,19 +141,6 @@ static void make_roots(const ob_involved *p, uint32_t due)
 		p->parent[i] = i;
 }
 
-// Prefetches pairs that are due now: they and their bodies lie anywhere.
-static void prefetch_due_pair(const ob_step_data *data, uint32_t i, uint32_t end)
-{
-	enum { PAIR_AHEAD = 16, BODIES_AHEAD = 8 };
-	if (i + PAIR_AHEAD < end)
-		__builtin_prefetch(&data->pair[data->check[i + PAIR_AHEAD]]);
-	if (i + BODIES_AHEAD >= end)
-		return;
-	const ob_pair_key *k = &data->pair[data->check[i + BODIES_AHEAD]];
-	__builtin_prefetch(&data->schedule[k->a]);
-	__builtin_prefetch(&data->schedule[k->b]);
-}
-
 // Involves the bodies that are due in this step, and those of linked pairs that are due for a check.
 static void involve_due(const ob_involved *p)
 {
@@ -166,7 +153,7 @@ static void involve_due(const ob_involved *p)
 	for (uint32_t i = 0; i < n; i++)
 		ob_involve(p, due[i]);
 	for (uint32_t i = 0; i < pairs; i++) {
-		prefetch_due_pair(data, i, pairs);
+		ob_prefetch_checks(data, i, pairs);
 		involve_pair(p, &data->pair[data->check[i]]);
 	}
 	data->count->due = data->count->involved;
@@ -384,34 +371,6 @@ static void list_pairs_of_island(const ob_involved *p, uint32_t island, listing 
 	else
 		list_all_again(p, is);
 	sort_pairs(data, data->island_pair + is->first_pair, is->pairs);
-}
-
-static void list_pairs(const ob_involved *p, uint32_t first, uint32_t end)
-{
-	listing found;
-	found.visits = 0;
-	found.halo = NULL;
-	for (uint32_t i = first; i < end; i++) {
-		ob_island *is = &p->data->island[i];
-		list_pairs_of_island(p, i, &found);
-		is->work = estimated_work(p, is);
-	}
-	ob_step_visited(p->u, found.visits);
-}
-
-// Lists the pairs of dealt islands, on several ranks, in the order of member[].
-static void list_dealt_pairs(const ob_involved *p, ob_halo *halo)
-{
-	ob_step_data *data = p->data;
-	listing found;
-	found.visits = 0;
-	found.halo = halo;
-	for (uint32_t n = 0, at = 0; n < data->count->unsolved; n++) {
-		const uint32_t i = data->result_island[data->member[at]];
-		at += data->island[i].members;
-		list_pairs_of_island(p, i, &found);
-	}
-	data->count->visits += found.visits;
 }
 
 // Ends the islands of the step before: their pairs are in no island any more, and those that touch no longer lose their
@@ -639,25 +598,6 @@ static void make_shares(ob_involved *p, uint64_t total, ob_regions *regions)
 	permute_islands(data->island, p->parent, unsolved);
 }
 
-// Sets the order in which islands are solved, and the worker of each.
-static void deal_islands(ob_involved *p, ob_regions *regions)
-{
-	ob_step_data *data = p->data;
-	const uint32_t n = data->count->unsolved;
-	uint64_t total = 0;
-	sort_by_work(p);
-	for (uint32_t i = 0; i < n; i++)
-		total += data->island[i].work;
-	data->count->shared = regions || ob_moves_were_made(p->u);
-	if (data->count->shared)
-		make_shares(p, total, regions);
-	else
-		make_chunks(p, total);
-	for (uint32_t i = 0; i < n; i++)
-		for (uint32_t m = 0; m < data->island[i].members; m++)
-			data->result_island[data->member[data->island[i].first_member + m]] = i;
-}
-
 // ---- calls in their order
 
 void ob_islands_begin(ob_universe *u)
@@ -720,21 +660,54 @@ void ob_islands_list_pairs(ob_universe *u, uint32_t task)
 {
 	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
 	const ob_involved p = ob_involved_begin(u, count->merged);
-	list_pairs(&p, task * OB_ISLANDS_AT_ONCE, end_of_task(task, OB_ISLANDS_AT_ONCE, count->unsolved));
+	const uint32_t end = end_of_task(task, OB_ISLANDS_AT_ONCE, count->unsolved);
+	listing found;
+	found.visits = 0;
+	found.halo = NULL;
+	for (uint32_t i = task * OB_ISLANDS_AT_ONCE; i < end; i++) {
+		list_pairs_of_island(&p, i, &found);
+		p.data->island[i].work = estimated_work(&p, &p.data->island[i]);
+	}
+	ob_step_visited(u, found.visits);
 }
 
+// Sets the order in which islands are solved, and the worker of each.
 void ob_islands_deal(ob_universe *u, ob_regions *regions)
 {
 	ob_involved p = ob_involved_begin(u, ob_universe_step_data(u)->count->merged);
-	for (uint32_t i = 0; !p.alone && i < p.data->count->unsolved; i++)
-		p.data->island[i].work = estimated_work(&p, &p.data->island[i]);
-	deal_islands(&p, regions);
+	ob_step_data *data = p.data;
+	const uint32_t n = data->count->unsolved;
+	uint64_t total = 0;
+	for (uint32_t i = 0; i < n; i++) {
+		if (regions)
+			data->island[i].work = estimated_work(&p, &data->island[i]);
+		total += data->island[i].work;
+	}
+	sort_by_work(&p);
+	data->count->shared = regions || ob_moves_were_made(u);
+	if (data->count->shared)
+		make_shares(&p, total, regions);
+	else
+		make_chunks(&p, total);
+	for (uint32_t i = 0; i < n; i++)
+		for (uint32_t m = 0; m < data->island[i].members; m++)
+			data->result_island[data->member[data->island[i].first_member + m]] = i;
 }
 
+// Lists pairs in the order of member[].
 void ob_islands_list_dealt_pairs(ob_universe *u, ob_halo *halo)
 {
 	const ob_involved p = ob_involved_begin(u, ob_universe_step_data(u)->count->merged);
-	list_dealt_pairs(&p, halo);
+	ob_step_data *data = p.data;
+	listing found;
+	found.visits = 0;
+	found.halo = halo;
+	for (uint32_t n = 0, at = 0; n < data->count->unsolved; n++) {
+		const uint32_t i = data->result_island[data->member[at]];
+		at += data->island[i].members;
+		list_pairs_of_island(&p, i, &found);
+	}
+	data->count->visits += found.visits;
 }
 
 void ob_islands_merge(ob_universe *u)

@@ -360,28 +360,13 @@ static void prefetch_check(const ob_universe *u, uint32_t i, uint32_t end)
 		ob_prefetch_schedule(u, &data->pair[data->check[i + OBJECTS_AHEAD]]);
 }
 
-static void prefetch_listed(const ob_universe *u, uint32_t i, uint32_t end)
-{
-	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
-	const ob_step_data *data = ob_universe_step_data(u);
-	if (i + PAIR_AHEAD < end)
-		__builtin_prefetch(&data->pair[data->check[i + PAIR_AHEAD]]);
-	if (i + OBJECTS_AHEAD >= end)
-		return;
-	const uint32_t a = data->pair[data->check[i + OBJECTS_AHEAD]].a,
-		       b = data->pair[data->check[i + OBJECTS_AHEAD]].b;
-	__builtin_prefetch(&data->schedule[a]);
-	__builtin_prefetch(&data->schedule[b]);
-	__builtin_prefetch(&data->home[a]);
-}
-
 void ob_late_contacts_leave_to_others(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t listed = data->count->checks;
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < listed; i++) {
-		prefetch_listed(u, i, listed);
+		ob_prefetch_checks(data, i, listed);
 		if (ob_pair_is_checked_here(u, &data->pair[data->check[i]]))
 			data->check[n++] = data->check[i];
 	}
@@ -427,17 +412,10 @@ static void enter_next_check(const ob_universe *u, uint32_t pair, uint64_t steps
 // Enters the next checks for contained simulators, which cannot write the calendar.
 static void enter_next_checks(const ob_universe *u)
 {
-	enum { PAIR_AHEAD = 16, OBJECTS_AHEAD = 8 };
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t end = ob_checks_count(data);
 	for (uint32_t i = 0; i < end; i++) {
-		if (i + PAIR_AHEAD < end)
-			__builtin_prefetch(&data->pair[data->check[i + PAIR_AHEAD]]);
-		if (i + OBJECTS_AHEAD < end) {
-			const ob_pair_key *k = &data->pair[data->check[i + OBJECTS_AHEAD]];
-			__builtin_prefetch(&data->schedule[k->a]);
-			__builtin_prefetch(&data->schedule[k->b]);
-		}
+		ob_prefetch_checks(data, i, end);
 		if (ob_pair_is_checked_here(u, &data->pair[data->check[i]]))
 			enter_next_check(u, data->check[i], data->count->checked);
 	}

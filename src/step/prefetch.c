@@ -25,6 +25,19 @@ void ob_prefetch_schedule(const ob_universe *u, const ob_pair_key *k)
 	}
 }
 
+void ob_prefetch_checks(const ob_step_data *data, uint32_t i, uint32_t end)
+{
+	enum { PAIR_AHEAD = 16, BODIES_AHEAD = 8 };
+	if (i + PAIR_AHEAD < end)
+		__builtin_prefetch(&data->pair[data->check[i + PAIR_AHEAD]]);
+	if (i + BODIES_AHEAD >= end)
+		return;
+	const ob_pair_key *k = &data->pair[data->check[i + BODIES_AHEAD]];
+	__builtin_prefetch(&data->schedule[k->a]);
+	__builtin_prefetch(&data->schedule[k->b]);
+	__builtin_prefetch(&data->home[k->a]);
+}
+
 void ob_prefetch_link(const ob_universe *u, uint32_t link)
 {
 	const ob_step_data *data = ob_universe_step_data(u);

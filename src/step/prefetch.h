@@ -15,6 +15,9 @@ void ob_prefetch_query(const ob_universe *u, uint32_t id);
 void ob_prefetch_schedule(const ob_universe *u, const ob_pair_key *k);
 void ob_prefetch_pair(ob_sim *s, const ob_pair_key *k);
 
+// Prefetches pairs that follow place i of check[], up to `end`, and what their bodies are due for.
+void ob_prefetch_checks(const ob_step_data *data, uint32_t i, uint32_t end);
+
 // Prefetches the first pairs of the members that follow place i of member[], while a caller walks the islands' members.
 void ob_prefetch_pairs_of(const ob_universe *u, uint32_t i);
 // The same for the lists of pairs of ids[i] and later, up to `end`.

@@ -349,22 +349,23 @@ static void find_late_contacts(ob_sim *s)
 	check_pairs(s, true);
 }
 
-static void link_bodies(ob_sim *s)
+static void arrange_by(ob_sim *s, void (*work)(ob_universe *u, uint32_t task))
 {
 	uint32_t i;
 	while (ob_task_claim(s->u, &i)) {
-		ob_islands_link(s->u, i);
+		work(s->u, i);
 		ob_profile_task_done(s, i);
 	}
 }
 
+static void link_bodies(ob_sim *s)
+{
+	arrange_by(s, ob_islands_link);
+}
+
 static void list_pairs(ob_sim *s)
 {
-	uint32_t i;
-	while (ob_task_claim(s->u, &i)) {
-		ob_islands_list_pairs(s->u, i);
-		ob_profile_task_done(s, i);
-	}
+	arrange_by(s, ob_islands_list_pairs);
 }
 
 // Solves n islands of a chunk, side by side where they fly; begins: they are its first.

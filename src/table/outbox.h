@@ -41,7 +41,7 @@ typedef struct ob_outbox_end {
 	ob_counters counters;
 } ob_outbox_end;
 
-enum { OB_OUTBOX_END = 0 }; // its kind; all others are the module sim's
+enum { OB_OUTBOX_END = 0 }; // its kind; all others are the module exchange's
 
 // ---- the simulator's side
 

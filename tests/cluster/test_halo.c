@@ -96,7 +96,7 @@ static void move(rank *r)
 		ob_peers_begin(&r->mail[to]);
 	for (uint32_t i = 0; i < left; i++)
 		ob_halo_give(r->h, r->u, leaving[i], &r->mail[s->home[leaving[i]]]);
-	const char *all = ob_peers_deal(&r->p, r->u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, r->mail, &at);
+	const char *all = ob_peers_exchange(&r->p, r->u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, r->mail, true, &at);
 	for (uint32_t from = 0; all && from < RANKS; from++) {
 		const char *rest = all + at[from] + sizeof(ob_peers_head);
 		size_t bytes = at[from + 1] - at[from] - sizeof(ob_peers_head);

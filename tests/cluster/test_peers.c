@@ -63,7 +63,7 @@ static const char *exchange(ob_peers *p, ob_universe *u, ob_mail *mail)
 	ob_peers_begin(mail);
 	ob_mail_append(mail, words, sizeof words);
 	const ob_peers_head head = { .phase = OB_PHASE_ISLANDS, .digest = ob_peers_digest(u) };
-	const char *all = ob_peers_exchange(p, u, head, mail, &at);
+	const char *all = ob_peers_exchange(p, u, head, mail, false, &at);
 	for (int r = 0; all && r < 2; r++)
 		CHECK(at[r + 1] - at[r] == sizeof head + sizeof words &&
 		      memcmp(all + at[r] + sizeof head, words, sizeof words) == 0);
@@ -97,7 +97,8 @@ static void check_lost(void)
 	ob_peers_begin(&mail);
 	mail.lost = true;
 	ob_mail_append(&mail, words, sizeof words);
-	CHECK(!ob_peers_exchange(&p, l.u, (ob_peers_head){ .phase = OB_PEERS_CUT }, &mail, &at) && wire.calls == 0);
+	CHECK(!ob_peers_exchange(&p, l.u, (ob_peers_head){ .phase = OB_PEERS_CUT }, &mail, false, &at) &&
+	      wire.calls == 0);
 	CHECK(ob_step_failed(l.u, NULL) == OB_STEP_MEMORY_FULL);
 	ob_mail_clear(&mail);
 	CHECK(!mail.lost);
