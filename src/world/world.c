@@ -108,6 +108,16 @@ ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p
 	return ob_world_add(w, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), mass, p);
 }
 
+ob_world_body ob_world_cylinder(ob_world *w, double mass, double radius, double half, ob_vec3 p)
+{
+	return ob_world_add(w, OB_SHAPE_CYLINDER, ob_v3(radius, half, 0), mass, p);
+}
+
+ob_world_body ob_world_capsule(ob_world *w, double mass, double radius, double half, ob_vec3 p)
+{
+	return ob_world_add(w, OB_SHAPE_CAPSULE, ob_v3(radius, half, 0), mass, p);
+}
+
 // Number of the hull; several bodies may share one.
 static uint32_t add_hull(ob_world *w, const ob_hull *h)
 {

@@ -148,7 +148,7 @@ static void build_turntables(ob_world *w, uint32_t run)
 	const double limit = ob_reference_turntable_radius(rate, .5, -w->gravity.z);
 	for (uint32_t i = 0; i < TURNTABLES; i++) {
 		const double y = 6. * i, r = share(i) * limit;
-		ob_world_body table = ob_world_add(w, OB_SHAPE_CYLINDER, ob_v3(2.5, .1, 0), 0, ob_v3(0, y, -.1));
+		ob_world_body table = ob_world_cylinder(w, 0, 2.5, .1, ob_v3(0, y, -.1));
 		ob_world_kinematic(table);
 		table.state->w.z = rate;
 		ob_world_body b = ob_world_box(w, 5, ob_v3(.1, .1, .05), ob_v3(r, y, .05));

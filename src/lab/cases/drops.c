@@ -77,8 +77,7 @@ static void build_round_drops(ob_world *w, uint32_t run)
 	ob_world_ground(w).passport->friction = 1;
 	for (int i = 0; i < ALL; i++) {
 		int kind = drop_of(i).proportion % ROUND_KINDS;
-		ob_shape shape = kind == 2 ? OB_SHAPE_CAPSULE : OB_SHAPE_CYLINDER;
-		ob_world_body b = ob_world_add(w, shape, ob_v3(.2, .3, 0), 10, ob_v3(0, 0, 0));
+		ob_world_body b = (kind == 2 ? ob_world_capsule : ob_world_cylinder)(w, 10, .2, .3, ob_v3(0, 0, 0));
 		lift(b, i, kind ? .2 : .3, ob_v3(0, kind ? M_PI_2 : 0, 0));
 	}
 }

@@ -10,7 +10,7 @@ enum { OB_HEAD_ON_RUNS = 12 };
 typedef struct ob_head_on {
 	double ratio; // second mass over the first, which is 1 kg
 	double e;
-	uint32_t shape; // ob_shape
+	bool boxes; // otherwise balls
 } ob_head_on;
 
 ob_head_on ob_head_on_of(uint32_t run);

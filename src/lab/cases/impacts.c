@@ -11,7 +11,7 @@ ob_head_on ob_head_on_of(uint32_t run)
 	return (ob_head_on){
 		.ratio = run / 3 % 2 ? 1000 : 1,
 		.e = restitution[run % 3],
-		.shape = run / 6 ? OB_SHAPE_BOX : OB_SHAPE_SPHERE,
+		.boxes = run / 6,
 	};
 }
 
@@ -22,8 +22,8 @@ void ob_head_on_build(ob_world *w, uint32_t run, ob_vec3 at)
 	for (int i = 0; i < 2; i++) {
 		double mass = i ? h.ratio : 1;
 		ob_vec3 p = ob_madd(at, 1.537 * i, ob_v3(1, 0, 0)); // they touch within a frame, not at its end
-		ob_world_body b = h.shape == OB_SHAPE_BOX ? ob_world_box(w, mass, ob_v3(.5, .5, .5), p)
-							  : ob_world_sphere(w, mass, .5, p);
+		ob_world_body b =
+			h.boxes ? ob_world_box(w, mass, ob_v3(.5, .5, .5), p) : ob_world_sphere(w, mass, .5, p);
 		b.passport->friction = .3;
 		b.passport->restitution = h.e;
 		b.state->v.x = !i;

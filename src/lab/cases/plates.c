@@ -4,6 +4,7 @@
 #include "lab/look.h"
 #include "reference/mechanics.h"
 #include "reference/plate.h"
+#include "shape/shape.h"
 #include "world/world.h"
 
 enum { RATIOS = 7 };
@@ -64,7 +65,7 @@ static void build_discs(ob_world *w, bool box)
 {
 	build_floor(w, box);
 	for (int i = 0; i < RATIOS; i++)
-		start(ob_world_add(w, OB_SHAPE_CYLINDER, ob_v3(radius, thin, 0), 1, place(0, i)), i, radius);
+		start(ob_world_cylinder(w, 1, radius, thin, place(0, i)), i, radius);
 	ob_world_material(w, mu, 0);
 }
 
@@ -89,7 +90,7 @@ static void compare(const ob_case_run_state *t, uint32_t id, double *way, double
 {
 	const ob_passport *p = &t->world->passport[id];
 	const ob_state *s = &t->world->state[id];
-	ob_reference_plate plate = { p->shape == OB_SHAPE_CYLINDER, p->size.x, p->size.y, mu, ob_look_gravity(t) };
+	ob_reference_plate plate = { ob_shape_is(p->shape, OB_RIMMED), p->size.x, p->size.y, mu, ob_look_gravity(t) };
 	ob_reference_plate_state from = { .angle = attitude, .vx = s->v.x, .vy = s->v.y, .w = s->w.z };
 	ob_reference_plate_state exact = ob_reference_plate_slide(&plate, from, t->time);
 	ob_vec3 moved = ob_look_moved(t, id);

@@ -34,8 +34,7 @@ static void build_cylinders(ob_world *w, uint32_t run)
 	ob_world_ground(w);
 	for (int i = 0; i < CYLINDERS; i++) {
 		double half = height / slenderness[i];
-		tilt(ob_world_add(w, OB_SHAPE_CYLINDER, ob_v3(half, height, 0), 1000 * half * half, ob_v3(0, 0, 0)),
-		     half, 10 * i);
+		tilt(ob_world_cylinder(w, 1000 * half * half, half, height, ob_v3(0, 0, 0)), half, 10 * i);
 	}
 	ob_world_material(w, rough, 0);
 }
@@ -163,7 +162,7 @@ static void build_disk(ob_world *w, uint32_t run)
 	double spin = ob_reference_disk_spin(radius, half_thick, lean, OB_WORLD_GRAVITY);
 	ob_world_ground(w);
 	ob_vec3 at = ob_v3(0, 0, radius * sin(lean) + half_thick * cos(lean));
-	ob_world_body b = ob_world_add(w, OB_SHAPE_CYLINDER, ob_v3(radius, half_thick, 0), 10, at);
+	ob_world_body b = ob_world_cylinder(w, 10, radius, half_thick, at);
 	b.state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(0, lean, 0));
 	b.state->w = ob_v3(spin * sin(lean), 0, spin * cos(lean) + turn);
 	ob_world_material(w, .5, 0);

@@ -14,14 +14,14 @@ static const ob_vec3 onto_side = { M_PI_2, 0, 0 }; // turns the axis from z to y
 static void build_resting(ob_world *w, uint32_t run)
 {
 	static const struct {
-		ob_shape shape;
+		ob_world_body (*add)(ob_world *w, double mass, double radius, double half, ob_vec3 p);
 		double radius, half;
 		bool lies;
-	} body[] = { { OB_SHAPE_CYLINDER, .5, .5, false },
-		     { OB_SHAPE_CYLINDER, .1, .5, false },
-		     { OB_SHAPE_CYLINDER, .5, .05, false },
-		     { OB_SHAPE_CYLINDER, .2, .5, true },
-		     { OB_SHAPE_CAPSULE, .2, .4, true } };
+	} body[] = { { ob_world_cylinder, .5, .5, false },
+		     { ob_world_cylinder, .1, .5, false },
+		     { ob_world_cylinder, .5, .05, false },
+		     { ob_world_cylinder, .2, .5, true },
+		     { ob_world_capsule, .2, .4, true } };
 	ob_world_ground(w);
 	for (int i = 0; i < 10; i++) {
 		int k = i / 2;
@@ -29,8 +29,8 @@ static void build_resting(ob_world *w, uint32_t run)
 		bool on_box = i % 2;
 		if (on_box)
 			ob_world_box(w, 0, ob_v3(1, 1, .25), ob_v3(3 * k, 3, .25));
-		ob_world_body b = ob_world_add(w, body[k].shape, ob_v3(body[k].radius, body[k].half, 0), 100,
-					       ob_v3(3 * k, 3 * on_box, .5 * on_box + lift));
+		ob_world_body b =
+			body[k].add(w, 100, body[k].radius, body[k].half, ob_v3(3 * k, 3 * on_box, .5 * on_box + lift));
 		if (body[k].lies)
 			b.state->pose.q = ob_quat_turn(ob_quat_identity(), onto_side);
 	}
@@ -57,7 +57,7 @@ static void build_stack(ob_world *w, uint32_t run)
 	ob_world_ground(w);
 	for (int i = 0; i < 10; i++) {
 		double x = ob_splitmix_within(&seed, -.01, .01), y = ob_splitmix_within(&seed, -.01, .01);
-		ob_world_add(w, OB_SHAPE_CYLINDER, ob_v3(.5, .5, 0), 785, ob_v3(x, y, .5 + i));
+		ob_world_cylinder(w, 785, .5, .5, ob_v3(x, y, .5 + i));
 	}
 }
 
@@ -95,8 +95,9 @@ static void build_rolling(ob_world *w, uint32_t run)
 				.state->pose.q = tilt;
 		if (i >= 2)
 			on = ob_madd(on, 1, up);
-		ob_shape shape = i % 2 ? OB_SHAPE_CAPSULE : OB_SHAPE_CYLINDER;
-		ob_world_add(w, shape, ob_v3(radius, half, 0), 20, ob_madd(on, radius, up)).state->pose.q = lying;
+		ob_world_body b =
+			(i % 2 ? ob_world_capsule : ob_world_cylinder)(w, 20, radius, half, ob_madd(on, radius, up));
+		b.state->pose.q = lying;
 	}
 	ob_world_material(w, .5, 0);
 }
@@ -149,11 +150,11 @@ static ob_world_body build_any(ob_world *w, int kind, ob_vec3 p)
 	case 0:
 		return ob_world_box(w, 24, ob_v3(.2, .15, .1), p);
 	case 1:
-		return ob_world_add(w, OB_SHAPE_CYLINDER, ob_v3(.15, .2, 0), 28, p);
+		return ob_world_cylinder(w, 28, .15, .2, p);
 	case 2:
 		return ob_world_sphere(w, 24, .18, p);
 	default:
-		return ob_world_add(w, OB_SHAPE_CAPSULE, ob_v3(.12, .15, 0), 20, p);
+		return ob_world_capsule(w, 20, .12, .15, p);
 	}
 }
 

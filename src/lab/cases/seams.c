@@ -29,13 +29,14 @@ static void build_sliders(ob_world *w, uint32_t run)
 // Round bodies lie with their axes across the lane, and roll from the start.
 static void build_rollers(ob_world *w, uint32_t run)
 {
-	static const ob_shape shape[] = { OB_SHAPE_SPHERE, OB_SHAPE_CYLINDER, OB_SHAPE_CAPSULE };
 	static const double radius = .1;
 	build_lanes(w);
 	for (int lane = 0; lane < LANES; lane++) {
-		bool sphere = lane / 2 == 0;
-		ob_world_body b = ob_world_add(w, shape[lane / 2], ob_v3(radius, sphere ? 0 : .2, 0), 4,
-					       ob_v3(.013 * lane, 2 * lane, radius));
+		const ob_vec3 at = ob_v3(.013 * lane, 2 * lane, radius);
+		const bool sphere = lane / 2 == 0;
+		ob_world_body b = sphere          ? ob_world_sphere(w, 4, radius, at)
+				  : lane / 2 == 1 ? ob_world_cylinder(w, 4, radius, .2, at)
+						  : ob_world_capsule(w, 4, radius, .2, at);
 		b.state->v.x = speed;
 		b.state->w.y = speed / radius;
 		if (!sphere)
