@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "elementary/elementary.h"
 #include "hull/hull.h"
+#include "shape/shape.h"
 
 static void *grown(void *old, uint32_t count, size_t size)
 {
@@ -16,34 +17,6 @@ static void *grown(void *old, uint32_t count, size_t size)
 		abort();
 	}
 	return more;
-}
-
-// Principal moments (kg m^2) about the centre of a homogeneous body; axis of a capsule and a cylinder along z.
-static ob_vec3 inertia_of(ob_shape shape, ob_vec3 size, double mass)
-{
-	double r2 = size.x * size.x, h = size.y, across, along;
-	switch (shape) {
-	case OB_SHAPE_BOX: {
-		double x = size.x * size.x, y = size.y * size.y, z = size.z * size.z;
-		return ob_scale(ob_v3(y + z, z + x, x + y), mass / 3);
-	}
-	case OB_SHAPE_SPHERE:
-		along = across = .4 * mass * size.x * size.x;
-		break;
-	case OB_SHAPE_CYLINDER:
-		along = .5 * mass * r2;
-		across = mass * (r2 / 4 + h * h / 3);
-		break;
-	case OB_SHAPE_CAPSULE: { // a cylinder of length 2 h and two half spheres
-		double core = mass * 2 * h / (2 * h + 4. / 3 * size.x), caps = mass - core;
-		along = core * r2 / 2 + caps * .4 * r2;
-		across = core * (r2 / 4 + h * h / 3) + caps * (.4 * r2 + h * h + .75 * size.x * h);
-		break;
-	}
-	default:
-		return ob_v3(0, 0, 0);
-	}
-	return ob_v3(across, across, along);
 }
 
 ob_world_body ob_world_add(ob_world *w, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p)
@@ -56,7 +29,7 @@ ob_world_body ob_world_add(ob_world *w, ob_shape shape, ob_vec3 size, double mas
 	uint32_t id = w->objects++;
 	w->passport[id] = (ob_passport){ .id = id, .generation = 1, .shape = shape, .size = size, .mass = mass };
 	w->passport[id].flags = OB_OBJECT_PRESENT | (mass > 0 ? 0 : OB_OBJECT_STATIC);
-	w->passport[id].inertia = inertia_of(shape, size, mass);
+	w->passport[id].inertia = ob_shape_inertia(shape, size, NULL, mass);
 	w->passport[id].friction = .5;
 	w->state[id] = (ob_state){ .pose = { p, ob_quat_identity() } };
 	return (ob_world_body){ &w->passport[id], &w->state[id] };

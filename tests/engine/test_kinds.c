@@ -4,8 +4,6 @@
 
 #include "little_world.h"
 
-#include "shape/shape.h"
-
 #include "../check.h"
 
 // A collapsing heap shows any difference between two engines.
@@ -27,24 +25,8 @@ static void differ(void)
 	little_world_free(l);
 }
 
-// A world's bodies have the inertia that the host would compute, up to rounding.
-static void inertia(void)
-{
-	static const ob_shape shape[] = { OB_SHAPE_SPHERE, OB_SHAPE_BOX, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
-	little_world *l = little_world_new();
-	for (int i = 0; i < 4; i++) {
-		ob_vec3 size = ob_v3(.3, .7, shape[i] == OB_SHAPE_BOX ? .2 : 0);
-		uint32_t id = little_add(l, shape[i], size, 5, ob_v3(0, 0, 0));
-		ob_vec3 off = ob_sub(l->world.passport[id].inertia, ob_shape_inertia(shape[i], size, NULL, 5));
-		CHECK(ob_norm(off) < 1e-12);
-		CHECK(ob_norm(l->world.passport[id].inertia) > .1);
-	}
-	little_world_free(l);
-}
-
 int main(void)
 {
-	inertia();
 	differ();
 	CHECK(!ob_engine_find("no-such-engine"));
 	CHECK(ob_engine_find("obsim") == ob_engine_kinds[0]);
