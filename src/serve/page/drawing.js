@@ -1,6 +1,6 @@
 // Draws a universe with WebGL 2, by the renderer's own shaders and passes (src/render/passes.c, frame.c): shadow map,
 // occlusion map, bodies, planes, sky, overlays.
-import { BOX, CAPSULE, CYLINDER, HULL, PLANE } from './universe.js';
+import { isEndless, isHulled, outlineOf } from './shapes.js';
 import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes, hullVertices } from './meshes.js';
 import { turned } from './motion.js';
 
@@ -151,27 +151,25 @@ function projection(v) {
 // ---- instances
 
 function meshOf(body, v, height) {
-	if (body.shape === BOX)
+	const o = outlineOf(body.shape, body.size);
+	if (!o.rim && !o.ball)
 		return BOX_MESH;
 	const distance = Math.max(Math.hypot(...sub(body.p, v.eye)), v.near);
 	const px = 0.5 * height * body.size[0] / (v.tanY * distance), level = px < MEDIUM_PX ? 0 : px < FINE_PX ? 1 : 2;
-	return (body.shape === CYLINDER ? CYLINDER_MESH : ROUND_MESH) + level;
+	return (o.rim ? CYLINDER_MESH : ROUND_MESH) + level;
 }
 
 function putInstance(out, at, body, eye) {
-	const s = body.size, bevel = (smallest) => Math.min(BEVEL_SHARE * smallest, BEVEL_MOST);
-	let r = s[0], core = [0, 0, 0], rounding = 0;
-	if (body.mesh) // a mesh's and a hull's vertices are in metres
-		[r, core, rounding] = [0, [1, 1, 1], -(body.meshColour ? 1 : 0) - (body.meshSurface ? 2 : 0)];
-	else if (body.shape === BOX)
-		[r, core, rounding] = [0, s, bevel(Math.min(...s))];
-	else if (body.shape === CYLINDER)
-		[r, core] = [bevel(Math.min(s[0], s[1])), [s[0] - bevel(Math.min(s[0], s[1])), s[0] - bevel(Math.min(s[0], s[1])),
-			s[1] - bevel(Math.min(s[0], s[1]))]];
-	else if (body.shape === CAPSULE)
-		core = [0, 0, s[1]];
-	else if (body.shape === HULL)
-		[r, core] = [0, [1, 1, 1]];
+	const bevel = (smallest) => Math.min(BEVEL_SHARE * smallest, BEVEL_MOST);
+	const o = body.mesh ? null : outlineOf(body.shape, body.size); // a mesh's and a hull's vertices are in metres
+	let r = o?.ball ?? 0, core = o?.half ?? [1, 1, 1], rounding = 0;
+	if (body.mesh)
+		rounding = -(body.meshColour ? 1 : 0) - (body.meshSurface ? 2 : 0);
+	else if (o?.rim) {
+		r = bevel(Math.min(o.rim, core[2]));
+		core = [o.rim - r, o.rim - r, core[2] - r];
+	} else if (o && !r)
+		rounding = bevel(Math.min(...core));
 	const q = body.q, c = body.shown, surface = Math.round(15 * body.metal) + Math.min(body.roughness, 0.99);
 	out.set([body.p[0] - eye[0], body.p[1] - eye[1], body.p[2] - eye[2], r, q[1], q[2], q[3], q[0], ...core, rounding, ...c, surface], at);
 }
@@ -305,7 +303,7 @@ export class Drawing {
 	// scene's (welcome). overlay: see drawSegments.
 	draw(bodies, view, look, overlay) {
 		const gl = this.gl, width = this.canvas.width, height = this.canvas.height;
-		const solid = bodies.filter((b) => b.shape !== PLANE), planes = bodies.filter((b) => b.shape === PLANE);
+		const solid = bodies.filter((b) => !isEndless(b.shape)), planes = bodies.filter((b) => isEndless(b.shape));
 		const ground = planes.find((b) => turned(b.q, [0, 0, 1])[2] > 0.999);
 		const sun = Math.hypot(...look.sun) > 0 ? unit(look.sun) : [0, 0, 1];
 		const f = { view, ground, shadow: fitOrtho(sun, solid, view, SHADOW_TEXELS) };
@@ -437,7 +435,7 @@ export class Drawing {
 	drawInstances(bodies, view, height, inColour = false) {
 		const gl = this.gl, groups = Array.from({ length: MESHES }, () => []), others = new Map(); // hulls and meshes
 		for (const b of bodies) {
-			const own = b.mesh ?? (b.shape === HULL ? this.hullMesh(b.hull) : null);
+			const own = b.mesh ?? (isHulled(b.shape) ? this.hullMesh(b.hull) : null);
 			if (!own)
 				groups[meshOf(b, view, height)].push(b);
 			else if (others.has(own))
@@ -628,19 +626,14 @@ export class Drawing {
 
 // Half extents, along the world's axes, of the box around a body.
 export function halfBounds(b) {
-	const s = b.size;
-	if (b.shape === HULL) { // around its centre of mass, as wide as the wider side
+	if (isHulled(b.shape)) { // around its centre of mass, as wide as the wider side
 		const turnedCorners = b.hull.corners.map((c) => turned(b.q, c));
 		return [0, 1, 2].map((k) => Math.max(...turnedCorners.map((c) => Math.abs(c[k]))));
 	}
-	const columns = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(b.q, axis));
+	const o = outlineOf(b.shape, b.size), columns = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turned(b.q, axis));
 	return [0, 1, 2].map((k) => {
 		const along = columns.map((c) => Math.abs(c[k]));
-		if (b.shape === BOX)
-			return along[0] * s[0] + along[1] * s[1] + along[2] * s[2];
-		if (b.shape === CYLINDER)
-			return s[0] * Math.sqrt(Math.max(0, 1 - along[2] * along[2])) + s[1] * along[2];
-		return s[0] + (b.shape === CAPSULE ? s[1] * along[2] : 0);
+		return dot(along, o.half) + o.rim * Math.sqrt(Math.max(0, 1 - along[2] * along[2])) + o.ball;
 	});
 }
 

@@ -3,7 +3,8 @@ import { Camera, control, moveByKey } from './camera.js';
 import { Drawing, boxSegments, contactSegments, edgeColour, halfBounds } from './drawing.js';
 import { Film } from './film.js';
 import { Panel } from './panel.js';
-import { BOX, HULL, PLANE, SPHERE, Universe } from './universe.js';
+import { isEndless, isHulled, outlineOf } from './shapes.js';
+import { Universe } from './universe.js';
 import { turned } from './motion.js';
 
 const THROWN = 12; // m/s
@@ -36,9 +37,9 @@ function bodies() {
 function overlay(list, view) {
 	const out = panel.on.contacts ? contactSegments(universe.contacts, view, canvas.height) : [];
 	for (const b of list) {
-		if (b.shape !== PLANE && b.id === picked)
+		if (!isEndless(b.shape) && b.id === picked)
 			out.push(...boxSegments(b, PICKED, 2.5));
-		else if (b.shape !== PLANE && (panel.on.boxes || b.frozen))
+		else if (!isEndless(b.shape) && (panel.on.boxes || b.frozen))
 			out.push(...boxSegments(b, edgeColour(b)));
 	}
 	return out;
@@ -104,18 +105,19 @@ function hitHull(b, from, ray) {
 // m along the ray to the body's surface, and its normal there; null: no hit. Capsules and cylinders as their boxes.
 function hit(b, from, ray) {
 	const d = turned(b.q, [0, 1, 2].map((k) => from[k] - b.p[k]), -1), r = turned(b.q, ray, -1);
-	if (b.shape === PLANE) {
+	if (isEndless(b.shape)) {
 		const s = -d[2] / r[2];
 		return d[2] > 0 && s > 0 ? { s, normal: turned(b.q, [0, 0, 1]) } : null;
 	}
-	if (b.shape === SPHERE) {
-		const half = d[0] * r[0] + d[1] * r[1] + d[2] * r[2], c = half * half - (d[0] ** 2 + d[1] ** 2 + d[2] ** 2 - b.size[0] ** 2);
-		const s = -half - Math.sqrt(c);
-		return c >= 0 && s > 0 ? { s, normal: turned(b.q, [0, 1, 2].map((k) => (d[k] + s * r[k]) / b.size[0])) } : null;
-	}
-	if (b.shape === HULL)
+	if (isHulled(b.shape))
 		return hitHull(b, d, r);
-	const h = b.shape === BOX ? b.size : halfBounds({ ...b, q: [1, 0, 0, 0] });
+	const o = outlineOf(b.shape, b.size);
+	if (o.ball && !o.half[2]) {
+		const half = d[0] * r[0] + d[1] * r[1] + d[2] * r[2], c = half * half - (d[0] ** 2 + d[1] ** 2 + d[2] ** 2 - o.ball ** 2);
+		const s = -half - Math.sqrt(c);
+		return c >= 0 && s > 0 ? { s, normal: turned(b.q, [0, 1, 2].map((k) => (d[k] + s * r[k]) / o.ball)) } : null;
+	}
+	const h = halfBounds({ ...b, q: [1, 0, 0, 0] });
 	let enter = -Infinity, leave = Infinity, axis = 0;
 	for (let k = 0; k < 3; k++) {
 		const a = (-h[k] - d[k]) / r[k], c = (h[k] - d[k]) / r[k];
@@ -165,7 +167,7 @@ function click(x, y) {
 		const { command, over } = panel.wanted;
 		universe.send({ ...command, at: [place[0], place[1], place[2] + over] });
 	} else {
-		pick(best && best.body.shape !== PLANE ? best.body.id : null);
+		pick(best && !isEndless(best.body.shape) ? best.body.id : null);
 	}
 	return undefined;
 }

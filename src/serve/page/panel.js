@@ -1,4 +1,5 @@
 // Controls around the picture: the clock, the tools, and details of the picked object. Independent of drawing.
+import { makeShape } from './shapes.js';
 
 const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, metal
 	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08], 0.62, 0], steel: [7800, 0.4, 0.3, [0.56, 0.57, 0.58], 0.32, 1],
@@ -62,17 +63,12 @@ export class Panel extends EventTarget {
 		const value = (name) => $(`#maker [name=${name}]`).value;
 		const s = Number(value('size')), shape = value('shape');
 		const [density, friction, restitution, colour, roughness, metal] = MATERIALS[value('material')];
-		const make = {
-			box: { size: [s / 2, s / 2, s / 2], volume: s ** 3, low: s / 2 },
-			sphere: { size: [s / 2, 0, 0], volume: Math.PI / 6 * s ** 3, low: s / 2 },
-			cylinder: { size: [s / 2, s / 2, 0], volume: Math.PI / 4 * s ** 3, low: s / 2 },
-			capsule: { size: [s / 4, s / 4, 0], volume: Math.PI * (s / 4) ** 2 * s / 2 + 4 / 3 * Math.PI * (s / 4) ** 3, low: s / 2 },
-		}[shape];
+		const make = makeShape(shape, s);
 		const shade = 0.85 + 0.3 * Math.random();
 		return {
 			command: { do: 'create', shape, size: make.size, mass: density * make.volume, friction, restitution, roughness, metal,
 				colour: colour.map((c) => Math.min(1, c * shade)) },
-			over: Number(value('height')) + make.low,
+			over: Number(value('height')) + s / 2,
 		};
 	}
 

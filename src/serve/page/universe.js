@@ -1,5 +1,6 @@
 // The viewer's copy of the universe: the state that the server has sent (src/serve/feed.h), and the time shown.
 import { STANDS, SWINGS, TURNS, normalize, poseAt } from './motion.js';
+import { isHulled, radiusOf } from './shapes.js';
 
 const DELAY = 0.05; // s of wall time by which the shown time lags, so that messages arrive before they are needed
 const PULL = 5; // 1/s: rate at which its clock approaches the universe's
@@ -10,8 +11,6 @@ const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
 const BLEND = 0.08; // s, simulated, to blend a prediction into a new motion
-
-export const SPHERE = 1, BOX = 2, PLANE = 3, CAPSULE = 4, CYLINDER = 5, HULL = 6;
 
 class Reader {
 	constructor(buffer) {
@@ -117,7 +116,7 @@ export class Universe extends EventTarget {
 
 	hearObject(r) {
 		const id = r.u32(), generation = r.u32(), shape = r.u8(), flags = r.u8(), bytes = r.u8(), surface = r.u8();
-		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), hull = shape === HULL ? hearHull(r) : null;
+		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), hull = isHulled(shape) ? hearHull(r) : null;
 		const mesh = flags & LOOKS ? r.u8() : 0, name = r.text(bytes);
 		const known = this.objects.get(id); // with another look and the same motion
 		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed: (flags & STATIC) !== 0, frozen: (flags & FROZEN) !== 0, size, inertia, colour, hull, mesh, meshColour: (flags & MESH_COLOUR) !== 0, meshSurface: (flags & MESH_SURFACE) !== 0, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
@@ -218,15 +217,4 @@ export function between(a, b, share) {
 		p: a.p.map((x, k) => x + share * (b.p[k] - x)),
 		q: normalize(a.q.map((x, k) => x * sign + share * (b.q[k] - x * sign))),
 	};
-}
-
-function radiusOf(shape, size) {
-	switch (shape) {
-	case SPHERE:
-	case HULL: return size[0];
-	case BOX: return Math.hypot(...size);
-	case CAPSULE: return size[0] + size[1];
-	case CYLINDER: return Math.hypot(size[0], size[1]);
-	default: return Infinity;
-	}
 }
