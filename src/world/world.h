@@ -55,7 +55,7 @@ const ob_path *ob_world_path(const ob_world *w, uint32_t id);
 // Half extents and radius in m.
 ob_world_body ob_world_box(ob_world *w, double mass, ob_vec3 half, ob_vec3 p);
 ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p);
-// half: of the length of the side, along z.
+// half: half the length of the side, along z.
 ob_world_body ob_world_cylinder(ob_world *w, double mass, double radius, double half, ob_vec3 p);
 ob_world_body ob_world_capsule(ob_world *w, double mass, double radius, double half, ob_vec3 p);
 // Adds the hull of these points (m), with their origin at p; the body's own frame differs (ob/hull.h). Points without a
