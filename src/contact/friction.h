@@ -24,6 +24,15 @@ static inline real disc_share(real bound, real length2)
 	return bound / root_of(larger_of(length2, bound * bound) + 1e-300);
 }
 
+// Inverts A's block of friction, a: 11 12 22. Returns its largest eigenvalue.
+static inline real disc_invert(const real *a, real *m)
+{
+	const real half = .5 * (a[0] - a[2]), det = a[0] * a[2] - a[1] * a[1];
+	const real inverse = chosen(det > 0, 1 / det, real_of(0));
+	m[0] = a[2] * inverse, m[1] = -a[1] * inverse, m[2] = a[0] * inverse;
+	return .5 * (a[0] + a[2]) + root_of(half * half + a[1] * a[1]);
+}
+
 // Limits a twist, or the change of one, to an interval.
 static inline real twist_within(real low, real high, real twist)
 {

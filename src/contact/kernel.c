@@ -35,40 +35,20 @@ static inline double square(double x)
 	return x * x;
 }
 
-// Inverts A's block of friction for a contact at one point, which has no twist.
-static inline void invert_point(ob_batch *b, lanes a44, lanes a55, lanes a45)
+// Inverts A's block of friction, and what solve_disc needs of it.
+static inline void invert_friction(ob_batch *b, lanes a44, lanes a45, lanes a55)
 {
-	const lanes none = lanes_of(0), half = .5 * (a44 - a55);
-	lanes det = a44 * a55 - a45 * a45, inverse = lanes_select(det > 0, 1 / det, none);
-	lanes most = .5 * (a44 + a55) + lanes_sqrt(half * half + a45 * a45); // largest eigenvalue
-	b->friction_mass[0] = a55 * inverse;
-	b->friction_mass[1] = -a45 * inverse;
-	b->friction_mass[3] = a44 * inverse;
+	const lanes none = lanes_of(0), a[3] = { a44, a45, a55 };
+	lanes m[3];
+	const lanes most = disc_invert(a, m);
+	b->friction_mass[0] = m[0], b->friction_mass[1] = m[1], b->friction_mass[3] = m[2];
 	b->friction_mass[2] = b->friction_mass[4] = b->friction_mass[5] = none;
-	b->hold[0] = b->friction_mass[0] * a44;
-	b->hold[1] = b->friction_mass[1] * a55;
-	b->hold[2] = b->friction_mass[1] * a44;
-	b->hold[3] = b->friction_mass[3] * a55;
+	b->hold[0] = m[0] * a44, b->hold[1] = m[1] * a55;
+	b->hold[2] = m[1] * a44, b->hold[3] = m[2] * a55;
 	b->slide_mass = lanes_select(most > 0, 1 / most, none);
 	b->slide[0] = b->slide_mass * a44;
 	b->slide[1] = b->slide_mass * a55;
 	b->slide_rate2 = most * most;
-}
-
-// Inverts A's block of friction and twist. If neither body can be turned about the normal, the twist's row has no
-// effect, and counts as very heavy.
-static inline void invert_patch(ob_batch *b, lanes a44, lanes a55, lanes a66, lanes a45, lanes a46, lanes a56)
-{
-	const double heavy = 1e-6;
-	lanes least = heavy * (a44 + a55) / lanes_max(b->radius * b->radius, lanes_of(1e-300));
-	a66 = lanes_select(a66 > 0, a66, least);
-	invert_point(b, a44, a55, a45);
-	lanes c44 = a55 * a66 - a56 * a56, c45 = a46 * a56 - a45 * a66, c46 = a45 * a56 - a55 * a46;
-	lanes det = a44 * c44 + a45 * c45 + a46 * c46;
-	lanes m[6] = { c44, c45, c46, a44 * a66 - a46 * a46, a45 * a46 - a44 * a56, a44 * a55 - a45 * a45 };
-	lane_mask patch = (b->radius > 0) & (det > 0);
-	for (int i = 0; i < 6; i++)
-		b->friction_mass[i] = lanes_select(patch, m[i] / det, b->friction_mass[i]);
 }
 
 // moves_a, moves_b: some lane's body a, or b, can move.
@@ -105,10 +85,11 @@ PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind, bool moves_a, bool m
 		for (int j = 0; j < OB_ROWS; j++)
 			if (in_use(kind, i) && in_use(kind, j))
 				b->coupling[i][j] = a[i][j] * b->inv_diag[j];
+	if (in_use(kind, 4))
+		invert_friction(b, a[4][4], a[4][5], a[5][5]);
 	if (in_use(kind, 6))
-		invert_patch(b, a[4][4], a[5][5], a[6][6], a[4][5], a[4][6], a[5][6]);
-	else if (in_use(kind, 4))
-		invert_point(b, a[4][4], a[5][5], a[4][5]);
+		patch_invert(b->radius, (lanes[6]){ a[4][4], a[4][5], a[4][6], a[5][5], a[5][6], a[6][6] },
+			     b->friction_mass);
 	b->dirty = 0;
 }
 

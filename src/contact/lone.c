@@ -90,12 +90,6 @@ static inline double patch_sum_nodes(lanes x)
 	return lone_sum(x);
 }
 
-static inline void patch_move_to_pressure(const patch_load *p, double *m)
-{
-	const double from[2] = { p->centre[0] - p->pressure[0], p->centre[1] - p->pressure[1] };
-	patch_move(from, m);
-}
-
 // Adds the integrals along four edges side by side.
 static inline double patch_border(const patch_load *p, int asked, const double *v, double w, double at,
 				  const double *slope, patch_sums *o)
@@ -404,29 +398,6 @@ static inline void lone_load_body(const ob_batch *b, int l, bool a, lone_body *o
 	}
 }
 
-// Inverts A's block of friction, as invert_patch of kernel.c. tt: 44 45 46 55 56 66
-static inline void lone_invert_friction(lone *p, const double *tt)
-{
-	const double heavy = 1e-6, half = .5 * (tt[0] - tt[3]), least = heavy * (tt[0] + tt[3]);
-	const double most = .5 * (tt[0] + tt[3]) + root_of(half * half + tt[1] * tt[1]); // largest eigenvalue
-	const double twist = tt[5] > 0 ? tt[5] : least / larger_of(p->patch.radius * p->patch.radius, 1e-300);
-	const double c[6] = { tt[3] * twist - tt[4] * tt[4], tt[2] * tt[4] - tt[1] * twist,
-			      tt[1] * tt[4] - tt[3] * tt[2], tt[0] * twist - tt[2] * tt[2],
-			      tt[1] * tt[2] - tt[0] * tt[4], tt[0] * tt[3] - tt[1] * tt[1] };
-	const double det = tt[0] * c[0] + tt[1] * c[1] + tt[2] * c[2];
-	p->slide_rate2 = most * most;
-	if (p->patch.radius > 0 && det > 0) {
-		const double inverse = 1 / det;
-		for (int i = 0; i < 6; i++)
-			p->patch.friction_mass[i] = c[i] * inverse;
-	} else { // a point has no twist
-		const double inverse = c[5] > 0 ? 1 / c[5] : 0;
-		p->patch.friction_mass[0] = tt[3] * inverse, p->patch.friction_mass[1] = -tt[1] * inverse,
-		p->patch.friction_mass[3] = tt[0] * inverse;
-		p->patch.friction_mass[2] = p->patch.friction_mass[4] = p->patch.friction_mass[5] = 0;
-	}
-}
-
 // Computes A, from the one body that impulses move.
 static __attribute__((noinline)) void lone_couple(const ob_batch *b, int l, const lone_body *o, lone *p)
 {
@@ -457,7 +428,11 @@ static __attribute__((noinline)) void lone_couple(const ob_batch *b, int l, cons
 	p->inv_diag = lanes_where(used, 1 / p->diag);
 	p->points = (int)lanes_count(lanes_bits(used));
 	p->patch.response = p->diag_f[0] = tt[0], p->diag_f[1] = tt[3], p->diag_f[2] = tt[5];
-	lone_invert_friction(p, tt);
+	double m[3];
+	const double most = disc_invert((double[3]){ tt[0], tt[1], tt[3] }, m), disc[6] = { m[0], m[1], 0, m[2] };
+	memcpy(p->patch.friction_mass, disc, sizeof disc);
+	patch_invert(p->patch.radius, tt, p->patch.friction_mass);
+	p->slide_rate2 = most * most;
 }
 
 static inline void lone_load_pair(const ob_batch *b, int l, const lone_body *o, lone *p)

@@ -97,8 +97,6 @@ static inline real patch_border(const patch_load *p, mask asked, const real *v, 
 static inline lanes patch_nodes(const double *from);
 static inline real patch_sum_nodes(lanes x);
 
-static inline void patch_move_to_pressure(const patch_load *p, real *m);
-
 // ---- arithmetic
 
 static inline real dot3(const real *a, const real *b)
@@ -147,6 +145,21 @@ static inline void patch_move(const real *centre, real *m)
 	m[5] += 2 * (x * m[2] + y * m[4]) + x * x * m[0] + 2 * x * y * m[1] + y * y * m[3];
 	m[2] += x * m[0] + y * m[1];
 	m[4] += x * m[1] + y * m[3];
+}
+
+// Inverts A's block of friction and twist, a, where this is a patch: else m has friction's alone. If neither body can be
+// turned about the normal, the twist's row has no effect, and counts as very heavy.
+static inline void patch_invert(real radius, const real *a, real *m)
+{
+	const double heavy = 1e-6;
+	const real least = heavy * (a[0] + a[3]) / larger_of(radius * radius, real_of(1e-300));
+	const real twist = chosen(a[5] > 0, a[5], least);
+	const real c[6] = { a[3] * twist - a[4] * a[4], a[2] * a[4] - a[1] * twist, a[1] * a[4] - a[3] * a[2],
+			    a[0] * twist - a[2] * a[2], a[1] * a[2] - a[0] * a[4],  a[0] * a[3] - a[1] * a[1] };
+	const real det = a[0] * c[0] + a[1] * c[1] + a[2] * c[2], inverse = 1 / det;
+	const mask patch = both_of(radius > 0, det > 0);
+	for (int i = 0; i < 6; i++)
+		m[i] = chosen(patch, c[i] * inverse, m[i]);
 }
 
 // ---- the load
@@ -302,7 +315,7 @@ static inline void patch_model_set(const patch_load *p, mask to, const real *sli
 	real d[3] = { slip[0], slip[1], slip[2] }, q[6], c[6];
 	patch_slip at;
 	patch_slip_at(p, to, d, &at);
-	patch_move_to_pressure(p, at.bound);
+	patch_move((real[2]){ p->centre[0] - p->pressure[0], p->centre[1] - p->pressure[1] }, at.bound);
 	d[0] -= d[2] * p->pressure[1];
 	d[1] += d[2] * p->pressure[0];
 	for (int i = 0; i < 6; i++)

@@ -33,13 +33,6 @@ static inline lanes patch_sum_nodes(lanes x)
 	return x;
 }
 
-static inline void patch_move_to_pressure(const patch_load *p, lanes *m)
-{
-	const lanes from[2] = { -p->pressure[0], -p->pressure[1] };
-	patch_move(p->centre, m);
-	patch_move(from, m);
-}
-
 // Computes the corners, counterclockwise. Returns their number. A disc's first corner is on the left of the slip.
 static inline int patch_corners(const patch_load *p, const lanes *v, lanes (*at)[2])
 {

@@ -10,12 +10,18 @@
 
 #include "contact/friction.h" // for one number
 
-enum { ROOT = UINT32_MAX, UNREACHED = ROOT - 1 }; // values of parent_contact[]
+// Limits of a direct solve.
+typedef struct limits {
+	double compliance; // share of a row's own response
+	uint32_t bodies; // of an island, at most
+	uint32_t products; // of blocks in the factorisation, per body, at most
+	uint32_t work; // per body, at most
+	double least_share; // of a solution that is still tried
+} limits;
 
-static const double compliance = 1e-6; // share of a row's own response
-static const double compliance_in_cycles = 1e-5; // the same in cycles, where rows may depend on each other
-static const uint32_t max_block_products = 64; // products of blocks in the sparse factorisation, per body, at most
-static const uint32_t max_cyclic_bodies = 512; // bodies of an island with cycles, at most
+static const limits of_trees = { 1e-6, UINT32_MAX, 64, 64, 1e-3 };
+// Rows may depend on each other.
+static const limits of_cycles = { 1e-5, 512, 64, 640, .3 };
 
 // Thresholds above which a direct solve is worth its cost.
 static const double residual_threshold = 1e-7; // m/s
@@ -92,141 +98,63 @@ static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, double
 }
 
 // Fills one row of the joint for both bodies. The sides a and b of a batch differ in sign.
-static void fill_row(const ob_batch *b, int l, int row, bool child_is_a, uint32_t r, ob_joint *j)
+static void fill_row(const ob_batch *b, int l, int row, bool child_is_a, double *child, double *parent)
 {
 	static const lanes none[3];
 	const lanes *along = row < 4 ? b->n : row == 4 ? b->t1 : row == 5 ? b->t2 : none;
 	const lanes *about_a = row < 4 ? b->ja[row] : row == 4 ? b->fa1 : row == 5 ? b->fa2 : b->n;
 	const lanes *about_b = row < 4 ? b->jb[row] : row == 4 ? b->fb1 : row == 5 ? b->fb2 : b->n;
 	for (int c = 0; c < 3; c++) {
-		double n = child_is_a ? along[c][l] : -along[c][l];
-		j->child[c][r] = n;
-		j->parent[r][c] = -n;
-		j->child[3 + c][r] = child_is_a ? about_a[c][l] : -about_b[c][l];
-		j->parent[r][3 + c] = child_is_a ? -about_b[c][l] : about_a[c][l];
+		const double n = child_is_a ? along[c][l] : -along[c][l];
+		child[c] = n;
+		parent[c] = -n;
+		child[3 + c] = child_is_a ? about_a[c][l] : -about_b[c][l];
+		parent[3 + c] = child_is_a ? -about_b[c][l] : about_a[c][l];
 	}
 }
 
-static void fill_joint(const ob_island_work *w, ob_direct_contact *c)
+static void fill_joint(const ob_island_work *w, ob_direct_contact *c, double compliance)
 {
 	const ob_batch *b = batch_of(w, c);
-	int l = lane_of(w, c);
+	const int l = lane_of(w, c);
 	ob_joint *j = &c->joint;
-	double n[4], null_part = 0, softness = w->direct.shape == OB_DIRECT_CYCLIC ? compliance_in_cycles : compliance;
-	memset(j->child, 0, sizeof j->child);
-	memset(j->parent, 0, sizeof j->parent);
+	double n[4], null_part = 0;
 	for (uint32_t r = 0; r < j->rows; r++) {
-		int row = c->row[r];
-		fill_row(b, l, row, w->contact[c->contact].a == c->child, r, j);
-		j->parent[r][6] = -w->direct.velocity[b - w->batch][row][l];
-		j->compliance[r] = softness * b->diag[row][l];
+		const int row = c->row[r];
+		fill_row(b, l, row, w->contact[c->contact].a == c->child, j->child[r], j->parent[r]);
+		j->y[r] = -w->direct.velocity[b - w->batch][row][l];
+		j->compliance[r] = compliance * b->diag[row][l];
 	}
 	// Four points on a plane have no response along the null space: the velocity along it is removed.
 	if (!has_four_normals(c) || !normal_null_space(b, l, n))
 		return;
 	for (int r = 0; r < 4; r++)
-		null_part += n[r] * j->parent[r][6];
+		null_part += n[r] * j->y[r];
 	for (int r = 0; r < 4; r++)
-		j->parent[r][6] -= n[r] * null_part;
+		j->y[r] -= n[r] * null_part;
 }
 
-static void fill_link(const ob_body *m, ob_link *k)
-{
-	memset(k->m, 0, sizeof k->m);
-	for (int i = 0; i < 3; i++) {
-		const double *r = m->r.m[i];
-		k->m[i][i] = m->mass;
-		for (int j = 0; j < 3; j++) {
-			const double *q = m->r.m[j];
-			k->m[3 + i][3 + j] =
-				r[0] * q[0] * m->inertia.x + r[1] * q[1] * m->inertia.y + r[2] * q[2] * m->inertia.z;
-		}
-	}
-}
-
-// Adds contact i if any of its rows holds; else returns NULL.
-static ob_direct_contact *add_contact(ob_island_work *w, uint32_t i, uint32_t child)
-{
-	ob_direct_solver *f = &w->direct;
-	const ob_contact *contact = &w->contact[i];
-	ob_direct_contact *c = &f->contact[f->contacts];
-	if (contact->lane == OB_NO_LANE)
-		return NULL;
-	uint32_t batch = contact->lane / OB_LANES;
-	c->joint.rows = holding_rows(&w->batch[batch], contact->lane % OB_LANES, f->velocity[batch],
-				     neutral_speed * w->unit.speed, c->row);
-	if (!c->joint.rows)
-		return NULL;
-	c->contact = i;
-	c->child = child;
-	c->parent = contact->a == child ? contact->b : contact->a;
-	fill_joint(w, c);
-	f->contacts++;
-	return c;
-}
-
-static uint32_t find_roots(ob_island_work *w)
-{
-	ob_direct_solver *f = &w->direct;
-	uint32_t n = 0;
-	for (uint32_t i = 0; i < w->contacts; i++) {
-		const ob_contact *contact = &w->contact[i];
-		bool a_fixed = w->body[contact->a].inv_mass == 0, b_fixed = w->body[contact->b].inv_mass == 0;
-		uint32_t at = a_fixed ? contact->b : contact->a;
-		if ((!a_fixed && !b_fixed) || f->parent_contact[at] != UNREACHED)
-			continue;
-		const ob_direct_contact *c = add_contact(w, i, at);
-		if (!c)
-			continue;
-		ob_link_anchor(&f->link[at], &c->joint);
-		f->parent_contact[at] = ROOT;
-		f->order[n++] = at;
-	}
-	return n;
-}
-
-static uint32_t find_children(ob_island_work *w, uint32_t at, uint32_t n)
-{
-	ob_direct_solver *f = &w->direct;
-	const ob_body *body = &w->body[at];
-	for (uint32_t k = 0; k < body->adjacent; k++) {
-		uint32_t i = w->adjacency[body->first_adjacent + k];
-		uint32_t other = w->contact[i].a == at ? w->contact[i].b : w->contact[i].a;
-		if (w->body[other].inv_mass == 0 || f->parent_contact[other] != UNREACHED || !add_contact(w, i, other))
-			continue;
-		f->parent_contact[other] = f->contacts - 1;
-		f->order[n++] = other;
-	}
-	return n;
-}
-
-// Builds the trees. Every body enters the order once; bodies that nothing holds become trees of their own.
-static void build_trees(ob_island_work *w)
+// Adds the contacts with a row that holds.
+static void add_contacts(ob_island_work *w, double compliance)
 {
 	ob_direct_solver *f = &w->direct;
 	f->contacts = 0;
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		f->parent_contact[i] = UNREACHED;
-		fill_link(&w->body[i], &f->link[i]);
-	}
-	uint32_t n = find_roots(w), root = 1;
-	for (uint32_t done = 0; done < w->bodies; done++) {
-		for (; done == n; root++)
-			if (f->parent_contact[root] == UNREACHED) {
-				f->parent_contact[root] = ROOT;
-				f->order[n++] = root;
-			}
-		n = find_children(w, f->order[done], n);
-	}
-}
-
-// Adds all contacts with a row that holds.
-static void add_all_contacts(ob_island_work *w)
-{
-	w->direct.contacts = 0;
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i];
-		add_contact(w, i, w->body[contact->a].inv_mass == 0 ? contact->b : contact->a);
+		if (contact->lane == OB_NO_LANE)
+			continue;
+		const uint32_t batch = contact->lane / OB_LANES;
+		const bool a_fixed = w->body[contact->a].inv_mass == 0;
+		ob_direct_contact *c = &f->contact[f->contacts];
+		c->joint.rows = holding_rows(&w->batch[batch], contact->lane % OB_LANES, f->velocity[batch],
+					     neutral_speed * w->unit.speed, c->row);
+		if (!c->joint.rows)
+			continue;
+		c->contact = i;
+		c->child = a_fixed ? contact->b : contact->a;
+		c->parent = a_fixed ? contact->a : contact->b;
+		fill_joint(w, c, compliance);
+		f->contacts++;
 	}
 }
 
@@ -244,42 +172,40 @@ static void find_row_velocities(ob_island_work *w)
 	}
 }
 
-static void solve_trees(ob_island_work *w)
-{
-	ob_direct_solver *f = &w->direct;
-	for (uint32_t k = w->bodies; k-- > 0;) {
-		uint32_t i = f->order[k];
-		ob_direct_contact *c = f->parent_contact[i] == ROOT ? NULL : &f->contact[f->parent_contact[i]];
-		ob_link_eliminate(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
-	}
-	for (uint32_t k = 0; k < w->bodies; k++) {
-		uint32_t i = f->order[k];
-		ob_direct_contact *c = f->parent_contact[i] == ROOT ? NULL : &f->contact[f->parent_contact[i]];
-		ob_link_substitute(&f->link[i], c ? &c->joint : NULL, c ? &f->link[c->parent] : NULL);
-	}
-	for (uint32_t k = 0; k < f->contacts; k++)
-		if (w->body[f->contact[k].parent].inv_mass == 0)
-			ob_link_anchor_impulses(&f->link[f->contact[k].child], &f->contact[k].joint);
-}
-
 static uint32_t sparse_index(const ob_island_work *w, uint32_t row)
 {
 	return w->body[row].inv_mass > 0 ? row - 1 : OB_SPARSE_FIXED;
 }
 
-// Solves for all contacts that were added. Returns false if that would cost too much.
-static bool solve_sparse(ob_island_work *w)
+static void set_inertia(ob_sparse_solver *t, uint32_t body, const ob_body *m)
+{
+	double inertia[6][6] = { { 0 } };
+	for (int i = 0; i < 3; i++) {
+		const double *r = m->r.m[i];
+		inertia[i][i] = m->mass;
+		for (int j = 0; j < 3; j++) {
+			const double *q = m->r.m[j];
+			inertia[3 + i][3 + j] =
+				r[0] * q[0] * m->inertia.x + r[1] * q[1] * m->inertia.y + r[2] * q[2] * m->inertia.z;
+		}
+	}
+	ob_sparse_set_inertia(t, body, inertia);
+}
+
+// Solves for all contacts with a row that holds. Returns false if that would cost too much.
+static bool find_direction(ob_island_work *w, const limits *most)
 {
 	ob_direct_solver *f = &w->direct;
+	if (w->bodies > most->bodies)
+		return false;
+	add_contacts(w, most->compliance);
 	ob_sparse_begin(&f->sparse, w->bodies);
 	for (uint32_t k = 0; k < f->contacts; k++)
 		ob_sparse_link(&f->sparse, f->contact[k].child - 1, sparse_index(w, f->contact[k].parent));
-	if (!ob_sparse_analyse(&f->sparse, max_block_products))
+	if (!ob_sparse_analyse(&f->sparse, most->products))
 		return false;
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		fill_link(&w->body[i], &f->link[i]);
-		ob_sparse_add_inertia(&f->sparse, i - 1, f->link[i].m);
-	}
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		set_inertia(&f->sparse, i - 1, &w->body[i]);
 	for (uint32_t k = 0; k < f->contacts; k++) {
 		const ob_direct_contact *c = &f->contact[k];
 		ob_sparse_add_joint(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));
@@ -369,35 +295,21 @@ static double line_search(const ob_island_work *w)
 	return slope < 0 && curvature > 0 ? ob_min(1, -slope / curvature) : 0;
 }
 
-static bool find_direction(ob_island_work *w)
-{
-	if (w->direct.shape == OB_DIRECT_CYCLIC) {
-		if (w->bodies > max_cyclic_bodies)
-			return false;
-		add_all_contacts(w);
-		return solve_sparse(w);
-	}
-	build_trees(w);
-	solve_trees(w);
-	return true;
-}
-
 bool ob_direct_solve(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	ob_direct_solver *f = &w->direct;
 	const double backtrack = .3, min_step = .5; // the projection bends the direction: then a smaller share is tried
-	const double min_alpha = f->shape == OB_DIRECT_CYCLIC ? backtrack : 1e-3;
+	const limits *most = f->shape == OB_DIRECT_CYCLIC ? &of_cycles : &of_trees;
 	double alpha = 1, t;
 	for (uint32_t i = 0; i < w->batches; i++)
 		ob_batch_prepare(&w->batch[i]);
 	find_row_velocities(w);
 	s->counters.direct_solves++;
-	enum { OF_TREES = 64, SPARSE = 640 }; // work for each body, at most
-	ob_budget_note(s, (uint64_t)(f->shape == OB_DIRECT_CYCLIC ? SPARSE : OF_TREES) * w->bodies);
-	if (!find_direction(w))
+	ob_budget_note(s, (uint64_t)most->work * w->bodies);
+	if (!find_direction(w, most))
 		return false;
-	for (project_solution(w, alpha); (t = line_search(w)) < min_step && alpha > min_alpha;
+	for (project_solution(w, alpha); (t = line_search(w)) < min_step && alpha > most->least_share;
 	     project_solution(w, alpha))
 		alpha *= backtrack;
 	f->gave_up = t < min_step;
@@ -428,9 +340,6 @@ void ob_direct_begin_partial(ob_direct_solver *f)
 
 void ob_direct_finish(ob_direct_solver *f)
 {
-	free(f->link);
-	free(f->order);
-	free(f->parent_contact);
 	free(f->contact);
 	free(f->velocity);
 	free(f->impulse_change);
@@ -439,12 +348,6 @@ void ob_direct_finish(ob_direct_solver *f)
 
 static void reserve(ob_direct_solver *f, const ob_island_work *w)
 {
-	if (w->rows > f->rows_max) {
-		f->rows_max = w->rows + w->rows / 2;
-		f->link = ob_reallocate(f->link, f->rows_max * sizeof *f->link);
-		f->order = ob_reallocate(f->order, f->rows_max * sizeof *f->order);
-		f->parent_contact = ob_reallocate(f->parent_contact, f->rows_max * sizeof *f->parent_contact);
-	}
 	if (w->contacts > f->contacts_max) {
 		f->contacts_max = w->contacts + w->contacts / 2;
 		free(f->contact);

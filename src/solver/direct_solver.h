@@ -1,20 +1,22 @@
 // Direct solve of an island's contacts, for cases in which iterations over its pairs would take too long.
 //
 // An iteration carries an impulse one pair further: a stack of n bodies takes about n^2 iterations, a load of n times
-// its carrier's mass about as many. In an island that stands, all contacts that hold are solved at once. If they form
-// trees on fixed bodies, that costs no more than some iterations (solver/tree_solver.h):
+// its carrier's mass about as many. In an island that stands, all contacts that hold are solved at once, by elimination
+// (solver/sparse_solver.h). There are two cases, with limits of their own:
 //
-//        [3]                 breadth-first from the fixed bodies: 1 is a root (its
-//        [2]    [5]          contact is an anchor), 2 is a child of 1, 3 of 2; 4 is a
-//        [1]    [4]          root, 5 a child of 4. A contact that closes a cycle keeps
-//      ==============        its impulses, which this solve takes as given.
+//        [3]               trees: contacts and bodies are as many, at most. Bodies are
+//        [2]    [5]        eliminated from leaf to root, which costs no more than some
+//        [1]    [4]        iterations. Solves take turns with iterations while bodies
+//      ==============      stand, as soon as these leave a residual.
 //
-// If there are more contacts than bodies (walls, pyramids, towers of planks), all contacts take part
-// (solver/sparse_solver.h). This happens after the iterations, in islands at rest or not yet moved. Their solution must be
-// found to the end. Each contact's error adds to a sway of the whole, in which no contact has a residual that an
-// iteration would see: a tower of planks of 16 layers creeps by what iterations leave. So direct solves are repeated
-// while they reduce the residual; when one does not, conjugate iterations (solver/conjugate.h) bring the impulses nearer.
-// While anything sways from a hit, no equilibrium exists, and iterations are used.
+//           [4]            cycles (walls, pyramids, towers of planks): there are more contacts
+//        [1][2][3]         than bodies. Solved after the iterations, in islands at rest or
+//      ==============      not yet moved.
+//
+// The solution of cycles must be found to the end. Each contact's error adds to a sway of the whole, in which no contact
+// has a residual that an iteration would see: a tower of planks of 16 layers creeps by what iterations leave. So direct
+// solves are repeated while they reduce the residual; when one does not, conjugate iterations (solver/conjugate.h) bring
+// the impulses nearer. While anything sways from a hit, no equilibrium exists, and iterations are used.
 //
 // The last iteration shows which rows hold. Normals hold that press, or are about to (lambda D > r, the active set of a
 // semismooth Newton step: Hintermueller, Ito and Kunisch 2003). Normals hold, too, that neither press nor open: before

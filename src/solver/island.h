@@ -12,7 +12,6 @@
 #include "contact/batch.h"
 #include "contact/impact.h"
 #include "solver/sparse_solver.h"
-#include "solver/tree_solver.h"
 #include "settings/settings.h"
 #include "table/pair_state.h"
 
@@ -109,10 +108,7 @@ typedef struct ob_direct_solver {
 	bool used_last; // the last partial substep was solved directly
 	bool gave_up; // a solve in this step did not reduce the residual
 	int solves; // in the running partial substep
-	uint32_t rows_max, contacts_max, batches_max;
-	ob_link *link; // [row]
-	uint32_t *order; // rows, parents before children
-	uint32_t *parent_contact; // [row]
+	uint32_t contacts_max, batches_max;
 	uint32_t contacts;
 	ob_direct_contact *contact;
 	ob_sparse_solver sparse;

@@ -6,143 +6,207 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BITS = 64 };
+enum { NONE = UINT32_MAX };
 
 void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies)
 {
 	if (bodies > t->bodies_max) {
 		ob_sparse_finish(t);
 		t->bodies_max = bodies + bodies / 2;
-		size_t n = t->bodies_max, words = (n + BITS - 1) / BITS;
-		t->adjacent = ob_allocate(n * words * sizeof *t->adjacent);
+		size_t n = t->bodies_max;
+		t->node = ob_allocate(n * sizeof *t->node);
+		t->least = ob_allocate(n * sizeof *t->least);
 		t->order = ob_allocate(n * sizeof *t->order);
-		t->place = ob_allocate(n * sizeof *t->place);
 		t->first = ob_allocate((n + 1) * sizeof *t->first);
-		t->at = ob_allocate(n * n * sizeof *t->at);
 		t->own = ob_allocate(n * sizeof *t->own);
 		t->inverse = ob_allocate(n * sizeof *t->inverse);
 		t->change = ob_allocate(n * sizeof *t->change);
 	}
 	t->bodies = bodies;
-	t->words = (bodies + BITS - 1) / BITS;
-	memset(t->adjacent, 0, (size_t)bodies * t->words * sizeof *t->adjacent);
+	t->edges = 0;
+	for (uint32_t i = 0; i < bodies; i++)
+		t->node[i] = (ob_sparse_node){ .edges = NONE, .place = NONE, .mark = NONE };
 }
 
-static uint64_t *adjacent_to(const ob_sparse_solver *t, uint32_t body)
+// ---- the graph
+
+static void add_edge(ob_sparse_solver *t, uint32_t from, uint32_t to)
 {
-	return t->adjacent + (size_t)body * t->words;
+	if (t->edges == t->edges_max) {
+		t->edges_max = 2 * t->edges_max + 64;
+		t->edge = ob_reallocate(t->edge, t->edges_max * sizeof *t->edge);
+	}
+	t->edge[t->edges] = (ob_sparse_edge){ to, t->node[from].edges };
+	t->node[from].edges = t->edges++;
+	t->node[from].degree++;
 }
 
 void ob_sparse_link(ob_sparse_solver *t, uint32_t child, uint32_t parent)
 {
 	if (parent == OB_SPARSE_FIXED)
 		return;
-	adjacent_to(t, child)[parent / BITS] |= UINT64_C(1) << parent % BITS;
-	adjacent_to(t, parent)[child / BITS] |= UINT64_C(1) << child % BITS;
+	const bool fewer = t->node[child].degree < t->node[parent].degree;
+	const uint32_t from = fewer ? child : parent, to = fewer ? parent : child;
+	for (uint32_t e = t->node[from].edges; e != NONE; e = t->edge[e].next)
+		if (t->edge[e].to == to)
+			return;
+	add_edge(t, child, parent);
+	add_edge(t, parent, child);
 }
 
-static uint32_t degree(const ob_sparse_solver *t, uint32_t body)
+// ---- the order of elimination
+
+static void enter_degree(ob_sparse_solver *t, uint32_t body)
 {
-	uint32_t n = 0;
-	for (uint32_t k = 0; k < t->words; k++)
-		n += (uint32_t)__builtin_popcountll(adjacent_to(t, body)[k]);
-	return n;
+	ob_sparse_node *node = &t->node[body];
+	uint32_t *least = &t->least[node->degree];
+	node->previous = NONE, node->next = *least;
+	if (*least != NONE)
+		t->node[*least].previous = body;
+	*least = body;
 }
 
-// Links the body's neighbours with each other, and removes it.
-static void remove_from_graph(ob_sparse_solver *t, uint32_t body, const uint32_t *neighbour, uint32_t n)
+static void leave_degree(ob_sparse_solver *t, uint32_t body)
 {
-	const uint64_t *gone = adjacent_to(t, body);
-	for (uint32_t i = 0; i < n; i++) {
-		uint64_t *row = adjacent_to(t, neighbour[i]);
-		for (uint32_t k = 0; k < t->words; k++)
-			row[k] |= gone[k];
-		row[neighbour[i] / BITS] &= ~(UINT64_C(1) << neighbour[i] % BITS);
-		row[body / BITS] &= ~(UINT64_C(1) << body % BITS);
-	}
+	const ob_sparse_node *node = &t->node[body];
+	if (node->previous == NONE)
+		t->least[node->degree] = node->next;
+	else
+		t->node[node->previous].next = node->next;
+	if (node->next != NONE)
+		t->node[node->next].previous = node->previous;
 }
 
-static uint32_t *list_neighbours(ob_sparse_solver *t, uint32_t body, uint32_t from, uint32_t n)
+// Lists the neighbours that are not eliminated yet, from this place in "below".
+static const uint32_t *list_neighbours(ob_sparse_solver *t, uint32_t body, uint32_t from)
 {
-	if (from + n >= t->below_max) {
-		t->below_max = (from + n + 1) * 2;
+	if (from + t->node[body].degree >= t->below_max) {
+		t->below_max = (from + t->node[body].degree + 1) * 2;
 		t->below = ob_reallocate(t->below, t->below_max * sizeof *t->below);
-		free(t->block);
-		t->block = ob_allocate(t->below_max * sizeof *t->block);
 	}
 	uint32_t *list = t->below + from;
-	for (uint32_t k = 0; k < t->words; k++)
-		for (uint64_t left = adjacent_to(t, body)[k]; left; left &= left - 1)
-			*list++ = k * BITS + (uint32_t)__builtin_ctzll(left);
+	for (uint32_t e = t->node[body].edges; e != NONE; e = t->edge[e].next)
+		if (t->node[t->edge[e].to].place == NONE)
+			*list++ = t->edge[e].to;
 	return t->below + from;
+}
+
+// Links a neighbour of an eliminated body with the others.
+static void link_neighbour(ob_sparse_solver *t, uint32_t body, const uint32_t *neighbour, uint32_t n)
+{
+	ob_sparse_node *node = &t->node[body];
+	uint32_t *last = &node->edges;
+	node->mark = body;
+	for (uint32_t e = node->edges; e != NONE; e = t->edge[e].next) {
+		if (t->node[t->edge[e].to].place != NONE)
+			continue; // eliminated: leaves the chain
+		t->node[t->edge[e].to].mark = body;
+		*last = e;
+		last = &t->edge[e].next;
+	}
+	*last = NONE;
+	for (uint32_t i = 0; i < n; i++)
+		if (t->node[neighbour[i]].mark != body)
+			add_edge(t, body, neighbour[i]);
+}
+
+// Links the body's neighbours with each other, and removes it. Returns the least degree that may have come about.
+static uint32_t remove_from_graph(ob_sparse_solver *t, const uint32_t *neighbour, uint32_t n)
+{
+	uint32_t least = n;
+	for (uint32_t i = 0; i < n; i++) {
+		leave_degree(t, neighbour[i]);
+		t->node[neighbour[i]].degree--;
+		if (n > 1)
+			link_neighbour(t, neighbour[i], neighbour, n);
+		enter_degree(t, neighbour[i]);
+		const uint32_t degree = t->node[neighbour[i]].degree;
+		least = degree < least ? degree : least;
+	}
+	return least;
+}
+
+static void reserve_blocks(ob_sparse_solver *t, uint32_t blocks)
+{
+	if (blocks > t->blocks_max) {
+		t->blocks_max = 2 * blocks;
+		free(t->block);
+		t->block = ob_allocate(t->blocks_max * sizeof *t->block);
+	}
+	if (blocks)
+		memset(t->block, 0, blocks * sizeof *t->block);
+	memset(t->change, 0, t->bodies * sizeof *t->change);
 }
 
 bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most)
 {
 	uint64_t cost = 0;
-	uint32_t blocks = 0, *left = t->order; // remaining bodies, behind the eliminated ones
+	uint32_t blocks = 0, degree = 0;
 	for (uint32_t i = 0; i < t->bodies; i++)
-		left[i] = i;
+		t->least[i] = NONE;
+	for (uint32_t i = t->bodies; i-- > 0;)
+		enter_degree(t, i);
 	for (uint32_t k = 0; k < t->bodies; k++) {
-		uint32_t best = k, least = UINT32_MAX;
-		for (uint32_t i = k; i < t->bodies && least > 1; i++) {
-			uint32_t n = degree(t, left[i]);
-			if (n < least)
-				best = i, least = n;
-		}
-		uint32_t body = left[best];
-		left[best] = left[k];
-		left[k] = body;
-		t->place[body] = k;
+		while (t->least[degree] == NONE)
+			degree++;
+		const uint32_t body = t->least[degree], n = degree;
+		leave_degree(t, body);
+		t->node[body].place = k;
+		t->order[k] = body;
 		t->first[k] = blocks;
-		const uint32_t *neighbour = list_neighbours(t, body, blocks, least);
-		remove_from_graph(t, body, neighbour, least);
-		for (uint32_t i = 0; i < least; i++) {
-			t->at[(size_t)body * t->bodies + neighbour[i]] = blocks + i;
-			t->at[(size_t)neighbour[i] * t->bodies + body] = blocks + i;
-		}
-		blocks += least;
-		cost += (uint64_t)least * (least + 1) / 2;
+		degree = remove_from_graph(t, list_neighbours(t, body, blocks), n);
+		blocks += n;
+		cost += (uint64_t)n * (n + 1) / 2;
 		if (cost > (uint64_t)most * t->bodies)
 			return false;
 	}
 	t->first[t->bodies] = blocks;
-	memset(t->block, 0, blocks * sizeof *t->block);
-	memset(t->change, 0, t->bodies * sizeof *t->change);
+	reserve_blocks(t, blocks);
 	return true;
 }
 
 // ---- assembly
 
-void ob_sparse_add_inertia(ob_sparse_solver *t, uint32_t body, double m[6][8])
+void ob_sparse_set_inertia(ob_sparse_solver *t, uint32_t body, double (*m)[6])
+{
+	memcpy(t->own[body], m, sizeof t->own[body]);
+}
+
+// Returns the block of two bodies, of which the first is eliminated sooner.
+static uint32_t block_of(const ob_sparse_solver *t, uint32_t sooner, uint32_t later)
+{
+	uint32_t i = t->first[t->node[sooner].place];
+	while (t->below[i] != later)
+		i++;
+	return i;
+}
+
+// Adds s x y^T.
+static void add_product(double (*m)[6], double s, const double *x, const double *y)
 {
 	for (int i = 0; i < 6; i++)
 		for (int k = 0; k < 6; k++)
-			t->own[body][i][k] = m[i][k];
+			m[i][k] += s * x[i] * y[k];
 }
 
 void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent)
 {
+	const bool fixed = parent == OB_SPARSE_FIXED,
+		   child_first = fixed || t->node[child].place < t->node[parent].place;
+	double(*both)[6] =
+		fixed ? NULL : t->block[child_first ? block_of(t, child, parent) : block_of(t, parent, child)];
 	for (uint32_t r = 0; r < j->rows; r++) {
-		const double stiffness = 1 / j->compliance[r], push = stiffness * j->parent[r][6], *p = j->parent[r];
-		for (int i = 0; i < 6; i++) {
-			const double s = stiffness * j->child[i][r];
-			for (int k = 0; k < 6; k++)
-				t->own[child][i][k] += s * j->child[k][r];
-			t->change[child][i] += push * j->child[i][r];
-		}
-		if (parent == OB_SPARSE_FIXED)
+		const double stiffness = 1 / j->compliance[r], push = stiffness * j->y[r];
+		add_product(t->own[child], stiffness, j->child[r], j->child[r]);
+		for (int i = 0; i < 6; i++)
+			t->change[child][i] += push * j->child[r][i];
+		if (fixed)
 			continue;
-		const bool child_first = t->place[child] < t->place[parent];
-		double(*both)[6] = t->block[t->at[(size_t)child * t->bodies + parent]];
-		for (int i = 0; i < 6; i++) {
-			const double s = stiffness * p[i];
-			for (int k = 0; k < 6; k++) {
-				t->own[parent][i][k] += s * p[k];
-				both[child_first ? i : k][child_first ? k : i] += s * j->child[k][r];
-			}
-			t->change[parent][i] += push * p[i];
-		}
+		add_product(t->own[parent], stiffness, j->parent[r], j->parent[r]);
+		add_product(both, stiffness, child_first ? j->parent[r] : j->child[r],
+			    child_first ? j->child[r] : j->parent[r]);
+		for (int i = 0; i < 6; i++)
+			t->change[parent][i] += push * j->parent[r][i];
 	}
 }
 
@@ -203,7 +267,7 @@ static void eliminate_body(ob_sparse_solver *t, uint32_t k)
 		for (int r = 0; r < 6; r++)
 			lower_solve(t->own[body], t->inverse[body], t->block[i][r]);
 	for (uint32_t i = from; i < to; i++) {
-		const uint32_t sooner = t->below[i];
+		const uint32_t sooner = t->below[i], place = t->node[sooner].place;
 		ob_sparse_block turned;
 		for (int r = 0; r < 6; r++)
 			for (int c = 0; c < 6; c++)
@@ -212,10 +276,12 @@ static void eliminate_body(ob_sparse_solver *t, uint32_t k)
 		for (int r = 0; r < 6; r++)
 			for (int c = 0; c < 6; c++)
 				t->change[sooner][r] -= t->block[i][r][c] * t->change[body][c];
+		for (uint32_t j = t->first[place]; to - from > 1 && j < t->first[place + 1]; j++)
+			t->node[t->below[j]].mark = j;
 		for (uint32_t j = from; j < to; j++) {
 			const uint32_t later = t->below[j];
-			if (t->place[later] > t->place[sooner])
-				subtract(t->block[t->at[(size_t)sooner * t->bodies + later]], t->block[j], turned);
+			if (t->node[later].place > place)
+				subtract(t->block[t->node[later].mark], t->block[j], turned);
 		}
 	}
 }
@@ -241,9 +307,9 @@ void ob_sparse_solve(ob_sparse_solver *t)
 void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t child, uint32_t parent)
 {
 	for (uint32_t r = 0; r < j->rows; r++) {
-		double left = j->parent[r][6];
+		double left = j->y[r];
 		for (int i = 0; i < 6; i++)
-			left -= j->child[i][r] * t->change[child][i];
+			left -= j->child[r][i] * t->change[child][i];
 		for (int i = 0; i < 6 && parent != OB_SPARSE_FIXED; i++)
 			left -= j->parent[r][i] * t->change[parent][i];
 		j->x[r] = left / j->compliance[r];
@@ -252,12 +318,12 @@ void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t c
 
 void ob_sparse_finish(ob_sparse_solver *t)
 {
-	free(t->adjacent);
+	free(t->node);
+	free(t->least);
+	free(t->edge);
 	free(t->order);
-	free(t->place);
 	free(t->first);
 	free(t->below);
-	free(t->at);
 	free(t->block);
 	free(t->own);
 	free(t->inverse);

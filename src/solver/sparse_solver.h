@@ -1,6 +1,14 @@
-// The direct solve of bodies whose joints close cycles (walls, pyramids, heaps): the same equations as in
-// solver/tree_solver.h, with the impulses eliminated first. The remaining matrix has one 6 x 6 block for each body and for
-// each two bodies that share a joint,
+// Direct solve of bodies that joints connect, in trees and in cycles: finds the impulses that bring the joints'
+// velocities to their targets.
+//
+// A joint is up to seven rows between a child and its parent: J_c v_c + J_p v_p is the speed at which they open or
+// slide. These velocities are to change by y. The impulses x act on both bodies alike, each row softened by a tiny
+// compliance e, which makes the answer unique where rows are redundant:
+//
+//      J_c dv_c + J_p dv_p + e x = y      for each joint,      M dv = sum of J^T x      for each body.
+//
+// The impulses are eliminated first. The remaining matrix has one 6 x 6 block for each body and for each two bodies that
+// share a joint,
 //
 //      (M + J^T e^-1 J) dv = J^T e^-1 y,      x = e^-1 (y - J dv)
 //
@@ -10,26 +18,51 @@
 //        o───o───o             o───o───o         The cost is the sum of squares of the numbers of neighbours. It
 //        │   │   │      ──>    │ ╱ │   │         is known before any arithmetic is done; if it is too high,
 //        x───o───o               ──o───o         as in thick heaps, there is no solve.
+//
+// A leaf links nothing: it adds to its parent's block the inertia of an articulated body (Featherstone 1983), and the
+// parent becomes a leaf itself. So trees take time and memory linear in the number of bodies.
 #ifndef OB_SOLVER_SPARSE_SOLVER_H
 #define OB_SOLVER_SPARSE_SOLVER_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "solver/tree_solver.h"
-
 enum { OB_SPARSE_FIXED = UINT32_MAX }; // a parent that does not move
+enum { OB_JOINT_ROWS = 7 };
+
+typedef struct ob_joint {
+	uint32_t rows;
+	double child[OB_JOINT_ROWS][6], parent[OB_JOINT_ROWS][6]; // J_c, J_p
+	double y[OB_JOINT_ROWS]; // m/s, rad/s
+	double compliance[OB_JOINT_ROWS];
+	double x[OB_JOINT_ROWS]; // impulses
+} ob_joint;
 
 typedef double ob_sparse_block[6][6];
 
+// A body in the graph of joints.
+typedef struct ob_sparse_node {
+	uint32_t edges, degree; // its first edge; number of neighbours that are not eliminated yet
+	uint32_t next, previous; // bodies of the same degree
+	uint32_t place; // in the order of elimination; UINT32_MAX: not eliminated yet
+	uint32_t mark; // scratch
+} ob_sparse_node;
+
+// Edge from a body to a neighbour, which may have been eliminated since.
+typedef struct ob_sparse_edge {
+	uint32_t to, next;
+} ob_sparse_edge;
+
 // Memory grown as needed, never shrunk. Bodies have numbers from 0.
 typedef struct ob_sparse_solver {
-	uint32_t bodies, bodies_max, words; // 64 bodies to a word
-	uint64_t *adjacent; // [body][words]: bit per neighbour that is not eliminated yet
-	uint32_t *order, *place; // bodies in the order of elimination; [body]: its place in it
+	uint32_t bodies, bodies_max;
+	ob_sparse_node *node; // [body]
+	uint32_t *least; // [degree]: first body of this degree
+	uint32_t edges, edges_max;
+	ob_sparse_edge *edge;
+	uint32_t *order; // bodies in the order of elimination
 	uint32_t *first; // [bodies + 1], by place in the order: range in below
 	uint32_t below_max, *below; // neighbours that remain when a body is eliminated
-	uint32_t *at; // [body][body]: block of the pair
 	uint32_t blocks_max;
 	ob_sparse_block *block; // one for each entry of below: the neighbour's rows, the eliminated body's columns
 	ob_sparse_block *own; // [body]
@@ -41,7 +74,8 @@ void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies);
 void ob_sparse_link(ob_sparse_solver *t, uint32_t child, uint32_t parent);
 // Plans the elimination, after the links. false: the solve would cost more than "most" block products for each body.
 bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most);
-void ob_sparse_add_inertia(ob_sparse_solver *t, uint32_t body, double m[6][8]);
+// Sets the body's inertia.
+void ob_sparse_set_inertia(ob_sparse_solver *t, uint32_t body, double (*m)[6]);
 void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent);
 void ob_sparse_solve(ob_sparse_solver *t);
 // Sets the joint's impulses.

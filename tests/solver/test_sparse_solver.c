@@ -1,4 +1,4 @@
-// The elimination for closed cycles of joints, against the equations that it solves, and its refusals.
+// The elimination of bodies with joints in trees and cycles, against the equations that it solves, and its refusals.
 #include "solver/sparse_solver.h"
 
 #include <string.h>
@@ -6,10 +6,10 @@
 #include "check.h"
 #include "motion/random.h"
 
-enum { BODIES = 12, JOINTS = 20, MANY = 70 };
+enum { BODIES = 12, JOINTS = 20, MANY = 70, LONG = 20000 };
 
 typedef struct frame {
-	double inertia[BODIES][6][8];
+	double inertia[BODIES][6][6];
 	uint32_t child[JOINTS], parent[JOINTS];
 	ob_joint joint[JOINTS];
 } frame;
@@ -25,10 +25,10 @@ static void random_joint(ob_joint *j, uint64_t *seed)
 	j->rows = 1 + pick(seed, 7);
 	for (uint32_t r = 0; r < j->rows; r++) {
 		for (int i = 0; i < 6; i++) {
-			j->child[i][r] = within(seed, -1, 1);
+			j->child[r][i] = within(seed, -1, 1);
 			j->parent[r][i] = within(seed, -1, 1);
 		}
-		j->parent[r][6] = within(seed, -1, 1);
+		j->y[r] = within(seed, -1, 1);
 		j->compliance[r] = pow(10, within(seed, -5, -2));
 	}
 }
@@ -62,7 +62,7 @@ static bool solve(frame *f, ob_sparse_solver *t, uint32_t most)
 	if (!ob_sparse_analyse(t, most))
 		return false;
 	for (uint32_t k = 0; k < BODIES; k++)
-		ob_sparse_add_inertia(t, k, f->inertia[k]);
+		ob_sparse_set_inertia(t, k, f->inertia[k]);
 	for (int k = 0; k < JOINTS; k++)
 		ob_sparse_add_joint(t, &f->joint[k], f->child[k], f->parent[k]);
 	ob_sparse_solve(t);
@@ -81,7 +81,7 @@ static void check_frame(uint64_t *seed, ob_sparse_solver *t)
 	for (int k = 0; k < JOINTS; k++)
 		for (uint32_t r = 0; r < f.joint[k].rows; r++)
 			for (int i = 0; i < 6; i++) {
-				force[f.child[k]][i] += f.joint[k].child[i][r] * f.joint[k].x[r];
+				force[f.child[k]][i] += f.joint[k].child[r][i] * f.joint[k].x[r];
 				if (f.parent[k] != OB_SPARSE_FIXED)
 					force[f.parent[k]][i] += f.joint[k].parent[r][i] * f.joint[k].x[r];
 				scale = fmax(scale, fabs(f.joint[k].x[r]));
@@ -94,6 +94,36 @@ static void check_frame(uint64_t *seed, ob_sparse_solver *t)
 				momentum += f.inertia[k][i][j] * t->change[k][j];
 			CHECK_NEAR(momentum / scale, force[k][i] / scale, 1e-8);
 		}
+}
+
+// A duplicate row: both carry the same load.
+static void test_said_twice(ob_sparse_solver *t)
+{
+	double inertia[6][6] = {
+		{ 2 }, { 0, 2 }, { 0, 0, 2 }, { 0, 0, 0, 1 }, { 0, 0, 0, 0, 1 }, { 0, 0, 0, 0, 0, 1 }
+	};
+	ob_joint j = { .rows = 2, .compliance = { 1e-7, 1e-7 }, .y = { 3, 3 } };
+	j.child[0][2] = j.child[1][2] = 1;
+	ob_sparse_begin(t, 1);
+	CHECK(ob_sparse_analyse(t, 0));
+	ob_sparse_set_inertia(t, 0, inertia);
+	ob_sparse_add_joint(t, &j, 0, OB_SPARSE_FIXED);
+	ob_sparse_solve(t);
+	ob_sparse_joint_impulses(t, &j, 0, OB_SPARSE_FIXED);
+	CHECK_NEAR(t->change[0][2], 3, 1e-6);
+	CHECK_NEAR(j.x[0], 3, 1e-6);
+	CHECK(j.x[0] == j.x[1]);
+}
+
+// A tree of many bodies, a star among them, has one block and one product for each joint, and edges for its joints alone.
+static void test_tree(ob_sparse_solver *t)
+{
+	ob_sparse_begin(t, LONG);
+	for (uint32_t k = 1; k < LONG; k++)
+		ob_sparse_link(t, k, k < LONG / 2 ? 0 : k / 2);
+	CHECK(ob_sparse_analyse(t, 1));
+	CHECK(t->first[LONG] == LONG - 1);
+	CHECK(t->edges == 2 * (LONG - 1));
 }
 
 // A chain costs one product a body, in any order of its links; a clique costs too much.
@@ -118,6 +148,8 @@ int main(void)
 	for (int i = 0; i < 1000; i++)
 		check_frame(&seed, &t);
 	test_cost(&t);
+	test_tree(&t);
+	test_said_twice(&t);
 	ob_sparse_finish(&t);
 	return check_end();
 }
