@@ -177,6 +177,17 @@ bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *ou
 uint64_t ob_universe_get_passport_version(const ob_universe *u, uint32_t id);
 // Newest published motion; never torn. Returns false if there is no such object, or its bytes are implausible.
 bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out);
+// States of all objects at one instant, as arrays of the caller; NULL leaves one out. Row i of each is an object's; ids
+// ascend. Positions are those of the centres of mass.
+typedef struct ob_state_arrays {
+	uint32_t *id, *generation; // [max]
+	double *position; // [max][3], m
+	double *attitude; // [max][4], w x y z, body to world
+	double *velocity, *angular_velocity; // [max][3], m/s; rad/s; world frame
+} ob_state_arrays;
+// Evaluates all objects at the universe's clock, and writes the first max; returns their number (may exceed max). The
+// states are of one instant while the universe stands at a step boundary; while it runs, some may be a step newer.
+size_t ob_universe_get_states(const ob_universe *u, const ob_state_arrays *out, size_t max);
 // Fat AABB (m, xmin ymin zmin xmax ymax zmax) that contains the object until it publishes another; a plane's is
 // infinite. Each number is whole, but while the universe runs a reader may get some numbers of a new box beside some of
 // the old. Returns false if there is no such object, or its numbers are implausible.

@@ -18,7 +18,7 @@ static const struct {
 	{ "top", OB_COMMAND_TOP, ob_command_top },          { "lab", OB_COMMAND_LAB, ob_command_lab },
 	{ "paper", OB_COMMAND_PAPER, ob_command_paper },    { "inspect", OB_COMMAND_INSPECT, ob_command_inspect },
 	{ "serve", OB_COMMAND_SERVE, ob_command_serve },    { "send", OB_COMMAND_SEND, ob_command_send },
-	{ "export", OB_COMMAND_EXPORT, ob_command_export },
+	{ "export", OB_COMMAND_EXPORT, ob_command_export }, { "control", OB_COMMAND_CONTROL, ob_command_control },
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

@@ -17,62 +17,60 @@ enum {
 	INSPECT = OB_COMMAND_INSPECT,
 	SERVE = OB_COMMAND_SERVE,
 	SEND = OB_COMMAND_SEND,
-	EXPORT = OB_COMMAND_EXPORT
+	EXPORT = OB_COMMAND_EXPORT,
+	CONTROL = OB_COMMAND_CONTROL,
+	STEPPED = RUN | SERVE | CONTROL
 };
 
 const ob_option ob_option_table[OB_OPTIONS] = {
-	[OB_OPTION_DEFINE] = { "The scene", "define", "NAME=VALUE", "set a parameter of the scene",
-			       RUN | COMPARE | SERVE, 'D' },
+	[OB_OPTION_DEFINE] = { "The scene", "define", "NAME=VALUE", "set a parameter of the scene", STEPPED | COMPARE,
+			       'D' },
 	[OB_OPTION_VARY] = { NULL, "vary", "NAME=VALUE,..", "compare at each of these values of a parameter", COMPARE,
 			     0 },
 	[OB_OPTION_DURATION] = { NULL, "duration", "S", "simulated seconds (the scene says how many)",
-				 RUN | COMPARE | SERVE, 0 },
-	[OB_OPTION_STEP] = { NULL, "step", "H", "seconds a step, as .01 or 1/60 (the scene's)", RUN | COMPARE | SERVE,
+				 STEPPED | COMPARE, 0 },
+	[OB_OPTION_STEP] = { NULL, "step", "H", "seconds a step, as .01 or 1/60 (the scene's)", STEPPED | COMPARE, 0 },
+	[OB_OPTION_SEED] = { NULL, "seed", "N", "seed of the scene's random numbers (the scene's)", STEPPED | COMPARE,
 			     0 },
-	[OB_OPTION_SEED] = { NULL, "seed", "N", "seed of the scene's random numbers (the scene's)",
-			     RUN | COMPARE | SERVE, 0 },
 
 	[OB_OPTION_ARCH] = { "How it runs", "arch", OB_ARCHITECTURE_NAMES,
-			     "one simulator per object, or one ODE world that holds all (obs)", RUN | SERVE, 0 },
-	[OB_OPTION_ISOLATION] = { NULL, "isolation", "thread|process", "what a worker is (thread)", RUN | SERVE, 0 },
+			     "one simulator per object, or one ODE world that holds all (obs)", STEPPED, 0 },
+	[OB_OPTION_ISOLATION] = { NULL, "isolation", "thread|process", "what a worker is (thread)", STEPPED, 0 },
 	[OB_OPTION_WORKERS] = { NULL, "workers", "N|objects",
-				"workers in the pool, or one for each object (one per core)", RUN | COMPARE | SERVE,
-				0 },
+				"workers in the pool, or one for each object (one per core)", STEPPED | COMPARE, 0 },
 	[OB_OPTION_HARDEN] = { NULL, "harden", "[=LIST]",
 			       "processes that can write their own results alone, and do little else",
-			       RUN | COMPARE | SERVE, 0 },
+			       STEPPED | COMPARE, 0 },
 	[OB_OPTION_TOLERANCE] = { NULL, "tolerance", "LENGTH",
 				  "error that objects that touch may reach, as .5mm: chooses the substeps",
-				  RUN | COMPARE | SERVE, 0 },
+				  STEPPED | COMPARE, 0 },
 	[OB_OPTION_STRICT] = { NULL, "strict", NULL, "exit with 1 where the tolerance is missed", RUN, 0 },
-	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", "N", "substeps a step (the scene's; monolith: 1)",
-				 RUN | COMPARE | SERVE, 0 },
+	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", "N", "substeps a step (the scene's; monolith: 1)", STEPPED | COMPARE,
+				 0 },
 	[OB_OPTION_ITERATIONS] = { NULL, "iterations", "N",
 				   "of the contact solver a substep (the scene's; monolith: 20, 0 = exact)",
-				   RUN | COMPARE | SERVE, 0 },
+				   STEPPED | COMPARE, 0 },
 	[OB_OPTION_SOLVER] = { NULL, "solver", OB_SOLVER_NAMES, "how contacts are solved (the scene's)",
-			       RUN | COMPARE | SERVE, 0 },
+			       STEPPED | COMPARE, 0 },
 	[OB_OPTION_LAG] = { NULL, "lag", "K", "lagged: iterations that a partner's state is late (1)",
-			    RUN | COMPARE | SERVE, 0 },
+			    STEPPED | COMPARE, 0 },
 	[OB_OPTION_INTEGRATOR] = { NULL, "integrator", OB_INTEGRATOR_NAMES,
-				   "free motion in closed form, or by ODE's stepper (the scene's)",
-				   RUN | COMPARE | SERVE, 0 },
+				   "free motion in closed form, or by ODE's stepper (the scene's)", STEPPED | COMPARE,
+				   0 },
 	[OB_OPTION_SLEEPING] = { NULL, "sleeping", OB_SWITCH_NAMES, "whether what rests may sleep (the scene's)",
-				 RUN | COMPARE | SERVE, 0 },
+				 STEPPED | COMPARE, 0 },
 	[OB_OPTION_NARROW] = { NULL, "narrow", OB_NARROW_PHASE_NAMES,
-			       "objects touch as they are, or as boxes along the axes (obb)", RUN | COMPARE | SERVE,
-			       0 },
-	[OB_OPTION_LOAD] = { NULL, "load", "N", "add up 1 to N in each test of two boxes (0)", RUN | COMPARE | SERVE,
-			     0 },
+			       "objects touch as they are, or as boxes along the axes (obb)", STEPPED | COMPARE, 0 },
+	[OB_OPTION_LOAD] = { NULL, "load", "N", "add up 1 to N in each test of two boxes (0)", STEPPED | COMPARE, 0 },
 	[OB_OPTION_PATIENCE] = { NULL, "patience", "S",
 				 "seconds that a step may take until it counts as stalled (60), a page to make (10)",
-				 RUN | SERVE | EXPORT, 0 },
+				 STEPPED | EXPORT, 0 },
 	[OB_OPTION_ON_DEATH] = { NULL, "on-death", OB_ON_DEATH_NAMES,
 				 "what a death or failure does: restart, freeze, or end (restart; serve: keep)",
-				 RUN | SERVE, 0 },
+				 STEPPED, 0 },
 	[OB_OPTION_RESTARTS] = { NULL, "restarts", "N/S",
-				 "end the run at more than N deaths within S seconds (no limit)", RUN | SERVE, 0 },
-	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", RUN | SERVE, 0 },
+				 "end the run at more than N deaths within S seconds (no limit)", STEPPED, 0 },
+	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", STEPPED, 0 },
 
 	[OB_OPTION_PACE] = { NULL, "pace", "realtime|RATE|max",
 			     "simulated seconds a second of the clock (run: max; serve: realtime)", RUN | SERVE, 0 },
@@ -82,7 +80,8 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_PAUSED] = { NULL, "paused", NULL, "stand still until a viewer lets it run", SERVE, 0 },
 	[OB_OPTION_READONLY] = { NULL, "readonly", NULL, "viewers may look, and change nothing", SERVE, 0 },
 	[OB_OPTION_VIEWERS] = { NULL, "viewers", "N", "viewers at a time (64)", SERVE, 0 },
-	[OB_OPTION_ROOM] = { NULL, "room", "N", "objects that viewers may add (1000)", SERVE, 0 },
+	[OB_OPTION_ROOM] = { NULL, "room", "N", "objects that viewers, or a program, may add (1000)", SERVE | CONTROL,
+			     0 },
 
 	[OB_OPTION_FRAMES] = { "Frames", "frames", "DIR", "write DIR/frame-000000.png and so on", RUN, 0 },
 	[OB_OPTION_VIDEO] = { NULL, "video", "FILE", "write a video through ffmpeg", RUN, 0 },
@@ -122,7 +121,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_FAULT] = { "To test with", "fault", "KINDS:p=P,..",
 			      "simulators that kill, stop, exit ..., as kill+exit:p=.001,seed=7", RUN, 0 },
 	[OB_OPTION_CHECK] = { NULL, "check", NULL,
-			      "check what simulators share after each step; exit with 4 where it is wrong", RUN | SERVE,
+			      "check what simulators share after each step; exit with 4 where it is wrong", STEPPED,
 			      0 },
 
 	[OB_OPTION_LIST] = { "What is run", "list", NULL, "print the cases and end", LAB, 0 },
@@ -149,7 +148,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
 
 	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end",
-			     RUN | COMPARE | TOP | LAB | PAPER | INSPECT | SERVE | SEND | EXPORT, 'h' },
+			     STEPPED | COMPARE | TOP | LAB | PAPER | INSPECT | SEND | EXPORT, 'h' },
 };
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
@@ -331,6 +330,8 @@ static const struct {
 	  "Runs a scene, each object a simulator of its own, and reports speed and error." },
 	{ OB_COMMAND_SERVE, "obsim serve SCENE.lua [OPTION ...]",
 	  "Runs a scene that people look at, and change, from their browsers." },
+	{ OB_COMMAND_CONTROL, "obsim control SCENE.lua [OPTION ...]",
+	  "Runs a scene that a program leads step by step: Python, or C." },
 	{ OB_COMMAND_COMPARE, "obsim compare SCENE.lua [OPTION ...]",
 	  "Runs a scene as one world, as threads and as processes, and prints one table." },
 	{ OB_COMMAND_TOP, "obsim top [NAME] [OPTION ...]",
@@ -394,11 +395,11 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		      "without one, all.\nThe same command goes on where it was interrupted.\n",
 		      f);
 	fprintf(f, "\nDefaults stand in brackets. Exit: 0 done, 1 failed or interrupted, 2 wrong usage%s.\n",
-		command == OB_COMMAND_LAB                                  ? ", 3 a target missed"
-		: command == OB_COMMAND_RUN || command == OB_COMMAND_SERVE ? " or scene, 4 --check found a fault"
-		: command == OB_COMMAND_INSPECT                            ? ", or no whole checkpoint"
-		: command == OB_COMMAND_EXPORT                             ? ", or no whole record"
-									   : " or scene");
+		command == OB_COMMAND_LAB       ? ", 3 a target missed"
+		: command & STEPPED             ? " or scene, 4 --check found a fault"
+		: command == OB_COMMAND_INSPECT ? ", or no whole checkpoint"
+		: command == OB_COMMAND_EXPORT  ? ", or no whole record"
+						: " or scene");
 }
 
 void ob_options_overview(FILE *f)

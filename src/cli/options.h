@@ -18,6 +18,7 @@ typedef enum ob_command_bit {
 	OB_COMMAND_SERVE = 64,
 	OB_COMMAND_SEND = 128,
 	OB_COMMAND_EXPORT = 256,
+	OB_COMMAND_CONTROL = 512,
 } ob_command_bit;
 
 // In the order of the help.

@@ -443,9 +443,10 @@ static const char *find_scene(const char *name)
 
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
-	static const char *const verbs[] = {
-		[OB_COMMAND_RUN] = "run", [OB_COMMAND_COMPARE] = "compare", [OB_COMMAND_SERVE] = "serve"
-	};
+	static const char *const verbs[] = { [OB_COMMAND_RUN] = "run",
+					     [OB_COMMAND_COMPARE] = "compare",
+					     [OB_COMMAND_SERVE] = "serve",
+					     [OB_COMMAND_CONTROL] = "control" };
 	const char *resume = a->value[OB_OPTION_RESUME];
 	if (resume && !check_resumed(a, e))
 		return false;

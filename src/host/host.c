@@ -259,6 +259,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->saved = config->saved;
 	h->on_death = config->on_death;
 	h->limit = config->limit;
+	h->control = config->control;
 	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;
 	pthread_mutex_init(&h->failure_lock, NULL);
 	pthread_mutex_init(&h->interval.lock, NULL);
@@ -402,6 +403,7 @@ void ob_host_stop(ob_host *h)
 	if (h->interrupt_fd >= 0)
 		ob_interrupt_release();
 	ob_restart_finish(h);
+	ob_snapshots_finish(&h->snapshots);
 	ob_population_destroy(h->population);
 	ob_requests_destroy(h->requests);
 	ob_roster_destroy(h->roster);

@@ -56,6 +56,7 @@ typedef struct ob_host_config {
 	const char *trace; // file for the timeline of workers and host (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
 	ob_request_log *log; // input from outside; NULL = none. It must outlive the host
+	struct ob_control *control; // takes programs that control the run (control.h); NULL = refuses them. Likewise
 	const ob_logged_requests *replay; // requests to carry out again, each in its place; NULL = none
 	const ob_saved_host *from; // start of the run, checked (ob_saved_universe_check); NULL = the scene's start
 } ob_host_config;

@@ -7,8 +7,10 @@
 #include <stdatomic.h>
 
 #include "host/ask.h"
+#include "host/control.h"
 #include "host/host.h"
 #include "host/population.h"
+#include "host/snapshots.h"
 #include "host/spawn.h"
 #include "table/checkpoint.h"
 
@@ -64,6 +66,8 @@ struct ob_host {
 	atomic_bool dismissed; // the supervisor is to end
 	int wake_fd, interrupt_fd; // ends the supervisor; SIGINT and its kin
 	ob_asked asked; // requests of other programs
+	ob_control *control; // see ob_host_config
+	ob_snapshots snapshots;
 	atomic_uint running_workers; // workers that have not ended
 	atomic_bool interrupted, failed, ending;
 	pthread_mutex_t failure_lock;
@@ -104,6 +108,11 @@ void ob_host_halt(ob_host *h);
 void ob_host_tell_of_scripts(ob_host *h);
 // Makes the running interval end at the next step boundary. Any thread.
 void ob_host_pause_early(ob_host *h);
+
+// ---- request.c
+
+// Checks a request from outside against the universe as it is now, and completes it: mesh and hull. Any thread.
+bool ob_request_check(const ob_host *h, ob_request *r, ob_error *e);
 
 // ---- host.c
 

@@ -52,11 +52,13 @@ struct ob_population {
 	ob_journal journal; // requests since the population was kept
 	uint64_t reached; // steps that were complete before a restart
 	ob_request_log *log; // NULL: none
-	struct {
-		slot *slots; // NULL: none kept
-		size_t next;
-		uint32_t first_free, created, kinematic, pushed, hulls;
-	} kept;
+	ob_kept_population *kept; // for a restart; NULL: none
+};
+
+struct ob_kept_population {
+	slot *slots; // [capacity]
+	size_t next;
+	uint32_t first_free, created, kinematic, pushed, hulls;
 };
 
 // ---- requests
@@ -213,6 +215,13 @@ static const ob_force *force_of(const ob_population *p, uint32_t id)
 	return p->slots[id].driven ? p->scene->object[id].force : NULL;
 }
 
+// Ends what the scene has planned for the object's motion.
+static void end_plan(ob_population *p, uint32_t id)
+{
+	p->pushed -= force_of(p, id) != NULL;
+	p->slots[id].driven = false;
+}
+
 static void remove_object(ob_population *p, uint32_t id)
 {
 	slot *s = &p->slots[id];
@@ -221,8 +230,7 @@ static void remove_object(ob_population *p, uint32_t id)
 	p->kinematic -= s->kinematic;
 	s->kinematic = false;
 	ob_script_free_cell(p->u, id);
-	p->pushed -= force_of(p, id) != NULL;
-	s->driven = false;
+	end_plan(p, id);
 	ob_sim_remove(p->u, id);
 	p->created -= s->created;
 	s->created = false;
@@ -358,6 +366,38 @@ static void carry_out_scripts(ob_population *p)
 	}
 }
 
+bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_error *e)
+{
+	const ob_passport *pass = ob_passport_of(p->u, r->id);
+	const bool pushes = r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_KICK;
+	if (!pushes && r->kind != OB_REQUEST_STATE)
+		return true;
+	if (r->kind != OB_REQUEST_FORCE && ob_universe_settings(p->u)->monolith)
+		return ob_fail(e, "the one ODE world keeps its bodies to itself: take object simulators");
+	if (pushes && pass->flags & OB_OBJECT_PRESCRIBED)
+		return ob_fail(e, "object %u (%.*s) does not move by forces", r->id, OB_NAME_MAX, pass->name);
+	return pushes ? ob_push_check(pass, r->force, r->kind == OB_REQUEST_KICK ? r->twist : ob_v3(0, 0, 0), e)
+		      : ob_state_check(pass, &r->state, e);
+}
+
+// Carries out a request that changes the motion of an object that exists.
+static void set_motion(ob_population *p, const ob_request *r)
+{
+	ob_error e;
+	if (!ob_population_check_change(p, r, &e)) {
+		ob_log_warn("a request was left out: %s", e.text); // valid when it came
+		return;
+	}
+	if (r->kind != OB_REQUEST_KICK)
+		end_plan(p, r->id);
+	if (r->kind == OB_REQUEST_FORCE)
+		ob_sim_push(p->u, r->id, r->force, true);
+	else if (r->kind == OB_REQUEST_KICK)
+		ob_sim_kick(p->u, r->id, r->force, r->twist);
+	else
+		ob_sim_place_anew(p->u, r->id, &r->state);
+}
+
 // Carries out a request for an object that exists.
 static void change_on_request(ob_population *p, const ob_request *r)
 {
@@ -367,10 +407,12 @@ static void change_on_request(ob_population *p, const ob_request *r)
 	} else if (r->kind == OB_REQUEST_MESSAGE) {
 		if (!ob_script_deliver(p->u, r->id, r->values, r->bytes))
 			ob_log_warn("object \"%.*s\" got no message: too many wait for it", OB_NAME_MAX, pass.name);
-	} else {
+	} else if (r->kind == OB_REQUEST_COLOUR) {
 		memcpy(pass.colour, r->colour, sizeof pass.colour);
 		pass.flags &= ~(uint32_t)OB_OBJECT_MESH_COLOUR;
 		ob_write_passport(p->u, r->id, &pass);
+	} else {
+		set_motion(p, r);
 	}
 }
 
@@ -468,7 +510,7 @@ static void carry_out_requests(ob_population *p, uint64_t step, ob_requests *q)
 	if (ob_journal_next_step(&p->journal) < UINT64_MAX || step < p->reached || !ob_requests_waiting(q))
 		return;
 	while (ob_requests_take(q, &r)) {
-		if (p->kept.slots)
+		if (p->kept)
 			ob_journal_note(&p->journal, &at, &r);
 		ob_request_log_request(p->log, &at, &r);
 		carry_out_request(p, &r);
@@ -510,38 +552,70 @@ bool ob_population_is_checkpoint_due(const ob_population *p)
 	return ob_journal_is_full(&p->journal);
 }
 
-bool ob_population_keep(ob_population *p)
+void ob_kept_population_free(ob_kept_population *k)
+{
+	if (k)
+		free(k->slots);
+	free(k);
+}
+
+ob_kept_population *ob_population_copy(const ob_population *p, ob_kept_population *k)
 {
 	const size_t bytes = ob_universe_capacity(p->u) * sizeof *p->slots;
-	if (!p->kept.slots)
-		p->kept.slots = malloc(bytes);
-	if (!p->kept.slots)
+	if (!k)
+		k = calloc(1, sizeof *k);
+	if (k && !k->slots)
+		k->slots = malloc(bytes);
+	if (!k || !k->slots) {
+		free(k);
+		return NULL;
+	}
+	memcpy(k->slots, p->slots, bytes);
+	k->next = p->next;
+	k->first_free = p->first_free;
+	k->created = p->created;
+	k->kinematic = p->kinematic;
+	k->pushed = p->pushed;
+	k->hulls = p->hulls.count;
+	return k;
+}
+
+bool ob_population_keep(ob_population *p)
+{
+	p->kept = ob_population_copy(p, p->kept);
+	if (!p->kept)
 		return false;
-	memcpy(p->kept.slots, p->slots, bytes);
-	p->kept.next = p->next;
-	p->kept.first_free = p->first_free;
-	p->kept.created = p->created;
-	p->kept.kinematic = p->kinematic;
-	p->kept.pushed = p->pushed;
-	p->kept.hulls = p->hulls.count;
 	ob_journal_clear(&p->journal);
 	return true;
+}
+
+static void put_back(ob_population *p, const ob_kept_population *k)
+{
+	memcpy(p->slots, k->slots, ob_universe_capacity(p->u) * sizeof *p->slots);
+	p->next = k->next;
+	p->first_free = k->first_free;
+	p->created = k->created;
+	p->kinematic = k->kinematic;
+	p->pushed = k->pushed;
+	p->hulls.count = k->hulls; // hulls added later come again, unchanged
+	publish_roster(p);
 }
 
 void ob_population_put_back(ob_population *p, uint64_t reached)
 {
 	p->reached = reached > p->reached ? reached : p->reached;
-	if (!p->kept.slots)
+	if (!p->kept)
 		return;
-	memcpy(p->slots, p->kept.slots, ob_universe_capacity(p->u) * sizeof *p->slots);
-	p->next = p->kept.next;
-	p->first_free = p->kept.first_free;
-	p->created = p->kept.created;
-	p->kinematic = p->kept.kinematic;
-	p->pushed = p->kept.pushed;
-	p->hulls.count = p->kept.hulls; // hulls added later come again, unchanged
 	ob_journal_rewind(&p->journal);
-	publish_roster(p);
+	put_back(p, p->kept);
+}
+
+void ob_population_restore(ob_population *p, const ob_kept_population *k)
+{
+	p->reached = 0;
+	ob_journal_finish(&p->journal);
+	p->journal = (ob_journal){ 0 };
+	put_back(p, k);
 }
 
 uint64_t ob_population_next_step(const ob_population *p)
@@ -737,7 +811,7 @@ void ob_population_destroy(ob_population *p)
 	free(p->events);
 	free(p->slots);
 	ob_hulls_finish(&p->hulls);
-	free(p->kept.slots);
+	ob_kept_population_free(p->kept);
 	ob_journal_finish(&p->journal);
 	free(p);
 }

@@ -40,6 +40,16 @@ bool ob_population_replay(ob_population *p, const ob_journal_entry *entry, size_
 void ob_population_set_log(ob_population *p, ob_request_log *log);
 // Carries out the timetable up to this step, then the requests. true: objects were added or removed.
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
+// Checks a request that sets a force, a state, or kicks, against the object as it is now, which exists. Others pass. Any
+// thread.
+bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_error *e);
+
+// Copy of all that is not in the universe. k: one to overwrite, or NULL for a new one. NULL: out of memory, and k is freed.
+typedef struct ob_kept_population ob_kept_population;
+ob_kept_population *ob_population_copy(const ob_population *p, ob_kept_population *k);
+void ob_kept_population_free(ob_kept_population *k); // NULL is allowed
+// Goes on from a copy, at a universe put back to the same step: what came later is forgotten, and never repeated.
+void ob_population_restore(ob_population *p, const ob_kept_population *k);
 // For a checkpoint in memory (table/checkpoint.h): keeps the state that is not in the universe, and puts it back. Later
 // changes by timetable, scripts and requests are repeated by a run that restarts there (host/journal.h). reached: number of
 // steps that were complete before the restart; new requests wait until as many are complete again.

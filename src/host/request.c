@@ -1,6 +1,73 @@
 // Requests of any thread to a run.
+#include <string.h>
+
 #include "host/host_state.h"
 #include "scene/object_limits.h"
+#include "shape/shape.h"
+
+static bool is_colour(const float *c)
+{
+	for (int i = 0; i < 4; i++)
+		if (!(c[i] >= 0 && c[i] <= 1))
+			return false;
+	return true;
+}
+
+static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
+{
+	const ob_shape shape = (ob_shape)r->def.passport.shape;
+	ob_hull hull;
+	if (!ob_shape_is_bounded(shape) || r->def.script || r->def.state_bytes)
+		return ob_fail(e, "only objects with a size and without a script can be created by requests");
+	if (!ob_population_find_look(h->population, &r->def, e))
+		return false;
+	if (!ob_shape_is(shape, OB_HULLED))
+		return true;
+	if (ob_universe_hulls(h->u) == 0)
+		return ob_fail(e, "the one ODE world has no hulls");
+	if (r->corners.count > OB_HULL_CORNERS_MAX)
+		return ob_fail(e, "a hull has at most %d corners", OB_HULL_CORNERS_MAX);
+	if (!ob_hull_build(r->corners.at, r->corners.count, &hull, e))
+		return false;
+	r->def.passport.size = ob_hull_size(&hull);
+	return true;
+}
+
+// Checks the target of a move: the worker numbers that a pool has for its number of objects.
+static bool check_move(const ob_universe *u, const ob_request *r, const ob_passport *p, ob_error *e)
+{
+	const uint32_t simulators = ob_universe_simulators(u), ids = ob_universe_ids(u),
+		       workers = simulators < ids ? simulators : ids;
+	if (ob_universe_settings(u)->monolith)
+		return ob_fail(e, "in the one ODE world no object has a simulator");
+	if (ob_universe_settings(u)->one_per_object)
+		return ob_fail(e, "each object has a worker of its own, and cannot move");
+	if (p->flags & (OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC | OB_OBJECT_FROZEN))
+		return ob_fail(e, "object %u (%.*s) does not move by forces, and has no simulator", r->id, OB_NAME_MAX,
+			       p->name);
+	return r->worker < workers ||
+	       ob_fail(e, "there is no worker %u for objects: they are 0 to %u", r->worker, workers - 1);
+}
+
+bool ob_request_check(const ob_host *h, ob_request *r, ob_error *e)
+{
+	ob_passport p;
+	if (r->kind > OB_REQUEST_MOVE)
+		return ob_fail(e, "unknown request");
+	if (r->kind != OB_REQUEST_MOVE && ob_universe_ranks(h->u) > 1)
+		return ob_fail(e, "on several ranks, objects can only be moved");
+	if (r->kind == OB_REQUEST_ADD)
+		return check_new(h, r, e);
+	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)
+		return ob_fail(e, "the object has gone");
+	if (r->kind == OB_REQUEST_COLOUR && !is_colour(r->colour))
+		return ob_fail(e, "a colour has parts from 0 to 1");
+	if (r->kind == OB_REQUEST_MESSAGE && (r->bytes > sizeof r->values || !ob_script_turn_of(h->u, r->id)))
+		return ob_fail(e, "object %u (%.*s) has no script to send a message to", r->id, OB_NAME_MAX, p.name);
+	if (r->kind == OB_REQUEST_MOVE)
+		return check_move(h->u, r, &p, e);
+	return ob_population_check_change(h->population, r, e);
+}
 
 static bool request(ob_host *h, const ob_request *r)
 {

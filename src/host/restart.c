@@ -249,8 +249,19 @@ static void fail_to_end_workers(ob_host *h)
 				    h->running_workers, kill_timeout);
 }
 
+// Keeps the resource use of dead workers, for the sums of the run.
+static void save_accounts(ob_host *h)
+{
+	ob_restart_state *r = &h->restart;
+	r->switches += ob_host_count_switches(h);
+	r->cpu = ob_host_read_cpu(h);
+	for (uint32_t w = 0; w < h->workers; w++)
+		ob_worker_set_cpu(h->u, w, 0);
+}
+
 static bool end_all_workers(ob_host *h)
 {
+	save_accounts(h);
 	ob_hang_clock clock = ob_hang_clock_start();
 	h->spawn->end(h->group);
 	while (h->running_workers > 0 && !h->failed &&
@@ -267,16 +278,6 @@ static void back_off(const ob_host *h)
 	const int tenths = h->restart.faults > QUICK_ATTEMPTS ? 10 : h->restart.attempts > QUICK_ATTEMPTS ? 1 : 0;
 	for (int i = 0; i < tenths && !h->interrupted; i++)
 		nanosleep(&(struct timespec){ .tv_nsec = 100000000 }, NULL);
-}
-
-// Keeps the resource use of dead workers, for the sums of the run.
-static void save_accounts(ob_host *h)
-{
-	ob_restart_state *r = &h->restart;
-	r->switches += ob_host_count_switches(h);
-	r->cpu = ob_host_read_cpu(h);
-	for (uint32_t w = 0; w < h->workers; w++)
-		ob_worker_set_cpu(h->u, w, 0);
 }
 
 // Number of kept deaths of the latest death's worker.
@@ -361,15 +362,33 @@ bool ob_host_wait_for_workers(ob_host *h, ob_error *e)
 	return true;
 }
 
+// Starts all workers again. why: for the error. false: they do not start, or one has died, which is a request again.
+static bool start_workers(ob_host *h, const char *why)
+{
+	ob_error e;
+	h->restart.requested = false;
+	if (h->interrupted)
+		return false;
+	h->running_workers = h->workers;
+	if (!h->spawn->restart(h->group, &e)) {
+		ob_host_set_failure(h, "%s; %s", why, e.text);
+		return false;
+	}
+	if (ob_host_wait_for_workers(h, &e))
+		return true;
+	if (!h->restart.requested && !h->interrupted)
+		ob_host_set_failure(h, "%s", e.text);
+	return false;
+}
+
 bool ob_restart(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
-	ob_error e, text;
+	ob_error text;
 	if (give_up(h))
 		return false;
 	const uint64_t step = ob_checkpoint_step(r->checkpoint);
 	r->half_way = ob_step_count(h->u) > step + 1 ? (ob_step_count(h->u) - step) / 2 : 1;
-	save_accounts(h);
 	if (!end_all_workers(h))
 		return false;
 	describe(h, &text);
@@ -386,17 +405,22 @@ bool ob_restart(ob_host *h)
 		reached = count < h->interval.most ? count : h->interval.most;
 	ob_checkpoint_put_back(r->checkpoint, h->u);
 	ob_population_put_back(h->population, reached);
-	r->requested = false;
-	if (h->interrupted)
+	return start_workers(h, text.text);
+}
+
+bool ob_restart_restore(ob_host *h, const ob_checkpoint *c, const ob_kept_population *k)
+{
+	ob_restart_state *r = &h->restart;
+	r->requested = true; // workers that end are expected to
+	ob_gate_stop(h->u);
+	if (!end_all_workers(h))
 		return false;
-	h->running_workers = h->workers;
-	if (!h->spawn->restart(h->group, &e)) {
-		ob_host_set_failure(h, "%s; %s", text.text, e.text);
-		return false;
-	}
-	if (ob_host_wait_for_workers(h, &e))
-		return true;
-	if (!r->requested && !h->interrupted)
-		ob_host_set_failure(h, "%s", e.text);
-	return false;
+	ob_checkpoint_put_back(c, h->u);
+	ob_population_restore(h->population, k);
+	r->freezes = 0;
+	ob_restart_checkpoint(h, true);
+	bool ready = start_workers(h, "restoring a snapshot");
+	while (!ready && r->requested && !h->failed)
+		ready = ob_restart(h);
+	return ready;
 }

@@ -37,6 +37,7 @@
 #define OB_HOST_RESTART_H
 
 #include "host/host.h"
+#include "table/checkpoint.h"
 
 // Prepares restarts. Without it, or with no memory for it, a request is a failure.
 void ob_restart_prepare(ob_host *h);
@@ -57,6 +58,8 @@ bool ob_restart_freeze(ob_host *h);
 // After a request: restarts all workers; they then stand at the gate, the universe at a pause. false: the run has failed,
 // or another worker died in the meantime, which is a request again.
 bool ob_restart(ob_host *h);
+// At a pause, without damage: goes on from a snapshot (host/snapshots.h). false: the run has failed, or is interrupted.
+bool ob_restart_restore(ob_host *h, const ob_checkpoint *c, const ob_kept_population *k);
 void ob_restart_finish(ob_host *h);
 
 #endif

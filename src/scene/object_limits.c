@@ -73,7 +73,7 @@ bool ob_passport_check(const ob_passport *p, ob_error *e)
 	       within3("force", " N", ob_force_most(p), p->force, e);
 }
 
-static bool check_start(const ob_passport *p, const ob_state *s, ob_error *e)
+bool ob_state_check(const ob_passport *p, const ob_state *s, ob_error *e)
 {
 	const ob_quat q = s->pose.q;
 	if (!within3("at", " m", OB_PLACE_MOST, s->pose.p, e) || !within3("velocity", " m/s", OB_SPEED_MOST, s->v, e) ||
@@ -122,7 +122,7 @@ bool ob_object_def_check(const ob_object_def *def, ob_error *e)
 {
 	const ob_passport *p = &def->passport;
 	return ob_passport_check(p, e) && (!def->path || check_path(def->path, &def->state, e)) &&
-	       check_start(p, &def->state, e) && (!def->force || check_varying_force(def->force, p, e));
+	       ob_state_check(p, &def->state, e) && (!def->force || check_varying_force(def->force, p, e));
 }
 
 double ob_force_most(const ob_passport *p)
@@ -134,6 +134,11 @@ double ob_torque_most(const ob_passport *p)
 {
 	const double least = fmin(p->inertia.x, fmin(p->inertia.y, p->inertia.z));
 	return least > 0 ? fmin(OB_FORCE_MOST, OB_ACCELERATION_MOST * least) : OB_FORCE_MOST;
+}
+
+bool ob_push_check(const ob_passport *p, ob_vec3 force, ob_vec3 twist, ob_error *e)
+{
+	return within3("force", "", ob_force_most(p), force, e) && within3("twist", "", ob_torque_most(p), twist, e);
 }
 
 // ---- whole objects, named

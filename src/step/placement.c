@@ -203,19 +203,30 @@ static void wake_object(ob_universe *u, uint32_t id)
 	note_change(u, id);
 }
 
+static void replace(ob_universe *u, uint32_t id, const ob_passport *p, const ob_state *state)
+{
+	ob_sim_remove(u, id);
+	ob_write_passport(u, id, p);
+	ob_sim_place(u, id, state);
+}
+
+void ob_sim_place_anew(ob_universe *u, uint32_t id, const ob_state *state)
+{
+	const ob_passport p = *ob_passport_of(u, id);
+	replace(u, id, &p, state);
+}
+
 bool ob_sim_freeze(ob_universe *u, uint32_t id)
 {
 	ob_passport p = *ob_passport_of(u, id);
 	if (!(p.flags & OB_OBJECT_PRESENT) || p.flags & OB_OBJECT_PRESCRIBED)
 		return false;
 	const ob_state now = ob_state_now(u, id, ob_newest_motion(u, id), ob_step_count(u));
-	ob_sim_remove(u, id);
 	p.flags |= OB_OBJECT_STATIC | OB_OBJECT_FROZEN;
 	p.mass = 0;
 	p.surface_velocity = ob_v3(0, 0, 0); // it shares the force's memory
 	p.inertia = ob_v3(0, 0, 0);
-	ob_write_passport(u, id, &p);
-	ob_sim_place(u, id, &now);
+	replace(u, id, &p, &now);
 	return true;
 }
 

@@ -79,8 +79,7 @@ static bool moves(const ob_step_data *data, uint32_t id)
 	return ob_schedule_is_dynamic(&data->schedule[id]);
 }
 
-// Changes the object's velocities or force: the motion that was computed ahead becomes void.
-static void set_going(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist)
+void ob_sim_kick(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	const ob_run_settings *run = ob_universe_settings(u);
@@ -141,7 +140,7 @@ static bool change_object(ob_sim *s, uint32_t id, ob_script_cell *c)
 	if (s->baseline && pushed) // it follows forces and torques by itself
 		ob_ode_baseline_kick(s->baseline, id, c->push, c->twist);
 	else if (!s->baseline && (other || pushed))
-		set_going(u, id, pushed ? c->push : none, pushed ? c->twist : none);
+		ob_sim_kick(u, id, pushed ? c->push : none, pushed ? c->twist : none);
 	return other || pushed;
 }
 

@@ -47,6 +47,14 @@ uint64_t ob_sim_prescribe(ob_universe *u, uint32_t id, const ob_path *path, uint
 // now, so an object at rest wakes. The passport does not show this: after a restart it holds the force of a later step.
 void ob_sim_push(ob_universe *u, uint32_t id, ob_vec3 force, bool changes);
 
+// Host, at a pause, or a simulator where scripts' changes are carried out: adds an impulse (N s) and an angular impulse
+// (N m s), world frame, to a dynamic object. Its motion that was computed ahead becomes void, which serves a change of its
+// force, too.
+void ob_sim_kick(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist);
+
+// Host, at a pause: the object goes on from this state; its contacts end, and its neighbours wake.
+void ob_sim_place_anew(ob_universe *u, uint32_t id, const ob_state *state);
+
 // Host, at the start, after ob_universe_load: rebuilds what is not saved: the spatial index, lists of pairs and
 // calendars (step/pairs.h).
 void ob_sim_restore(ob_universe *u);

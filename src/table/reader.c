@@ -1,6 +1,7 @@
 // The reader's side: attaching, and reading. No data in the table is trusted: offsets come from the validated private
 // copy of the header; ids, counts and floating-point numbers are checked as they are read.
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -210,6 +211,46 @@ bool ob_universe_get_motion(const ob_universe *u, uint32_t id, ob_motion *out)
 		return false;
 	return (read32(&ob_passport_of(u, id)->flags) & OB_OBJECT_PRESENT) && ob_slot_read(u->slot + id, out) &&
 	       ob_motion_makes_sense(out);
+}
+
+static void put3(double *array, size_t row, ob_vec3 v)
+{
+	if (array)
+		array[3 * row] = v.x, array[3 * row + 1] = v.y, array[3 * row + 2] = v.z;
+}
+
+static void put_state(const ob_state_arrays *out, size_t row, const ob_passport *p, const ob_state *s)
+{
+	const ob_quat q = s->pose.q;
+	if (out->id)
+		out->id[row] = p->id;
+	if (out->generation)
+		out->generation[row] = p->generation;
+	put3(out->position, row, s->pose.p);
+	put3(out->velocity, row, s->v);
+	put3(out->angular_velocity, row, s->w);
+	if (out->attitude)
+		memcpy(&out->attitude[4 * row], (double[4]){ q.w, q.x, q.y, q.z }, 4 * sizeof(double));
+}
+
+size_t ob_universe_get_states(const ob_universe *u, const ob_state_arrays *out, size_t max)
+{
+	ob_universe_info info;
+	ob_passport p;
+	ob_motion m;
+	size_t n = 0;
+	ob_universe_get_info(u, &info);
+	for (uint32_t id = 0; id < info.capacity; id++) {
+		if (!ob_universe_get_motion(u, id, &m) || !ob_universe_get_passport(u, id, &p))
+			continue;
+		if (n < max) {
+			const ob_state s = ob_motion_at(&m, p.inertia, fmax(info.time, m.t0));
+			p.id = id;
+			put_state(out, n, &p, &s);
+		}
+		n++;
+	}
+	return n;
 }
 
 bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6])

@@ -10,7 +10,7 @@ import unittest
 import program
 
 FILES = os.environ["COMPLETIONS"]
-COMMANDS = ["run", "serve", "export", "compare", "top", "lab", "paper", "inspect", "send"]
+COMMANDS = ["run", "serve", "control", "export", "compare", "top", "lab", "paper", "inspect", "send"]
 
 
 def options(command):
@@ -42,7 +42,7 @@ class Completions(program.Case):
 		return done.stdout.split()
 
 	def test_bash(self):
-		self.assertEqual(self.bash("co"), ["compare"])
+		self.assertEqual(self.bash("com"), ["compare"])
 		self.assertEqual(self.bash("sen"), ["send"])
 		for command in COMMANDS:
 			self.assertEqual(self.bash(command, "--"), options(command))

@@ -13,6 +13,7 @@ end
 complete -c obsim -f
 complete -c obsim -n __fish_use_subcommand -a run -d 'run a scene and report'
 complete -c obsim -n __fish_use_subcommand -a serve -d 'run a scene that people look at'
+complete -c obsim -n __fish_use_subcommand -a control -d 'run a scene that a program leads'
 complete -c obsim -n __fish_use_subcommand -a export -d 'make a page of what was recorded'
 complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in all configurations'
 complete -c obsim -n __fish_use_subcommand -a top -d 'look into a running universe'
@@ -23,9 +24,9 @@ complete -c obsim -n __fish_use_subcommand -a inspect -d 'say what a checkpoint 
 complete -c obsim -n __fish_use_subcommand -a help -d 'help of a command'
 complete -c obsim -n __fish_use_subcommand -l version -d 'version, commit, libraries'
 complete -c obsim -s h -l help -d 'print help'
-complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve export compare top send inspect lab paper'
+complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve control export compare top send inspect lab paper'
 
-set -l both '__fish_seen_subcommand_from run compare serve'
+set -l both '__fish_seen_subcommand_from run compare serve control'
 complete -c obsim -n $both -a '(__fish_complete_suffix .lua)'
 complete -c obsim -n $both -s D -l define -x -d 'set a parameter of the scene'
 complete -c obsim -n $both -l duration -x -d 'simulated seconds'
@@ -43,7 +44,7 @@ complete -c obsim -n $both -l sleeping -x -a 'on off' -d 'whether what rests may
 complete -c obsim -n $both -l narrow -x -a 'obb aabb' -d 'what touches'
 complete -c obsim -n $both -l load -x -d 'numbers added up in each box test'
 
-set -l lives '__fish_seen_subcommand_from run serve'
+set -l lives '__fish_seen_subcommand_from run serve control'
 complete -c obsim -n $lives -l arch -x -a 'obs monolith' -d 'one simulator per object, or one world'
 complete -c obsim -n $lives -l check -d 'check what simulators share after each step'
 complete -c obsim -n $lives -l isolation -x -a 'thread process' -d 'what a worker is'
@@ -51,7 +52,7 @@ complete -c obsim -n $lives -l name -x -d 'name of the universe'
 complete -c obsim -n $lives -l patience -x -d 'seconds that a step may take'
 complete -c obsim -n $lives -l on-death -x -a 'restart freeze abort keep' -d 'what comes of a death'
 complete -c obsim -n $lives -l restarts -x -a '5/10' -d 'deaths within seconds'
-complete -c obsim -n $lives -l pace -x -a 'realtime max .1 10' -d 'simulated seconds a second of the clock'
+complete -c obsim -n '__fish_seen_subcommand_from run serve' -l pace -x -a 'realtime max .1 10' -d 'simulated seconds a second of the clock'
 
 set -l serve '__fish_seen_subcommand_from serve'
 complete -c obsim -n $serve -l listen -x -a '127.0.0.1:8080 127.0.0.1:0' -d 'where viewers come to'
@@ -59,7 +60,7 @@ complete -c obsim -n $serve -l paused -d 'stand still until a viewer lets it run
 complete -c obsim -n $serve -l readonly -d 'viewers may look, and change nothing'
 complete -c obsim -n $serve -l viewers -x -d 'viewers at a time'
 complete -c obsim -n $serve -l log-requests -r -F -d 'what viewers ask for, and the state'
-complete -c obsim -n $serve -l room -x -d 'objects that viewers may add'
+complete -c obsim -n '__fish_seen_subcommand_from serve control' -l room -x -d 'objects that viewers may add'
 complete -c obsim -n $serve -l replay -r -F -d 'show what was recorded'
 complete -c obsim -n '__fish_seen_subcommand_from export' -F
 complete -c obsim -n '__fish_seen_subcommand_from export' -l patience -x -d 'seconds of CPU for the page'

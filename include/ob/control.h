@@ -1,0 +1,68 @@
+// Control of a run: its steps, snapshots of its state, and changes of its objects.
+//
+// The run is one of `obsim control SCENE.lua`, which stands until a program takes control of it, and ends when that
+// program leaves. Its states are read by the functions of <ob/universe.h>, which any other program may do, too.
+//
+// Each function returns when the host has carried it out. Changes take effect at the current step boundary, in the order
+// of the calls, and are seen by readers at once. A run that is controlled in the same way ends in the same bits, for any
+// workers and isolation. Units: SI, radians, world frame. On failure functions return false and explain it in e; nothing
+// else is changed, unless a list of changes is longer than OB_CONTROL_BATCH: then earlier parts of it took effect.
+//
+// Thread-safety: one thread at a time for each ob_controller.
+#ifndef OB_CONTROL_H
+#define OB_CONTROL_H
+
+#include <ob/motion.h>
+#include <ob/universe.h>
+
+#pragma GCC visibility push(default) // libobsim exports the declarations of its installed headers alone
+
+typedef struct ob_controller ob_controller;
+
+// A change of one object. Numbers beyond those named are ignored.
+typedef struct ob_change {
+	uint32_t id, generation; // generation 0: whichever object has the id
+	double value[13];
+} ob_change;
+enum { OB_CONTROL_BATCH = 500 };
+
+// Takes control of a universe, which must outlive the controller. NULL and e: its host is not reachable, it is not
+// to be controlled, or another program controls it.
+ob_controller *ob_controller_open(const ob_universe *u, ob_error *e);
+void ob_controller_close(ob_controller *c); // the run ends; NULL is allowed
+int ob_controller_fd(const ob_controller *c); // readable when the host has left
+
+// Runs some steps and waits until they are complete.
+bool ob_controller_step(ob_controller *c, uint64_t steps, ob_error *e);
+// Lets the run go on by itself, at a pace of simulated time per wall-clock time (INFINITY: as fast as it can), until
+// paused or stepped. Other functions interrupt it for an instant.
+bool ob_controller_run(ob_controller *c, double pace, ob_error *e);
+bool ob_controller_pause(ob_controller *c, ob_error *e);
+
+// Keeps the whole state in the host's memory; snapshot: its number. Restoring puts it back to the bit, with all objects,
+// scripts and the clock; snapshots stay until they are forgotten. Some 2 kB of memory for each object.
+bool ob_controller_snapshot(ob_controller *c, uint64_t *snapshot, ob_error *e);
+bool ob_controller_restore(ob_controller *c, uint64_t snapshot, ob_error *e);
+bool ob_controller_forget(ob_controller *c, uint64_t snapshot, ob_error *e);
+
+// Changes n objects: constant external force from now on (value: x y z, N); impulse and angular impulse (N s, N m s);
+// state to go on from (position m, attitude w x y z, velocity m/s, angular velocity rad/s), also of static and kinematic
+// objects, whose path ends; colour (linear r g b a, 0 to 1).
+bool ob_controller_set_forces(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+bool ob_controller_kick(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+bool ob_controller_set_states(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+bool ob_controller_set_colours(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+bool ob_controller_remove(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+// Creates objects with the syntax of scenes: "box { size = { 1, 1, 1 }, at = { 0, 0, 5 } }". Writes at most max ids, which
+// ascend, and their number, which may exceed it.
+bool ob_controller_create(ob_controller *c, const char *text, uint32_t *ids, size_t max, size_t *n, ob_error *e);
+// Sends a message of some words to an object's script: numbers, true, false, or text.
+bool ob_controller_message(ob_controller *c, uint32_t id, const char *const *words, size_t n, ob_error *e);
+
+// Clock of the run as the last answer has it: steps that are complete, simulated time (s).
+uint64_t ob_controller_steps(const ob_controller *c);
+double ob_controller_time(const ob_controller *c);
+
+#pragma GCC visibility pop
+
+#endif

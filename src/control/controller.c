@@ -1,0 +1,200 @@
+#include <ob/control.h>
+
+#include <assert.h>
+#include <errno.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/utf8.h"
+#include "control/call.h"
+#include "control/packet.h"
+
+struct ob_controller {
+	int fd;
+	ob_control_packet packet; // the current command
+	ob_control_answer answer; // the last one
+};
+
+// Begins a command; call sends it.
+static ob_control_packet *command(ob_controller *c, ob_control_command which)
+{
+	ob_control_packet *p = &c->packet;
+	memset(p, 0, offsetof(ob_control_packet, payload));
+	memcpy(p->magic, OB_CONTROL_MAGIC, sizeof p->magic);
+	p->command = which;
+	return p;
+}
+
+// Sends the command and waits for its answer: a step takes as long as it takes.
+static bool call(ob_controller *c, ob_error *e)
+{
+	const size_t bytes = offsetof(ob_control_packet, payload) + c->packet.bytes;
+	ob_control_answer *a = &c->answer;
+	ssize_t n = send(c->fd, &c->packet, bytes, MSG_NOSIGNAL);
+	if (n != (ssize_t)bytes)
+		return ob_fail(e, "the run has ended");
+	do
+		n = recv(c->fd, a, sizeof *a, 0);
+	while (n < 0 && errno == EINTR);
+	if (n < (ssize_t)sizeof a->error)
+		return ob_fail(e, "the run has ended");
+	a->error.text[sizeof a->error.text - 1] = 0;
+	ob_utf8_make_plain(a->error.text);
+	if (n == (ssize_t)sizeof *a && !*a->error.text)
+		return true;
+	return ob_fail(e, "%s", *a->error.text ? a->error.text : "the run is of another version of obsim");
+}
+
+ob_controller *ob_controller_open(const ob_universe *u, ob_error *e)
+{
+	ob_controller *c = calloc(1, sizeof *c);
+	if (!c) {
+		ob_fail(e, "out of memory");
+		return NULL;
+	}
+	c->fd = ob_call_host(u, e);
+	if (c->fd >= 0) {
+		command(c, OB_CONTROL_HELLO);
+		if (call(c, e))
+			return c;
+	}
+	ob_controller_close(c);
+	return NULL;
+}
+
+void ob_controller_close(ob_controller *c)
+{
+	if (c && c->fd >= 0)
+		close(c->fd);
+	free(c);
+}
+
+int ob_controller_fd(const ob_controller *c)
+{
+	return c->fd;
+}
+
+uint64_t ob_controller_steps(const ob_controller *c)
+{
+	return c->answer.step;
+}
+
+double ob_controller_time(const ob_controller *c)
+{
+	return c->answer.time;
+}
+
+static bool call_number(ob_controller *c, ob_control_command which, uint64_t number, ob_error *e)
+{
+	command(c, which)->number = number;
+	return call(c, e);
+}
+
+bool ob_controller_step(ob_controller *c, uint64_t steps, ob_error *e)
+{
+	return call_number(c, OB_CONTROL_STEP, steps, e);
+}
+
+bool ob_controller_run(ob_controller *c, double pace, ob_error *e)
+{
+	command(c, OB_CONTROL_RUN)->value = pace;
+	return call(c, e);
+}
+
+bool ob_controller_pause(ob_controller *c, ob_error *e)
+{
+	return call_number(c, OB_CONTROL_PAUSE, 0, e);
+}
+
+bool ob_controller_snapshot(ob_controller *c, uint64_t *snapshot, ob_error *e)
+{
+	const bool fine = call_number(c, OB_CONTROL_SNAPSHOT, 0, e);
+	*snapshot = fine ? c->answer.number : 0;
+	return fine;
+}
+
+bool ob_controller_restore(ob_controller *c, uint64_t snapshot, ob_error *e)
+{
+	return call_number(c, OB_CONTROL_RESTORE, snapshot, e);
+}
+
+bool ob_controller_forget(ob_controller *c, uint64_t snapshot, ob_error *e)
+{
+	return call_number(c, OB_CONTROL_FORGET, snapshot, e);
+}
+
+// Sends changes, in as many packets as they take.
+static bool change_all(ob_controller *c, ob_control_command which, const ob_change *change, size_t n, ob_error *e)
+{
+	static_assert(OB_CONTROL_BATCH * sizeof *change <= OB_CONTROL_PAYLOAD, "a batch fits");
+	bool fine = true;
+	for (size_t at = 0, some; at < n && fine; at += some) {
+		some = n - at < OB_CONTROL_BATCH ? n - at : OB_CONTROL_BATCH;
+		ob_control_packet *p = command(c, which);
+		p->count = (uint32_t)some;
+		p->bytes = (uint32_t)(some * sizeof *change);
+		memcpy(p->payload, change + at, p->bytes);
+		fine = call(c, e);
+	}
+	return fine;
+}
+
+bool ob_controller_set_forces(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_FORCE, change, n, e);
+}
+
+bool ob_controller_kick(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_KICK, change, n, e);
+}
+
+bool ob_controller_set_states(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_STATE, change, n, e);
+}
+
+bool ob_controller_set_colours(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_COLOUR, change, n, e);
+}
+
+bool ob_controller_remove(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_REMOVE, change, n, e);
+}
+
+bool ob_controller_create(ob_controller *c, const char *text, uint32_t *ids, size_t max, size_t *n, ob_error *e)
+{
+	const size_t bytes = strlen(text);
+	ob_control_packet *p = command(c, OB_CONTROL_CREATE);
+	if (bytes > sizeof p->payload)
+		return ob_fail(e, "create: expected a text of at most %zu bytes, got %zu", sizeof p->payload, bytes);
+	p->bytes = (uint32_t)bytes;
+	memcpy(p->payload, text, bytes);
+	if (!call(c, e))
+		return false;
+	const size_t count = c->answer.count < OB_CONTROL_IDS ? c->answer.count : OB_CONTROL_IDS;
+	memcpy(ids, c->answer.id, (count < max ? count : max) * sizeof *ids);
+	*n = count;
+	return true;
+}
+
+bool ob_controller_message(ob_controller *c, uint32_t id, const char *const *words, size_t n, ob_error *e)
+{
+	const ob_change to = { .id = id };
+	ob_control_packet *p = command(c, OB_CONTROL_MESSAGE);
+	p->count = (uint32_t)n;
+	memcpy(p->payload, &to, sizeof to);
+	p->bytes = sizeof to;
+	for (size_t i = 0; i < n; i++) {
+		const size_t size = strlen(words[i]) + 1;
+		if (size > sizeof p->payload - p->bytes)
+			return ob_fail(e, "message: its words are too long");
+		memcpy(p->payload + p->bytes, words[i], size);
+		p->bytes += (uint32_t)size;
+	}
+	return call(c, e);
+}

@@ -1,0 +1,334 @@
+#include "host/control.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <poll.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "control/packet.h"
+#include "host/host_state.h"
+#include "host/pace.h"
+#include "shape/shape.h"
+
+enum { IDLE_MS = 50, BATCH_MOST = 1 << 20 };
+static const double go_time = .02; // s that the universe runs between checks whether the program has left
+
+struct ob_control {
+	int taken[2]; // pipe: sockets of programs, from the supervisor
+	atomic_bool busy; // a program controls the run
+	int fd; // its socket; -1: none
+	uint64_t first, target, batch; // step that the current command began at and waits for; steps a go
+	double went; // s, wall, of the last go
+	bool stepping, running; // a command waits for steps; the run goes on by itself
+	ob_pace pace; // then
+	uint32_t origin; // of the objects that the last command has created
+	ob_control_packet packet;
+	ob_control_answer answer;
+};
+
+ob_control *ob_control_create(ob_error *e)
+{
+	ob_control *c = calloc(1, sizeof *c);
+	if (!c || pipe2(c->taken, O_CLOEXEC | O_NONBLOCK) != 0) {
+		ob_fail(e, "no socket for control: %s", strerror(errno));
+		free(c);
+		return NULL;
+	}
+	c->fd = -1;
+	c->batch = 1;
+	c->origin = 1u << 31; // viewers count from 1
+	ob_pace_begin(&c->pace, 1, false);
+	return c;
+}
+
+void ob_control_destroy(ob_control *c)
+{
+	int fd;
+	if (!c)
+		return;
+	while (read(c->taken[0], &fd, sizeof fd) == sizeof fd)
+		close(fd);
+	close(c->taken[0]);
+	close(c->taken[1]);
+	if (c->fd >= 0)
+		close(c->fd);
+	ob_pace_end(&c->pace);
+	free(c);
+}
+
+bool ob_control_take(ob_control *c, int fd, ob_error *e)
+{
+	if (atomic_exchange(&c->busy, true))
+		return ob_fail(e, "another program controls this run");
+	return write(c->taken[1], &fd, sizeof fd) == sizeof fd || ob_fail(e, "%s", strerror(errno));
+}
+
+static void answer(ob_control *c, ob_host *h)
+{
+	const ob_universe *u = h->u;
+	ob_control_answer *a = &c->answer;
+	a->step = ob_step_count(u);
+	a->time = (double)a->step * ob_universe_settings(u)->step_length;
+	const ssize_t ignored = send(c->fd, a, sizeof *a, MSG_NOSIGNAL | MSG_DONTWAIT); // it is small, and the only one
+	(void)ignored;
+}
+
+void ob_control_end(ob_control *c, const char *why)
+{
+	ob_fail(&c->answer.error, "%s", why);
+	if (c->fd >= 0 && c->stepping)
+		send(c->fd, &c->answer, sizeof c->answer, MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+// ---- commands
+
+// Carries out requests that were queued. The universe stands, and goes nowhere.
+static void flush(ob_host *h)
+{
+	ob_host_go(h, ob_step_count(h->u));
+}
+
+static bool queue(ob_host *h, ob_request *r, ob_error *e)
+{
+	return ob_request_check(h, r, e) && ob_host_request(h, r, e);
+}
+
+static bool find_object(const ob_host *h, const ob_change *change, ob_request *r, ob_error *e)
+{
+	ob_passport p;
+	if (!ob_universe_get_passport(h->u, change->id, &p))
+		return ob_fail(e, "there is no object %u", change->id);
+	if (change->generation && change->generation != p.generation)
+		return ob_fail(e, "object %u has gone: another has its place", change->id);
+	r->id = change->id;
+	r->generation = p.generation;
+	return true;
+}
+
+static void read_change(const ob_change *change, ob_request *r)
+{
+	const double *v = change->value;
+	r->force = ob_v3(v[0], v[1], v[2]);
+	r->twist = ob_v3(v[3], v[4], v[5]);
+	r->state = (ob_state){ { { v[0], v[1], v[2] }, { v[3], v[4], v[5], v[6] } },
+			       { v[7], v[8], v[9] },
+			       { v[10], v[11], v[12] } };
+	for (int i = 0; i < 4; i++)
+		r->colour[i] = (float)v[i];
+}
+
+// All of the changes, or none.
+static bool change_objects(ob_control *c, ob_host *h, ob_request_kind kind, ob_error *e)
+{
+	const ob_control_packet *p = &c->packet;
+	bool fine = p->count <= OB_CONTROL_BATCH && p->bytes == p->count * sizeof(ob_change);
+	if (!fine)
+		return ob_fail(e, "the list of changes has a wrong length");
+	ob_request *all = calloc(p->count + 1, sizeof *all);
+	if (!all)
+		return ob_fail(e, "out of memory");
+	for (uint32_t i = 0; i < p->count && fine; i++) {
+		ob_change change;
+		memcpy(&change, p->payload + i * sizeof change, sizeof change);
+		all[i].kind = kind;
+		read_change(&change, &all[i]);
+		fine = find_object(h, &change, &all[i], e) && ob_request_check(h, &all[i], e);
+	}
+	for (uint32_t i = 0; i < p->count && fine; i++)
+		fine = ob_host_request(h, &all[i], e);
+	free(all);
+	flush(h);
+	return fine;
+}
+
+static void list_created(ob_control *c, const ob_host *h)
+{
+	ob_control_answer *a = &c->answer;
+	const size_t n = ob_roster_copy(h->roster, NULL, 0);
+	ob_roster_entry *all = malloc((n + 1) * sizeof *all);
+	const size_t copied = all ? ob_roster_copy(h->roster, all, n) : 0;
+	for (size_t i = 0; i < copied && i < n; i++)
+		if (all[i].origin == c->origin && a->count < OB_CONTROL_IDS)
+			a->id[a->count++] = all[i].id;
+	free(all);
+}
+
+static bool create(ob_control *c, ob_host *h, ob_error *e)
+{
+	const ob_control_packet *p = &c->packet;
+	const ob_scene_options options = { .joining = true };
+	ob_scene *scene = ob_scene_load_text("create", (const char *)p->payload, p->bytes, &options, e);
+	bool fine = scene;
+	c->origin++;
+	for (uint32_t i = 0; fine && i < scene->objects; i++) {
+		const ob_object_def *def = &scene->object[i];
+		ob_request r = { .kind = OB_REQUEST_ADD, .origin = c->origin, .def = *def };
+		if (ob_shape_is(def->passport.shape, OB_HULLED))
+			r.corners = scene->hull_corners[def->passport.hull];
+		if (def->born > 0 || def->dies < INFINITY || def->path || def->force)
+			fine = ob_fail(e,
+				       "create: expected neither born, dies, path nor varying_force: a scene's objects "
+				       "have them");
+		fine = fine && queue(h, &r, e);
+	}
+	ob_scene_free(scene);
+	flush(h);
+	list_created(c, h);
+	return fine;
+}
+
+static bool send_message(ob_control *c, ob_host *h, ob_error *e)
+{
+	const ob_control_packet *p = &c->packet;
+	ob_change to;
+	ob_request r = { .kind = OB_REQUEST_MESSAGE };
+	if (p->bytes < sizeof to || (p->bytes > sizeof to && p->payload[p->bytes - 1] != 0))
+		return ob_fail(e, "the message has a wrong length");
+	memcpy(&to, p->payload, sizeof to);
+	for (size_t at = sizeof to; at < p->bytes; at += strlen((const char *)p->payload + at) + 1)
+		if (!ob_scene_put_value((const char *)p->payload + at, r.values, &r.bytes, sizeof r.values))
+			return ob_fail(e, "message: at most %zu bytes can be sent", sizeof r.values);
+	const bool fine = find_object(h, &to, &r, e) && queue(h, &r, e);
+	flush(h);
+	return fine;
+}
+
+static bool begin_steps(ob_control *c, const ob_host *h, uint64_t last, ob_error *e)
+{
+	const uint64_t now = ob_step_count(h->u), left = last - now;
+	if (c->packet.number > left)
+		return ob_fail(e, "step: expected at most %llu, as the run then ends, got %llu",
+			       (unsigned long long)left, (unsigned long long)c->packet.number);
+	c->first = now;
+	c->target = now + c->packet.number;
+	c->stepping = c->packet.number > 0;
+	return true;
+}
+
+static bool begin_run(ob_control *c, ob_error *e)
+{
+	if (!(c->packet.value > 0))
+		return ob_fail(e, "pace: expected a positive number, got %g", c->packet.value);
+	ob_pace_set_rate(&c->pace, c->packet.value);
+	c->running = true;
+	return true;
+}
+
+// Carries out the command in c->packet. Errors change nothing, but for lists of objects to create.
+static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
+{
+	static const ob_request_kind change[OB_CONTROL_COMMANDS] = { [OB_CONTROL_FORCE] = OB_REQUEST_FORCE,
+								     [OB_CONTROL_KICK] = OB_REQUEST_KICK,
+								     [OB_CONTROL_STATE] = OB_REQUEST_STATE,
+								     [OB_CONTROL_COLOUR] = OB_REQUEST_COLOUR,
+								     [OB_CONTROL_REMOVE] = OB_REQUEST_REMOVE };
+	ob_control_answer *a = &c->answer;
+	const uint64_t number = c->packet.number;
+	switch (c->packet.command) {
+	case OB_CONTROL_HELLO:
+		return true;
+	case OB_CONTROL_STEP:
+		c->running = false;
+		return begin_steps(c, h, last, e);
+	case OB_CONTROL_RUN:
+		return begin_run(c, e);
+	case OB_CONTROL_PAUSE:
+		c->running = false;
+		return true;
+	case OB_CONTROL_SNAPSHOT:
+		return (a->number = ob_host_keep_snapshot(h, e)) != 0;
+	case OB_CONTROL_RESTORE:
+		return ob_host_restore_snapshot(h, number, e);
+	case OB_CONTROL_FORGET:
+		return ob_host_forget_snapshot(h, number, e);
+	case OB_CONTROL_CREATE:
+		return create(c, h, e);
+	case OB_CONTROL_MESSAGE:
+		return send_message(c, h, e);
+	default:
+		if (c->packet.command >= OB_CONTROL_COMMANDS)
+			return ob_fail(e, "this version of obsim has no command %u", c->packet.command);
+		return change_objects(c, h, change[c->packet.command], e);
+	}
+}
+
+// ---- the session
+
+static bool is_whole(const ob_control_packet *p, ssize_t n)
+{
+	const size_t head = offsetof(ob_control_packet, payload);
+	return n >= (ssize_t)head && memcmp(p->magic, OB_CONTROL_MAGIC, sizeof p->magic) == 0 &&
+	       p->bytes == (size_t)n - head;
+}
+
+static void take_command(ob_control *c, ob_host *h, uint64_t last, ssize_t n)
+{
+	ob_error e;
+	c->answer = (ob_control_answer){ .error = { "" } };
+	if (!is_whole(&c->packet, n))
+		ob_fail(&c->answer.error, "the command makes no sense to this version of obsim");
+	else if (!carry_out(c, h, last, &e))
+		c->answer.error = e;
+	if (!c->stepping)
+		answer(c, h);
+}
+
+// Waits for the program, or for a first one. false: it has left.
+static bool listen_for(ob_control *c, ob_host *h, uint64_t last, int patience_ms)
+{
+	struct pollfd p = { .fd = c->fd >= 0 ? c->fd : c->taken[0], .events = POLLIN };
+	if (poll(&p, 1, patience_ms) != 1)
+		return true;
+	if (c->fd < 0) {
+		if (read(c->taken[0], &c->fd, sizeof c->fd) != sizeof c->fd)
+			c->fd = -1;
+		else
+			answer(c, h); // its hello was valid
+		return true;
+	}
+	const ssize_t n = c->stepping ? -1 : recv(c->fd, &c->packet, sizeof c->packet, MSG_DONTWAIT);
+	if (n > 0)
+		take_command(c, h, last, n);
+	return n > 0 || (!(p.revents & (POLLHUP | POLLERR)) && (n < 0 || c->stepping));
+}
+
+// The next step while a command waits for its steps: as far as some time allows, so that a program is missed soon.
+static uint64_t some_steps(ob_control *c, uint64_t now)
+{
+	const double wall = ob_clock_wall(), took = wall - c->went;
+	c->went = wall;
+	if (now != c->first && took < .5 * go_time && c->batch < BATCH_MOST)
+		c->batch *= 2;
+	else if (now != c->first && took > 2 * go_time && c->batch > 1)
+		c->batch /= 2;
+	return c->target - now < c->batch ? c->target : now + c->batch;
+}
+
+bool ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64_t *step)
+{
+	const double length = ob_universe_settings(h->u)->step_length;
+	uint64_t now = ob_step_count(h->u);
+	if (c->stepping && now >= c->target) {
+		c->stepping = false;
+		answer(c, h);
+	}
+	const bool stands = !c->stepping && (!c->running || now >= last);
+	if (!listen_for(c, h, last, stands ? IDLE_MS : 0))
+		return false;
+	now = ob_step_count(h->u); // a snapshot may have been restored
+	*step = now;
+	if (c->stepping) {
+		*step = some_steps(c, now);
+	} else if (c->running && now < last) {
+		const uint64_t due = ob_pace_wait(&c->pace, now, length, .001);
+		*step = due == UINT64_MAX ? now + 1 : due;
+		*step = *step < last ? *step : last;
+	}
+	return true;
+}

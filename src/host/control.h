@@ -1,0 +1,33 @@
+// Control of a run by a program (include/ob/control.h): its steps, snapshots, and changes of its objects. The supervisor
+// accepts a caller (ask.h) and hands its socket to the thread that leads the run, which carries out its commands at
+// step boundaries and answers them (control/packet.h).
+//
+//   supervisor           leading thread: ob_control_next .. go .. wait .. ob_control_next ..
+//   accepts a caller
+//   hello ──> take ───>  answers; then each command: at once, or after the steps it asks for
+//                        until the caller leaves: the run ends
+//
+// Thread-safety: take is the supervisor's; the rest belongs to the thread that leads the run.
+#ifndef OB_HOST_CONTROL_H
+#define OB_HOST_CONTROL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <ob/error.h>
+
+typedef struct ob_host ob_host;
+typedef struct ob_control ob_control;
+
+ob_control *ob_control_create(ob_error *e);
+void ob_control_destroy(ob_control *c); // the host has been stopped; NULL is allowed
+
+// Takes over a caller's socket. false and e: another program controls the run.
+bool ob_control_take(ob_control *c, int fd, ob_error *e);
+// After a wait: answers what is done, carries out commands, and returns the step to go to: the current one while there is
+// nothing to do, after a short wait. false: the program has left.
+bool ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64_t *step);
+// Tells the program why the run has ended.
+void ob_control_end(ob_control *c, const char *why);
+
+#endif

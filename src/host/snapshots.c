@@ -1,0 +1,64 @@
+#include "host/snapshots.h"
+
+#include <stdlib.h>
+
+#include "host/host_state.h"
+#include "host/restart.h"
+
+static void forget(ob_kept_snapshot *s)
+{
+	ob_checkpoint_destroy(s->universe);
+	ob_kept_population_free(s->population);
+	*s = (ob_kept_snapshot){ NULL, NULL };
+}
+
+void ob_snapshots_finish(ob_snapshots *s)
+{
+	for (size_t i = 0; i < s->count; i++)
+		forget(&s->at[i]);
+	free(s->at);
+}
+
+uint64_t ob_host_keep_snapshot(ob_host *h, ob_error *e)
+{
+	ob_snapshots *all = &h->snapshots;
+	if (ob_universe_settings(h->u)->monolith)
+		return ob_fail(e,
+			       "the one ODE world has no snapshots, as ODE does not show its whole state: take object "
+			       "simulators");
+	ob_kept_snapshot *more = realloc(all->at, (all->count + 1) * sizeof *more);
+	if (!more)
+		return ob_fail(e, "no memory for another snapshot: forget some");
+	all->at = more;
+	ob_kept_snapshot s = { ob_checkpoint_create(h->u), ob_population_copy(h->population, NULL) };
+	if (!s.universe || !s.population || !ob_checkpoint_take(s.universe, h->u)) {
+		forget(&s);
+		return ob_fail(e, "no memory for another snapshot: forget some");
+	}
+	all->at[all->count] = s;
+	return ++all->count;
+}
+
+static ob_kept_snapshot *find(ob_host *h, uint64_t number, ob_error *e)
+{
+	const ob_snapshots *all = &h->snapshots;
+	if (number >= 1 && number <= all->count && all->at[number - 1].universe)
+		return &all->at[number - 1];
+	ob_fail(e, "there is no snapshot %llu", (unsigned long long)number);
+	return NULL;
+}
+
+bool ob_host_restore_snapshot(ob_host *h, uint64_t number, ob_error *e)
+{
+	const ob_kept_snapshot *s = find(h, number, e);
+	return s && (ob_restart_restore(h, s->universe, s->population) ||
+		     ob_fail(e, "%s", h->failed ? h->failure.text : "the run has ended"));
+}
+
+bool ob_host_forget_snapshot(ob_host *h, uint64_t number, ob_error *e)
+{
+	ob_kept_snapshot *s = find(h, number, e);
+	if (s)
+		forget(s);
+	return s;
+}
