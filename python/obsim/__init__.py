@@ -1,0 +1,418 @@
+"""obsim from Python: run scenes step by step, change them, read all of their states, and put them back to the bit.
+
+    import obsim
+    with obsim.run('falling_boxes', n=100, options={'workers': 2}) as u:
+        u.step(60)
+        print(u.time, u.position.mean(axis=0))
+        start = u.snapshot()
+        u['box#3'].force = 0, 0, 20
+        u.step(60)
+        u.restore(start)
+
+A universe that another program runs is read by obsim.attach(name). Rows of arrays are objects by ascending id: u.id and
+u.name say which. Units are SI and radians, vectors are in the world frame (right-handed, z up), quaternions are w, x, y, z.
+Arrays are copies. Not thread-safe: use one thread at a time for each universe.
+"""
+import ctypes
+import itertools
+import os
+import subprocess
+import tempfile
+import time
+import weakref
+
+import numpy
+
+from obsim import _native
+from obsim._native import Error
+
+__all__ = ['Error', 'Object', 'Run', 'Universe', 'attach', 'names', 'run']
+
+CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
+CHANGE = numpy.dtype([('id', 'u4'), ('generation', 'u4'), ('value', 'f8', 13)])
+_PRESENT, _STATIC, _FROZEN, _KINEMATIC = 1, 2, 4, 8
+_numbers = itertools.count()
+
+
+def names():
+    """Names of the universes that run on this machine, newest first."""
+    most = 1000
+    list_ = (ctypes.c_char * _native.NAME_MAX * most)()
+    n = _native.library().ob_universe_list(list_, most)
+    return [list_[i].value.decode() for i in range(min(n, most))]
+
+
+def attach(name):
+    """The running universe of this name, to read."""
+    return Universe(name)
+
+
+class Object:
+    """One object of a universe. Its values are read when they are asked for, and set at once."""
+
+    def __init__(self, universe, passport):
+        self._universe, self._id, self._generation = universe, passport.id, passport.generation
+
+    def __repr__(self):
+        return f'<object {self._id} "{self.name}">'
+
+    @property
+    def id(self):
+        return self._id
+
+    @property
+    def generation(self):
+        """Grows each time that the id is given to another object."""
+        return self._generation
+
+    def _passport(self):
+        p = self._universe._passport(self._id)
+        if not p or p.generation != self._generation:
+            raise Error(f'object {self._id} has gone')
+        return p
+
+    @property
+    def exists(self):
+        p = self._universe._passport(self._id)
+        return bool(p) and p.generation == self._generation
+
+    name = property(lambda self: self._passport().name.decode(), doc='As the scene has it.')
+    mass = property(lambda self: self._passport().mass, doc='kg; 0 if no force moves it.')
+    friction = property(lambda self: self._passport().friction, doc='Coulomb coefficient.')
+    restitution = property(lambda self: self._passport().restitution, doc='0 to 1.')
+    shape = property(lambda self: _native.library().ob_shape_name(self._passport().shape).decode(), doc='"box", for one.')
+    size = property(lambda self: _vector(self._passport().size), doc='m: half extents, or radius and half length.')
+    inertia = property(lambda self: _vector(self._passport().inertia), doc='Principal moments, kg m^2.')
+    static = property(lambda self: bool(self._passport().flags & _STATIC), doc='It never moves.')
+    kinematic = property(lambda self: bool(self._passport().flags & _KINEMATIC), doc='It moves as prescribed.')
+    frozen = property(lambda self: bool(self._passport().flags & _FROZEN), doc='Static since its simulator died.')
+
+    def _row(self, which):
+        self._passport()
+        states = self._universe.states('id', which)
+        return states[which][numpy.searchsorted(states['id'], self._id)]
+
+    def _move(self, **change):
+        """Sets some parts of the state, and keeps the others."""
+        parts = [numpy.asarray(change.get(name, self._row(name)), float)
+                 for name in ('position', 'attitude', 'velocity', 'angular_velocity')]
+        self._universe.set_states([self._id], *[p[None] for p in parts])
+
+    position = property(lambda self: self._row('position'), lambda self, p: self._move(position=p), doc='m, centre of mass.')
+    attitude = property(lambda self: self._row('attitude'), lambda self, q: self._move(attitude=q), doc='w, x, y, z.')
+    velocity = property(lambda self: self._row('velocity'), lambda self, v: self._move(velocity=v), doc='m/s.')
+    angular_velocity = property(lambda self: self._row('angular_velocity'), lambda self, w: self._move(angular_velocity=w),
+                                doc='rad/s.')
+
+    @property
+    def force(self):
+        """N: a constant force at the centre of mass, beside gravity."""
+        return _vector(self._passport().force)
+
+    @force.setter
+    def force(self, newtons):
+        self._universe.set_forces([self._id], [newtons])
+
+    @property
+    def colour(self):
+        """Linear red, green, blue, alpha, each 0 to 1."""
+        return numpy.array(self._passport().colour)
+
+    @colour.setter
+    def colour(self, rgba):
+        self._universe.set_colours([self._id], [rgba])
+
+    def kick(self, impulse=(0, 0, 0), twist=(0, 0, 0)):
+        """Adds an impulse (N s) at the centre of mass and an angular impulse (N m s)."""
+        self._universe.kick([self._id], [impulse], [twist])
+
+    def send(self, *words):
+        """Sends its script a message: numbers, texts, True and False."""
+        self._universe.send(self._id, *words)
+
+    def remove(self):
+        self._universe.remove([self._id])
+
+
+def _vector(v):
+    return numpy.array([v.x, v.y, v.z])
+
+
+class Universe:
+    """A universe, read from shared memory: no request reaches its simulators."""
+
+    def __init__(self, name):
+        self._u = _native.call('ob_universe_attach', name.encode())
+        self._detach = weakref.finalize(self, _native.library().ob_universe_detach, self._u)
+
+    def _info(self):
+        info = _native.Info()
+        _native.library().ob_universe_get_info(self._u, ctypes.byref(info))
+        return info
+
+    def _passport(self, id_):
+        p = _native.Passport()
+        return p if _native.library().ob_universe_get_passport(self._u, id_, ctypes.byref(p)) else None
+
+    time = property(lambda self: self._info().time, doc='s, simulated.')
+    steps = property(lambda self: self._info().step, doc='Steps that are complete.')
+    step_length = property(lambda self: self._info().step_length, doc='s.')
+    gravity = property(lambda self: _vector(self._info().gravity), doc='m/s^2.')
+    deaths = property(lambda self: self._info().deaths, doc='Times that simulators died.')
+    universe_name = property(lambda self: self._info().name.decode(), doc='As obsim top shows it.')
+
+    def __len__(self):
+        """Number of objects."""
+        return _native.library().ob_universe_get_states(self._u, ctypes.byref(_native.StateArrays()), 0)
+
+    def states(self, *which):
+        """Arrays by name, of one instant while the universe stands: id, generation, position, attitude, velocity,
+        angular_velocity; all unless some are named."""
+        columns = {'id': (numpy.uint32, ()), 'generation': (numpy.uint32, ()), 'position': (float, (3,)), 'attitude': (float, (4,)),
+                   'velocity': (float, (3,)), 'angular_velocity': (float, (3,))}
+        n = self._info().objects
+        while True:
+            arrays = {name: numpy.empty((n, *columns[name][1]), columns[name][0]) for name in which or columns}
+            pointers = _native.StateArrays(**{name: a.ctypes.data for name, a in arrays.items()})
+            found = _native.library().ob_universe_get_states(self._u, ctypes.byref(pointers), n)
+            if found <= n:
+                return {name: a[:found] for name, a in arrays.items()}
+            n = found
+
+    id = property(lambda self: self.states('id')['id'], doc='Ids, shape (objects,).')
+    position = property(lambda self: self.states('position')['position'], doc='m, centres of mass, shape (objects, 3).')
+    attitude = property(lambda self: self.states('attitude')['attitude'], doc='Quaternions w, x, y, z, shape (objects, 4).')
+    velocity = property(lambda self: self.states('velocity')['velocity'], doc='m/s, shape (objects, 3).')
+    angular_velocity = property(lambda self: self.states('angular_velocity')['angular_velocity'],
+                                doc='rad/s, shape (objects, 3).')
+
+    @property
+    def name(self):
+        """Names of the objects, a list in the order of the arrays."""
+        return [p.name.decode() if p else '' for p in map(self._passport, self.id.tolist())]
+
+    @property
+    def mass(self):
+        """kg, shape (objects,); 0: no force moves it."""
+        return numpy.array([p.mass if p else 0 for p in map(self._passport, self.id.tolist())])
+
+    @property
+    def contacts(self):
+        """Contact points of the last step: a structured array of ids a < b, position (m), normal (unit, from b towards a),
+        impulse (N s, of the last substep)."""
+        n = 256
+        while True:
+            points = numpy.empty(n, CONTACT)
+            found = _native.library().ob_universe_get_contacts(self._u, points.ctypes.data, n)
+            if found <= n:
+                return points[:found]
+            n = found
+
+    def __getitem__(self, key):
+        """The object of this id or name."""
+        if isinstance(key, str):
+            for id_ in self.id.tolist():
+                p = self._passport(id_)
+                if p and p.name.decode() == key:
+                    return Object(self, p)
+            raise KeyError(f'no object "{key}"')
+        p = self._passport(int(key))
+        if not p:
+            raise KeyError(f'no object {key}')
+        return Object(self, p)
+
+    def __iter__(self):
+        """All objects, by ascending id."""
+        return (Object(self, p) for p in map(self._passport, self.id.tolist()) if p)
+
+    def __contains__(self, key):
+        try:
+            self[key]
+        except KeyError:
+            return False
+        return True
+
+    def _refuse(self, *_arguments, **_named):
+        raise Error('this universe is read only: obsim.run starts one that can be changed')
+
+    step = reset = set_states = set_forces = set_colours = kick = send = remove = create = snapshot = restore = _refuse
+
+
+class Run(Universe):
+    """A universe that this program leads. It ends with close, with the end of a with statement, or with this program."""
+
+    def __init__(self, scene, options, program, parameters):
+        self._command = [program or _native.find_program(), 'control', str(scene)]
+        self._options, self._parameters = dict(options or {}), parameters
+        self._begin(None)
+
+    def _words(self, seed):
+        words = [word for name, value in self._parameters.items() for word in ('-D', f'{name}={_text(value)}')]
+        for name, value in {**self._options, **({} if seed is None else {'seed': seed})}.items():
+            option = '--' + name.replace('_', '-')
+            words += [option] if value is True else [] if value is False else [f'{option}={value}']
+        return words
+
+    def _begin(self, seed):
+        name = self._options.get('name') or f'python-{os.getpid()}-{next(_numbers)}'
+        self._messages = tempfile.TemporaryFile()
+        words = [*self._command, *self._words(seed), *([] if 'name' in self._options else ['--name', name])]
+        self._process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=self._messages,
+                                         start_new_session=True)
+        self._controller = None
+        self._stop = weakref.finalize(self, _stop, self._process, self._messages)
+        if not self._process.stdout.readline():
+            self._process.wait()
+            said = self.messages.strip()
+            self._stop()
+            raise Error(said or 'the run has ended')
+        super().__init__(name)
+        self._controller = _native.call('ob_controller_open', self._u)
+        self._start = self.snapshot() if self._options.get('arch') != 'monolith' else None
+
+    def _call(self, name, *arguments):
+        if not self._controller:
+            raise Error('the run is closed')
+        try:
+            return _native.call(name, self._controller, *arguments)
+        except Error as e:
+            if str(e) != 'the run has ended':
+                raise
+            self._process.wait()
+            raise Error(self.messages.strip().splitlines()[-1] if self.messages.strip() else str(e)) from None
+
+    @property
+    def messages(self):
+        """All that the program has said so far: warnings, for one. Empty once the run is closed."""
+        if self._messages.closed:
+            return ''
+        self._messages.seek(0)
+        return self._messages.read().decode('utf-8', 'replace')
+
+    # -- time
+
+    def step(self, n=1):
+        """Runs n steps."""
+        piece = 1
+        while n > 0: # in pieces, so that Ctrl-C is heard
+            now = min(n, piece)
+            began = time.perf_counter()
+            self._call('ob_controller_step', now)
+            n -= now
+            piece = piece * 2 if time.perf_counter() - began < .1 else max(piece // 2, 1)
+
+    def run_until(self, seconds):
+        """Runs steps up to the first at or after this simulated time."""
+        h = self.step_length
+        self.step(max(0, int(numpy.ceil(seconds / h - 1e-6)) - self.steps))
+
+    def go(self, pace=1.):
+        """Lets the run go on by itself, at so many simulated seconds a second (numpy.inf: as fast as it can), until it is
+        paused or stepped."""
+        self._call('ob_controller_run', pace)
+
+    def pause(self):
+        self._call('ob_controller_pause')
+
+    def reset(self, seed=None):
+        """Begins again: in the same state, or, with a seed, as the scene makes it of that. Snapshots are lost then."""
+        if seed is None and self._start is not None:
+            self.restore(self._start)
+            return
+        self.close()
+        self._begin(seed)
+
+    # -- snapshots
+
+    def snapshot(self):
+        """Keeps the whole state in memory; returns its number."""
+        number = ctypes.c_uint64()
+        self._call('ob_controller_snapshot', ctypes.byref(number))
+        return number.value
+
+    def restore(self, snapshot):
+        """Puts the state back, to the bit, with all objects, scripts and the clock."""
+        self._call('ob_controller_restore', snapshot)
+
+    def forget(self, snapshot):
+        """Frees the memory of a snapshot."""
+        self._call('ob_controller_forget', snapshot)
+
+    # -- changes: ids is a list or array of ids, the others have a row for each
+
+    def _change(self, function, ids, *columns):
+        ids = numpy.atleast_1d(numpy.asarray(ids, numpy.uint32))
+        changes = numpy.zeros(len(ids), CHANGE)
+        changes['id'] = ids
+        at = 0
+        for column, width in columns:
+            changes['value'][:, at:at + width] = numpy.broadcast_to(numpy.asarray(column, float), (len(ids), width))
+            at += width
+        self._call(function, changes.ctypes.data, len(changes))
+
+    def set_forces(self, ids, force):
+        """Constant external forces (N) at the centres of mass, from now on."""
+        self._change('ob_controller_set_forces', ids, (force, 3))
+
+    def kick(self, ids, impulse, twist=(0, 0, 0)):
+        """Impulses (N s) and angular impulses (N m s)."""
+        self._change('ob_controller_kick', ids, (impulse, 3), (twist, 3))
+
+    def set_states(self, ids, position, attitude=(1, 0, 0, 0), velocity=(0, 0, 0), angular_velocity=(0, 0, 0)):
+        """States to go on from, also of static and kinematic objects. Their contacts end."""
+        self._change('ob_controller_set_states', ids, (position, 3), (attitude, 4), (velocity, 3), (angular_velocity, 3))
+
+    def set_colours(self, ids, rgba):
+        """Linear red, green, blue and alpha, 0 to 1."""
+        self._change('ob_controller_set_colours', ids, (rgba, 4))
+
+    def remove(self, ids):
+        self._change('ob_controller_remove', ids)
+
+    def create(self, text):
+        """Creates objects as scenes do: 'box { size = { 1, 1, 1 }, at = { 0, 0, 5 } }'. Returns them."""
+        most = 1000
+        ids, n = (ctypes.c_uint32 * most)(), ctypes.c_size_t()
+        self._call('ob_controller_create', text.encode(), ids, most, ctypes.byref(n))
+        return [self[ids[i]] for i in range(min(n.value, most))]
+
+    def send(self, id_, *words):
+        """Sends the script of an object a message: numbers, texts, True and False."""
+        texts = [_text(w).encode() for w in words]
+        self._call('ob_controller_message', id_, (ctypes.c_char_p * len(texts))(*texts), len(texts))
+
+    # -- the end
+
+    def close(self):
+        """Ends the run; again has no effect."""
+        if self._controller:
+            _native.library().ob_controller_close(self._controller)
+            self._controller = None
+        self._stop()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_what):
+        self.close()
+
+
+def _text(value):
+    return {True: 'true', False: 'false'}[value] if isinstance(value, bool) else str(value)
+
+
+def _stop(process, messages):
+    """Waits until the run has ended; a run that nobody controls any more ends by itself."""
+    try:
+        process.wait(10)
+    except subprocess.TimeoutExpired:
+        process.terminate()
+        process.wait()
+    process.stdout.close()
+    messages.close()
+
+
+def run(scene, options=None, program=None, **parameters):
+    """Starts a scene, a path or the name of one that comes with obsim, and takes control of it. Keyword arguments are the
+    scene's parameters; options are those of obsim control, as {'workers': 2, 'isolation': 'process', 'harden': True}."""
+    return Run(scene, options, program, parameters)

@@ -1,0 +1,84 @@
+"""Universes as problems of control, by the conventions of Gymnasium (reset, step), whose package is not needed.
+
+    def observe(u): return u['cart'].position[[0]]
+    def act(u, action): u['cart'].force = action, 0, 0
+    def reward(u): return -abs(u['cart'].position[0])
+    environment = Environment('cart.lua', observe, act, reward, limit=500)
+    observation, info = environment.reset(seed=1)
+    observation, reward, terminated, truncated, info = environment.step(3.)
+
+Environments steps several of them side by side, each in a process of its own.
+"""
+import concurrent.futures
+
+import numpy
+
+import obsim
+
+
+class Environment:
+    """One universe. observe(u) gives an observation, act(u, action) sets what an action does, reward(u) is the reward of the
+    state after it; ended(u), if given, is true where an episode ends. steps: of the universe in each of the environment's;
+    limit: the most of these in an episode. The rest is as for obsim.run."""
+
+    def __init__(self, scene, observe, act, reward, ended=None, steps=1, limit=None, **how):
+        self._observe, self._act, self._reward, self._ended = observe, act, reward, ended
+        self._steps, self._limit, self._made = steps, limit, 0
+        self.universe = obsim.run(scene, **how)
+
+    def reset(self, seed=None):
+        """(observation, info) of a new episode: from the same start, or from the one that the scene makes of a seed."""
+        self.universe.reset(seed)
+        self._made = 0
+        return self._observe(self.universe), {'time': self.universe.time}
+
+    def step(self, action):
+        """(observation, reward, terminated, truncated, info)"""
+        u = self.universe
+        self._act(u, action)
+        u.step(self._steps)
+        self._made += 1
+        return (self._observe(u), float(self._reward(u)), bool(self._ended and self._ended(u)),
+                self._limit is not None and self._made >= self._limit, {'time': u.time})
+
+    def close(self):
+        self.universe.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_what):
+        self.close()
+
+
+class Environments:
+    """n environments side by side; arrays have a row for each. Arguments are as for Environment."""
+
+    def __init__(self, n, *arguments, **how):
+        how['options'] = {'workers': 1, **(how.get('options') or {})}
+        self._threads = concurrent.futures.ThreadPoolExecutor(n)
+        self.each = list(self._threads.map(lambda _: Environment(*arguments, **how), range(n)))
+
+    def __len__(self):
+        return len(self.each)
+
+    def reset(self, seeds=None):
+        """(observations, infos); seeds: one for each, or None."""
+        done = list(self._threads.map(lambda e, s: e.reset(s), self.each, seeds if seeds is not None else [None] * len(self)))
+        return numpy.array([d[0] for d in done]), [d[1] for d in done]
+
+    def step(self, actions):
+        """(observations, rewards, terminated, truncated, infos)"""
+        done = list(self._threads.map(lambda e, a: e.step(a), self.each, actions))
+        return (*(numpy.array([d[i] for d in done]) for i in range(4)), [d[4] for d in done])
+
+    def close(self):
+        for e in self.each:
+            e.close()
+        self._threads.shutdown()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_what):
+        self.close()

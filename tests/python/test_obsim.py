@@ -1,0 +1,295 @@
+#!/usr/bin/env python3
+"""The Python package: a run that Python leads is the same, to the bit, however it is run and however often it was put back;
+its arrays are those of the universe; errors are explained. Exit 77 (skipped) without NumPy.
+"""
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+try:
+    import numpy
+except ImportError:
+    print('python3-numpy is not installed')
+    sys.exit(77)
+
+import obsim
+from obsim.environment import Environment, Environments
+
+SCENE = """local n, speed = param("n", 12), param("speed", 1)
+scene { title = "Test", duration = 5, step = .01 }
+ground {}
+for i = 1, n do box { size = { .3, .3, .3 }, at = { .1 * (i % 3), .05 * i, .4 * i }, spin = { random(), speed, 1 } } end
+sphere { name = "ball", radius = .2, at = { 3, 0, .2 }, script = [[
+function on_message(from, what, number) self.state.heard = what; self:push({ 0, 0, number }) end
+]] }
+box { name = "lift", size = { 1, 1, .1 }, at = { 6, 0, 1 }, kind = "kinematic" }
+"""
+CART = """scene { duration = 100, step = .02 }
+ground {}
+sphere { name = "cart", radius = .1, at = { random(), 0, .1 }, friction = 0 }
+"""
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.scene = self.write(folder, 'scene.lua', SCENE)
+        self.cart = self.write(folder, 'cart.lua', CART)
+
+    @staticmethod
+    def write(folder, name, text):
+        path = os.path.join(folder.name, name)
+        with open(path, 'w', encoding='utf-8') as f:
+            f.write(text)
+        return path
+
+    def run_(self, options=None, **parameters):
+        u = obsim.run(self.scene, options=options, **parameters)
+        self.addCleanup(u.close)
+        return u
+
+    def says(self, text, function, *arguments, **named):
+        with self.assertRaises(obsim.Error) as caught:
+            function(*arguments, **named)
+        self.assertIn(text, str(caught.exception))
+
+
+class Steps(Case):
+    @staticmethod
+    def live(u, chance=None):
+        """The same life; with detours through snapshots, if there is some chance."""
+        for k in range(20):
+            if chance and chance.random() < .5:
+                before, s = u.states(), u.snapshot()
+                u.create('sphere { radius = .1, at = { 0, 0, 9 } }')
+                u.kick(u.id[3:6], (1, 0, 2), (0, .01, 0))
+                u.step(chance.randrange(30))
+                u.restore(s)
+                assert all((before[name] == now).all() for name, now in u.states().items())
+            if k == 3:
+                u['box#2'].force = 1, 2, 30
+            elif k == 6:
+                u['box#4'].kick((0, 1, 2), (.01, 0, 0))
+            elif k == 9:
+                u['lift'].velocity = 0, 0, .5
+            elif k == 11:
+                u['ball'].send('up', 3)
+            elif k == 13:
+                u['box#7'].position = 2, 2, 2
+            elif k == 15:
+                u.create('box { size = { .2, .2, .2 }, at = { 0, 0, 6 } }')
+                u['box#1'].remove()
+            u.step(10)
+        return u.states()
+
+    def test_same_bits(self):
+        """Property: workers, isolation, containment and detours change no bit."""
+        first = self.live(self.run_({'workers': 1}))
+        chance = random.Random(1)
+        for options in ({'workers': 2}, {'isolation': 'process', 'workers': 2}, {'isolation': 'process', 'harden': True},
+                        {'workers': 'objects'}):
+            other = self.live(self.run_(options), chance)
+            for name, values in first.items():
+                self.assertTrue((values == other[name]).all(), (options, name))
+
+    def test_clock(self):
+        u = self.run_()
+        self.assertEqual((u.steps, u.time, u.step_length), (0, 0, .01))
+        u.step(7)
+        self.assertAlmostEqual(u.time, .07)
+        u.run_until(.5)
+        self.assertEqual(u.steps, 50)
+        u.go(numpy.inf)
+        while u.steps < 60:
+            time.sleep(.01)
+        u.pause()
+        stood = u.steps
+        self.assertEqual(u.steps, stood)
+        u.step()
+        self.assertEqual(u.steps, stood + 1)
+
+    def test_reset(self):
+        u = self.run_({'seed': 1})
+        start = u.states()
+        u.step(30)
+        u.reset()
+        self.assertEqual(u.steps, 0)
+        self.assertTrue((u.angular_velocity == start['angular_velocity']).all())
+        u.reset(seed=2)
+        self.assertFalse((u.angular_velocity == start['angular_velocity']).all())
+        u.reset(seed=1)
+        self.assertTrue((u.angular_velocity == start['angular_velocity']).all())
+
+    def test_lone_flight(self):
+        """Closed form: an object flies as it was set."""
+        u = self.run_()
+        ball = u['ball']
+        ball.position = 20, 20, 10
+        ball.velocity = 1, 2, 3
+        u.step(50)
+        numpy.testing.assert_allclose(ball.position, [20.5, 21, 10 + 1.5 - .5 * 9.81 * .25], atol=1e-9)
+        numpy.testing.assert_allclose(ball.velocity, [1, 2, 3 - 9.81 * .5], atol=1e-9)
+        ball.force = -ball.mass * u.gravity
+        u.step(10)
+        numpy.testing.assert_allclose(ball.velocity, [1, 2, 3 - 9.81 * .5], atol=1e-9)
+        ball.kick((ball.mass, 0, 0), (0, 0, ball.inertia[2]))
+        numpy.testing.assert_allclose(ball.velocity[0], 2, atol=1e-12)
+        numpy.testing.assert_allclose(ball.angular_velocity, [0, 0, 1], atol=1e-12)
+
+
+class Reading(Case):
+    def test_arrays(self):
+        u = self.run_(n=5)
+        self.assertEqual(len(u), 8)
+        self.assertEqual(u.name[0], 'ground')
+        self.assertEqual(u.position.shape, (8, 3))
+        self.assertEqual(u.attitude.shape, (8, 4))
+        numpy.testing.assert_allclose(numpy.linalg.norm(u.attitude, axis=1), 1)
+        self.assertEqual([o.id for o in u], u.id.tolist())
+        box = u['box#1']
+        self.assertEqual((box.shape, box.static, u['lift'].kinematic, u['ground'].static), ('box', False, True, True))
+        numpy.testing.assert_allclose(box.size, .15)
+        self.assertTrue('box#9' not in u and 2 in u)
+        u.step(200)
+        contacts = u.contacts
+        self.assertGreater(len(contacts), 4)
+        self.assertTrue((contacts['a'] < contacts['b']).all())
+        weight = contacts[contacts['a'] == 0]
+        numpy.testing.assert_allclose(numpy.linalg.norm(weight['normal'], axis=1), 1)
+
+    def test_attached(self):
+        u = self.run_()
+        other = obsim.attach(u.universe_name)
+        self.assertIn(u.universe_name, obsim.names())
+        u.step(20)
+        self.assertEqual(other.steps, 20)
+        self.assertTrue((other.position == u.position).all())
+        self.says('read only', other.step)
+        self.says('read only', setattr, other['ball'], 'force', (0, 0, 1))
+
+    def test_removed(self):
+        u = self.run_()
+        ball = u['ball']
+        ball.remove()
+        self.assertFalse(ball.exists)
+        self.says('has gone', lambda: ball.position)
+        with self.assertRaises(KeyError):
+            u['ball']
+
+    def test_created(self):
+        u = self.run_()
+        made = u.create('for i = 1, 3 do sphere { radius = .1, at = { i, 9, 1 } } end')
+        self.assertEqual(len(made), 3)
+        numpy.testing.assert_allclose(made[1].position, [2, 9, 1])
+
+
+class Wrong(Case):
+    def test_scene(self):
+        self.says('No such file', obsim.run, 'nothing.lua')
+        self.says('unknown', obsim.run, self.scene, nonsense=3)
+        self.says('workers', obsim.run, self.scene, options={'workers': -1})
+        self.says('unknown option', obsim.run, self.scene, options={'video': 'a.mp4'})
+
+    def test_changes(self):
+        u = self.run_()
+        before = u.states()
+        self.says('no object 99', u.kick, [1, 99], (0, 0, 1))
+        self.says('does not move by forces', u.set_forces, [0], (0, 0, 1))
+        self.says('unit quaternion', u.set_states, [1], (0, 0, 1), (0, 0, 0, 0))
+        self.says('no snapshot', u.restore, 7)
+        self.says('create:1', u.create, 'sphere {')
+        self.says('no script', u['box#1'].send, 'hop')
+        self.assertTrue(all((before[name] == now).all() for name, now in u.states().items()))
+        u.close()
+        self.says('closed', u.step)
+
+    def test_monolith(self):
+        u = self.run_({'arch': 'monolith'})
+        u.step(10)
+        self.assertEqual(u.steps, 10)
+        self.says('no snapshots', u.snapshot)
+        self.says('to itself', u['ball'].kick, (0, 0, 1))
+
+    def test_killed(self):
+        u = self.run_()
+        os.kill(u._process.pid, signal.SIGKILL)
+        self.says('the run has ended', u.step, 3)
+
+    def test_python_ends(self):
+        """A run does not outlive the program that leads it."""
+        code = f'import obsim, sys, time; u = obsim.run({self.scene!r}); print(u.universe_name, flush=True); time.sleep(1000)'
+        with subprocess.Popen([sys.executable, '-c', code], stdout=subprocess.PIPE, text=True) as python:
+            name = python.stdout.readline().strip()
+            self.assertIn(name, obsim.names())
+            python.kill()
+        while name in obsim.names():
+            time.sleep(.01)
+
+
+class Documents(unittest.TestCase):
+    def test_examples(self):
+        root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+        with open(os.path.join(root, 'docs/control.md'), encoding='utf-8') as f:
+            blocks = re.findall(r'```python\n(.*?)```', f.read(), re.S)
+        self.assertTrue(blocks)
+        for block in blocks:
+            exec(compile(block, 'docs/control.md', 'exec'), {}) # pylint: disable=exec-used
+
+
+class Control(Case):
+    """A cart on ice: a force along x brings it to the origin."""
+
+    def environments(self, kind, *first):
+        def observe(u):
+            cart = u['cart']
+            return numpy.array([cart.position[0], cart.velocity[0]])
+
+        def act(u, action):
+            u['cart'].force = float(action), 0, 0
+        e = kind(*first, self.cart, observe, act, lambda u: -u['cart'].position[0] ** 2, steps=5, limit=40)
+        self.addCleanup(e.close)
+        return e
+
+    def test_one(self):
+        e = self.environments(Environment)
+        (x, v), _ = e.reset(seed=3)
+        self.assertNotEqual(x, e.reset(seed=4)[0][0])
+        (x, v), _ = e.reset(seed=3)
+        mass = e.universe['cart'].mass
+        truncated = False
+        while not truncated:
+            (x, v), reward, terminated, truncated, _ = e.step(-mass * (6 * x + 4 * v))
+            self.assertFalse(terminated)
+        self.assertLess(abs(x), .02)
+        self.assertAlmostEqual(reward, -x * x)
+
+    def test_random_search(self):
+        """Gains of a controller, found by chance on universes side by side."""
+        e = self.environments(Environments, 4)
+        mass, chance = e.each[0].universe['cart'].mass, numpy.random.default_rng(2)
+        gains, best = numpy.zeros((4, 2)), None
+        for _ in range(4):
+            tried = gains + chance.uniform(0, 6, (4, 2))
+            seen, _ = e.reset()
+            total = numpy.zeros(4)
+            for _ in range(40):
+                seen, reward, _, truncated, _ = e.step(-mass * (tried * seen).sum(axis=1))
+                total += reward
+            self.assertTrue(truncated.all())
+            if best is None or total.max() > best:
+                best, self.found = total.max(), tried[total.argmax()]
+        (still, _), standing = e.reset(), 0
+        for _ in range(40):
+            still, reward, *_ = e.step(numpy.zeros(4))
+            standing += reward[0]
+        self.assertGreater(best, standing)
+
+
+unittest.main()
