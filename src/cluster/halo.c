@@ -137,7 +137,7 @@ void ob_halo_note(ob_halo *h, uint32_t id, const ob_motion *staged)
 
 bool ob_halo_take_heard(ob_halo *h, uint32_t *id)
 {
-	while (h->heard_count) {
+	while (h && h->heard_count) {
 		*id = h->heard[--h->heard_count];
 		h->hears[*id] = 0;
 		if (h->owner[*id] != 1 + h->rank) // else it moved here since, and was solved again
@@ -148,6 +148,8 @@ bool ob_halo_take_heard(ob_halo *h, uint32_t *id)
 
 void ob_halo_note_published(ob_halo *h, const ob_universe *u, uint32_t id)
 {
+	if (!h)
+		return;
 	h->known[id] = (known){ ob_motion_version(u, id), h->staged[id] };
 	if (h->owed[id] == BEFORE)
 		h->owed[id] = 0;

@@ -52,9 +52,9 @@ void ob_halo_note_border(ob_halo *h, uint32_t id, bool is_at);
 bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to);
 // Notes the motion of a solved body, from this rank or another, that is to be staged.
 void ob_halo_note(ob_halo *h, uint32_t id, const ob_motion *staged);
-// Takes the next of other ranks' bodies with a staged motion, each once. false: there is none left.
+// Takes the next of other ranks' bodies with a staged motion, each once. false: there is none left. NULL is allowed.
 bool ob_halo_take_heard(ob_halo *h, uint32_t *id);
-// Notes that the body's staged motion is published.
+// Notes that the body's staged motion is published. NULL is allowed.
 void ob_halo_note_published(ob_halo *h, const ob_universe *u, uint32_t id);
 // Gets the digest of the body's motion before the step. false: it differs from the one that was noted.
 bool ob_halo_digest(const ob_halo *h, const ob_universe *u, uint32_t id, uint64_t *digest);

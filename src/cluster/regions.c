@@ -446,6 +446,8 @@ uint32_t ob_regions_at(const ob_regions *r, uint32_t id)
 
 void ob_regions_note(ob_regions *r, uint32_t id, uint32_t simulator, uint32_t work, bool spilled)
 {
+	if (!r)
+		return;
 	r->home[id] = 1 + simulator;
 	r->spent[id] += work;
 	r->work.all += work;

@@ -49,7 +49,7 @@ void ob_regions_take(ob_regions *r, uint32_t id, uint32_t simulator);
 // Returns the simulator of the body's region.
 uint32_t ob_regions_at(const ob_regions *r, uint32_t id);
 // Notes that the simulator gets the body, until that moves on, at this work. spilled: it is not the simulator of the
-// body's region.
+// body's region. NULL is allowed.
 void ob_regions_note(ob_regions *r, uint32_t id, uint32_t simulator, uint32_t work, bool spilled);
 
 #endif

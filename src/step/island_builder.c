@@ -548,8 +548,7 @@ static void give_island(ob_involved *p, shares *s, uint32_t island)
 	for (uint32_t k = 0; k < is->members; k++) {
 		const uint32_t id = data->member[is->first_member + k], simulator = s->first + s->owner[island];
 		ob_home_set(p->u, id, simulator);
-		if (s->regions)
-			ob_regions_note(s->regions, id, simulator, 1 + data->effort[id], spills);
+		ob_regions_note(s->regions, id, simulator, 1 + data->effort[id], spills);
 	}
 }
 

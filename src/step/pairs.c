@@ -152,22 +152,23 @@ static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64
 {
 	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
 	const ob_motion *ma = ob_result_of(u, a), *mb = ob_result_of(u, b);
-	bool aabbs = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB; // boxes reach beyond the bounding sphere
-	double ra = ob_shape_radius(pa->shape, pa->size), rb = ob_shape_radius(pb->shape, pb->size);
+	// Axis-aligned boxes reach beyond the bounding sphere.
+	const double reach = ob_universe_settings(u)->narrow_phase == OB_NARROW_AABB ? sqrt(3) : 1;
+	double ra = reach * ob_shape_radius(pa->shape, pa->size), rb = reach * ob_shape_radius(pb->shape, pb->size);
 	ob_vec3 centre_a = ob_centre_now(u, a, ma, steps), centre_b = ob_centre_now(u, b, mb, steps);
 	if (ob_shape_is(pa->shape, OB_UNBOUNDED))
-		return plane_distance(u, a, centre_b, (aabbs ? sqrt(3) : 1) * rb);
+		return plane_distance(u, a, centre_b, rb);
 	if (ob_shape_is(pb->shape, OB_UNBOUNDED))
-		return plane_distance(u, b, centre_a, (aabbs ? sqrt(3) : 1) * ra);
+		return plane_distance(u, b, centre_a, ra);
 	double spheres = ob_norm(ob_sub(centre_a, centre_b)) - ra - rb;
-	if (spheres > ob_max(ra, rb) && !aabbs) // boxes would not add much, and cost more
+	if (spheres > ob_max(ra, rb)) // boxes would not add much, and cost more
 		return spheres;
 	double box_a[6], box_b[6], distance = 0;
 	ob_tight_aabb(u, pa, ob_state_now(u, a, ma, steps).pose, box_a);
 	ob_tight_aabb(u, pb, ob_state_now(u, b, mb, steps).pose, box_b);
 	for (int c = 0; c < 3; c++)
 		distance = ob_max(distance, ob_max(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
-	return aabbs ? distance : ob_max(distance, spheres);
+	return ob_max(distance, spheres);
 }
 
 // Path of both together in the solved step, if there is one (m).

@@ -37,16 +37,7 @@ static void publish(ob_sim *s, ob_halo *halo, uint32_t id)
 {
 	trace_state_change(s, id, ob_staged_motion(s->u, id));
 	ob_commit_motion(s->u, id);
-	if (halo)
-		ob_halo_note_published(halo, s->u, id);
-}
-
-// Publishes bodies that other ranks have solved, as far as this rank has received them.
-static void publish_heard(ob_sim *s, ob_halo *halo)
-{
-	uint32_t id;
-	while (ob_halo_take_heard(halo, &id))
-		publish(s, halo, id);
+	ob_halo_note_published(halo, s->u, id);
 }
 
 void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
@@ -72,10 +63,9 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 			publish(s, halo, id);
 		}
 	}
-	if (halo)
-		publish_heard(s, halo);
-	else
-		ob_step_woken(s->u, woken);
+	for (uint32_t id; ob_halo_take_heard(halo, &id);)
+		publish(s, halo, id);
+	ob_step_woken(s->u, woken);
 }
 
 void ob_result_copy(ob_sim *s, uint32_t id)
