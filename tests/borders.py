@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Keeps the borders of the modules: permitted includes, duties reserved to some files, no circles of includes, and
-maximum lengths of files and functions. Prints the place of each violation; exit 1 if there is any.
+maximum lengths of functions, files and folders. Prints the place of each violation; exit 1 if there is any.
 
 borders.py ROOT    checks ROOT/src
 First it plants one violation of each kind in a tree of its own, and fails if it does not see it.
@@ -13,6 +13,8 @@ import tempfile
 # A longer file or function holds more than one concept or sequence.
 FILE_LINES = 1000
 FUNCTION_LINES = 80
+# A folder with more lines of code, without blank lines and comments, is more than one module.
+FOLDER_LINES = 9000
 
 # Arrows: a module's own headers and those of the modules named here, or the headers named, may be included. "motion" and "universe" as
 # <ob/...> are public types, open to all.
@@ -179,6 +181,16 @@ def check_lengths(name, code):
             start = None
 
 
+def check_folders(codes):
+    lines = {}
+    for name, code in codes.items():
+        folder = name.rsplit('/', 1)[0]
+        lines[folder] = lines.get(folder, 0) + sum(1 for line in code if line.strip())
+    for folder, number in sorted(lines.items()):
+        if number > FOLDER_LINES:
+            yield f'{folder}:1: {number} lines of code in a folder, {FOLDER_LINES} at most'
+
+
 def check(root):
     """All violations under root/src, as 'path:line: what'."""
     found, codes = [], {}
@@ -192,7 +204,7 @@ def check(root):
         codes[name] = code
         places = [*check_arrows(name, code), *check_duties(name, plain.split('\n'), code), *check_lengths(name, code)]
         found += [f'{name}:{number}: {what}' for number, what in sorted(places)]
-    return found + list(check_circles(codes))
+    return found + list(check_circles(codes)) + list(check_folders(codes))
 
 
 # One violation of each kind, and its line (None: at the first file of its circle); then code that must not be reported.
@@ -225,6 +237,8 @@ PLANTED = [
     ('src/motion/g.h', '\n\n#include "motion/h.h"\n', 3),
     ('src/motion/h.h', '#include "motion/g.h"\n', None),
     ('src/base/b.c', '\n' * (FILE_LINES + 1), FILE_LINES + 1),
+    *((f'src/plot/{i}.c', 'int i; // a line\n' * FILE_LINES, None) for i in range(FOLDER_LINES // FILE_LINES)),
+    ('src/plot/more.c', 'int i;\n', None),
 ]
 ALLOWED = [
     ('src/motion/p.h', '#include <stdint.h>\n'),
@@ -241,6 +255,7 @@ ALLOWED = [
     ('src/cli/y.c', '// fork() and mmap() and "\nconst char *s = "fork()"; int ob_fork_server_fork(int);\n/* #version\n*/\n'),
     ('src/base/y.c', 'void f(void)\n{\n' + '\tg();\n' * (FUNCTION_LINES - 2) + '}\n'),
     ('src/base/z.c', '\n' * FILE_LINES),
+    *((f'src/lab/{i}.c', 'int i;\n' * (FILE_LINES // 2) + '// a comment\n' * (FILE_LINES // 2)) for i in range(12)),
 ]
 
 
@@ -252,7 +267,7 @@ def prove():
             (root / name).parent.mkdir(parents=True, exist_ok=True)
             (root / name).write_text(text, encoding='utf-8')
         seen = [':'.join(line.split(':')[:2]) for line in check(root)]
-    expected = [f'{name}:{number}' for name, _, number in PLANTED if number]
+    expected = [f'{name}:{number}' for name, _, number in PLANTED if number] + ['src/plot:1']
     return sorted(set(seen) ^ set(expected)) + sorted({place for place in seen if seen.count(place) > 1})
 
 
