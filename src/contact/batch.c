@@ -28,6 +28,16 @@ void ob_batch_clear(ob_batch *b, int l)
 	}
 }
 
+void ob_batch_row_of_lane(const ob_batch *b, int l, int row, double *of_a, double *of_b)
+{
+	const ob_row r = ob_batch_row(b, row);
+	for (int c = 0; c < 3; c++) {
+		const double along = r.along ? r.along[c][l] : 0;
+		of_a[c] = along, of_a[3 + c] = r.about_a[c][l];
+		of_b[c] = -along, of_b[3 + c] = -r.about_b[c][l];
+	}
+}
+
 // ---- the arithmetic, by the kernel for this processor
 
 void ob_friction_arms(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *gap, int points, ob_vec3 n, ob_vec3 *a,

@@ -13,6 +13,9 @@
 // Units: SI; impulses in N s, the twist in N m s. Velocity arrays: [body][8], linear 0..2, angular 3..5, world frame.
 // Body 0 stands for everything that does not move.
 //
+// A row's part of J is defined once, by ob_batch_row: kernels, the direct solver and Newton steps on few contacts take it
+// from there. The laws of its impulse: x >= 0 for a normal, those of contact/friction.h for friction and twist.
+//
 // Functions use their arguments alone: threads may call them at once on different batches and arrays.
 #ifndef OB_CONTACT_BATCH_H
 #define OB_CONTACT_BATCH_H
@@ -21,6 +24,7 @@
 #include "contact/manifold.h"
 
 enum { OB_POINTS = 4, OB_ROWS = 7 }; // contact points; rows: normals, two of friction, one of twist
+enum { OB_ROW_FRICTION = OB_POINTS, OB_ROW_TWIST = OB_ROWS - 1 }; // first row of friction; the row of twist
 
 // Rows of a pair; all pairs of a batch are of one kind.
 typedef enum ob_batch_kind {
@@ -81,6 +85,22 @@ typedef struct ob_batch {
 	// [i][j] = A_ij / A_jj: the amount of impulse j that changes row j as a unit of impulse i does
 	lanes coupling[7][7];
 } ob_batch;
+
+// Row of a pair. An impulse of it acts on body a along "along" and about "about_a", on body b against "along" and
+// "about_b"; its velocity is along (va - vb) + about_a wa - about_b wb.
+typedef struct ob_row {
+	const lanes *along; // [3]; NULL: a torque
+	const lanes *about_a, *about_b; // [3], m: arm x along; unit for a torque
+} ob_row;
+
+static inline ob_row ob_batch_row(const ob_batch *b, int row)
+{
+	if (row < OB_POINTS)
+		return (ob_row){ b->n, b->ja[row], b->jb[row] };
+	if (row == OB_ROW_TWIST)
+		return (ob_row){ NULL, b->n, b->n };
+	return row == OB_ROW_FRICTION ? (ob_row){ b->t1, b->fa1, b->fb1 } : (ob_row){ b->t2, b->fa2, b->fb2 };
+}
 
 // Parameters of an iteration of the contact solver, the same for all batches.
 typedef struct ob_solver_iteration {
@@ -158,6 +178,8 @@ bool ob_batch_project(ob_batch *b, double slop, double beta, bool jacobi, ob_bod
 // whichever is more.
 void ob_batch_limit_prediction(ob_batch *b, const double *cap_impulse, double cap_velocity);
 
+// Finds a row of J for lane l: the parts of both bodies, m and rad.
+void ob_batch_row_of_lane(const ob_batch *b, int l, int row, double *of_a, double *of_b);
 // J v: opening, sliding and spinning rates (m/s, rad/s) of the seven rows at these velocities.
 void ob_batch_row_velocities(const ob_batch *b, const ob_body_row *rows, lanes *r);
 // Adds M^-1 J^T x to the rows: velocity changes by the impulses x of all lanes.

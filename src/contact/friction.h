@@ -24,6 +24,32 @@ static inline real disc_share(real bound, real length2)
 	return bound / root_of(larger_of(length2, bound * bound) + 1e-300);
 }
 
+// Returns the lanes where friction, of this squared length, is at its bound: it slides.
+static inline mask disc_slides(real bound, real length2)
+{
+	const double at_limit = 1 - 1e-9;
+	return length2 >= at_limit * bound * bound;
+}
+
+// Sliding friction in a step of Newton's method: its length stays mu times the load, and it stays opposite to the slip
+// (Alart and Curnier 1991). At a slip of t times its impulse, a change y across it meets the rows' response and t y.
+typedef struct disc_tangent {
+	real brought[2]; // friction for a unit of load
+	real across[2]; // unit, across the friction
+	real t; // m/s for a unit of impulse
+} disc_tangent;
+
+static inline disc_tangent disc_follow(const real *x, real load, const real *slip)
+{
+	const real length = root_of(x[0] * x[0] + x[1] * x[1]);
+	const real against = -(slip[0] * x[0] + slip[1] * x[1]) / (length * length);
+	return (disc_tangent){
+		.brought = { x[0] / load, x[1] / load },
+		.across = { -x[1] / length, x[0] / length },
+		.t = larger_of(real_of(0), against),
+	};
+}
+
 // Inverts A's block of friction, a: 11 12 22. Returns its largest eigenvalue.
 static inline real disc_invert(const real *a, real *m)
 {

@@ -26,8 +26,8 @@ PER_KIND int points_of(ob_batch_kind kind)
 
 PER_KIND bool in_use(ob_batch_kind kind, int row)
 {
-	bool rough = !(kind & OB_KIND_FRICTIONLESS);
-	return row < OB_POINTS ? row < points_of(kind) : row < 6 ? rough : rough && !(kind & OB_KIND_POINT);
+	const bool rough = !(kind & OB_KIND_FRICTIONLESS);
+	return row < OB_POINTS ? row < points_of(kind) : row < OB_ROW_TWIST ? rough : rough && !(kind & OB_KIND_POINT);
 }
 
 static inline double square(double x)
@@ -54,25 +54,27 @@ static inline void invert_friction(ob_batch *b, lanes a44, lanes a45, lanes a55)
 // moves_a, moves_b: some lane's body a, or b, can move.
 PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind, bool moves_a, bool moves_b)
 {
-	const lanes *ja[7] = { b->ja[0], b->ja[1], b->ja[2], b->ja[3], b->fa1, b->fa2, b->n };
-	const lanes *jb[7] = { b->jb[0], b->jb[1], b->jb[2], b->jb[3], b->fb1, b->fb2, b->n };
 	lanes mass = b->ima * b->ka + b->imb * b->kb, a[OB_ROWS][OB_ROWS];
+#pragma GCC unroll 7
 	for (int i = 0; i < OB_ROWS; i++) {
+		const ob_row row = ob_batch_row(b, i);
 		lanes xa[3], xb[3];
 		if (!in_use(kind, i))
 			continue;
 		if (moves_a)
-			sym_mul(b->ia, ja[i], xa);
+			sym_mul(b->ia, row.about_a, xa);
 		if (moves_b)
-			sym_mul(b->ib, jb[i], xb);
+			sym_mul(b->ib, row.about_b, xb);
+#pragma GCC unroll 7
 		for (int j = 0; j <= i; j++) {
+			const ob_row other = ob_batch_row(b, j);
 			if (!in_use(kind, j))
 				continue;
-			lanes s = moves_a ? dot3(xa, ja[j]) * b->ka : lanes_of(0);
+			lanes s = moves_a ? dot3(xa, other.about_a) * b->ka : lanes_of(0);
 			if (moves_b)
-				s += dot3(xb, jb[j]) * b->kb;
-			if ((i < 4 && j < 4) || (i == j && i < 6))
-				s += mass; // rows along one direction: two normals, or a tangent with itself
+				s += dot3(xb, other.about_b) * b->kb;
+			if (row.along && row.along == other.along)
+				s += mass; // two normals, or a tangent with itself: others are across each other
 			a[i][j] = a[j][i] = s;
 		}
 		b->diag[i] = a[i][i];
@@ -85,9 +87,9 @@ PER_KIND void prepare_kind(ob_batch *b, ob_batch_kind kind, bool moves_a, bool m
 		for (int j = 0; j < OB_ROWS; j++)
 			if (in_use(kind, i) && in_use(kind, j))
 				b->coupling[i][j] = a[i][j] * b->inv_diag[j];
-	if (in_use(kind, 4))
+	if (in_use(kind, OB_ROW_FRICTION))
 		invert_friction(b, a[4][4], a[4][5], a[5][5]);
-	if (in_use(kind, 6))
+	if (in_use(kind, OB_ROW_TWIST))
 		patch_invert(b->radius, (lanes[6]){ a[4][4], a[4][5], a[4][6], a[5][5], a[5][6], a[6][6] },
 			     b->friction_mass);
 	b->dirty = 0;
@@ -170,12 +172,12 @@ PER_KIND void apply(const ob_batch *b, ob_batch_kind kind, const lanes *d, lanes
 			la[c] += b->ja[i][c] * d[i];
 			lb[c] += b->jb[i][c] * d[i];
 		}
-		if (in_use(kind, 4)) {
+		if (in_use(kind, OB_ROW_FRICTION)) {
 			p += b->t1[c] * d[4] + b->t2[c] * d[5];
 			la[c] += b->fa1[c] * d[4] + b->fa2[c] * d[5];
 			lb[c] += b->fb1[c] * d[4] + b->fb2[c] * d[5];
 		}
-		if (in_use(kind, 6)) {
+		if (in_use(kind, OB_ROW_TWIST)) {
 			lanes twist = b->n[c] * d[6];
 			la[c] += twist;
 			lb[c] += twist;
@@ -203,12 +205,12 @@ PER_KIND void normal_velocities(const ob_batch *b, ob_batch_kind kind, const lan
 // Rows of friction and twist of J (xa, xb): sliding (m/s) and spin (rad/s) of the contact.
 PER_KIND void friction_velocities(const ob_batch *b, ob_batch_kind kind, const lanes *xa, const lanes *xb, lanes *r)
 {
-	if (in_use(kind, 4)) {
-		lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
-		r[4] = dot3(b->t1, d) + dot3(b->fa1, xa + 3) - dot3(b->fb1, xb + 3);
-		r[5] = dot3(b->t2, d) + dot3(b->fa2, xa + 3) - dot3(b->fb2, xb + 3);
+	for (int i = OB_ROW_FRICTION; in_use(kind, i) && i < OB_ROW_TWIST; i++) {
+		const lanes d[3] = { xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2] };
+		const ob_row row = ob_batch_row(b, i);
+		r[i] = dot3(row.along, d) + dot3(row.about_a, xa + 3) - dot3(row.about_b, xb + 3);
 	}
-	if (in_use(kind, 6)) {
+	if (in_use(kind, OB_ROW_TWIST)) {
 		lanes w[3] = { xa[3] - xb[3], xa[4] - xb[4], xa[5] - xb[5] };
 		r[6] = dot3(b->n, w);
 	}
@@ -295,7 +297,7 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 		largest = lanes_max(largest, lanes_abs(d) * b->diag[i]);
 	}
 	largest *= largest;
-	if (!in_use(kind, 4))
+	if (!in_use(kind, OB_ROW_FRICTION))
 		return largest;
 	lane_mask isolated = { 0 }, patch = isolated;
 	if (patches) {
@@ -316,7 +318,7 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 	x[4] += lanes_where(open, d4);
 	x[5] += lanes_where(open, d5);
 	largest = lanes_max(largest, square_of_slip(b, d4, d5));
-	if (!in_use(kind, 6))
+	if (!in_use(kind, OB_ROW_TWIST))
 		return largest;
 	bound *= b->radius;
 	lanes d6 = twist_within(-bound - x[6], bound - x[6], step[6]);
@@ -368,8 +370,10 @@ PER_KIND void leap(const ob_batch *b, ob_batch_kind kind, bool holds, lane_mask 
 {
 	const double proximity = 1e-9; // relative to a row's own coefficient
 	const lanes one = lanes_of(1), none = lanes_of(0);
-	const bool slides = !holds && in_use(kind, 4);
-	const int rows = holds && in_use(kind, 6) ? 7 : holds && in_use(kind, 4) ? 6 : points_of(kind);
+	const bool slides = !holds && in_use(kind, OB_ROW_FRICTION);
+	const int rows = holds && in_use(kind, OB_ROW_TWIST)      ? 7
+			 : holds && in_use(kind, OB_ROW_FRICTION) ? 6
+								  : points_of(kind);
 	lanes m[OB_ROWS][OB_ROWS], d[OB_ROWS], sum = x[0], more = none, share = one;
 	lane_mask open[OB_ROWS] = { 0 };
 	for (int i = 1; i < points_of(kind); i++)
@@ -434,13 +438,12 @@ static __attribute__((noinline)) void leap_sliding(const ob_batch *b, ob_batch_k
 // Lanes whose friction is at its limit.
 PER_KIND lane_mask sliding_lanes(const ob_batch *b, ob_batch_kind kind, const patch_search *f, const lanes *x)
 {
-	const double at_limit = 1 - 1e-9;
 	lane_mask none = { 0 };
-	if (!in_use(kind, 4))
+	if (!in_use(kind, OB_ROW_FRICTION))
 		return none;
 	lanes bound = b->mu * (x[0] + (points_of(kind) > 1 ? x[1] + x[2] + x[3] : lanes_of(0)));
-	lane_mask disc = x[4] * x[4] + x[5] * x[5] >= at_limit * bound * bound;
-	if (!in_use(kind, 6))
+	lane_mask disc = disc_slides(bound, x[4] * x[4] + x[5] * x[5]);
+	if (!in_use(kind, OB_ROW_TWIST))
 		return disc;
 	lane_mask patch = b->radius > 0;
 	return (patch & lanes_mask(f->slides)) | (~patch & disc);
@@ -452,7 +455,7 @@ PER_KIND lane_mask sliding_lanes(const ob_batch *b, ob_batch_kind kind, const pa
 PER_KIND void solve_block(ob_batch *b, ob_batch_kind kind, bool alone, const ob_solver_iteration *iteration,
 			  patch_search *f, lanes *x, const lanes *r)
 {
-	const bool patches = alone && in_use(kind, 6);
+	const bool patches = alone && in_use(kind, OB_ROW_TWIST);
 	lanes step[OB_ROWS];
 	for (int i = 0; i < OB_ROWS; i++)
 		if (in_use(kind, i))
@@ -594,9 +597,9 @@ PER_KIND lanes largest_change(const ob_batch *b, ob_batch_kind kind, const lanes
 	for (int i = 0; i < points_of(kind); i++)
 		most = lanes_max(most, lanes_abs(change[i]) * b->diag[i]);
 	most *= most;
-	if (in_use(kind, 4))
+	if (in_use(kind, OB_ROW_FRICTION))
 		most = lanes_max(most, square_of_slip(b, change[4], change[5]));
-	if (in_use(kind, 6)) {
+	if (in_use(kind, OB_ROW_TWIST)) {
 		lanes spin = change[6] * b->diag[6] * b->radius;
 		most = lanes_max(most, spin * spin);
 	}

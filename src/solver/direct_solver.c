@@ -97,31 +97,17 @@ static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, double
 	return n;
 }
 
-// Fills one row of the joint for both bodies. The sides a and b of a batch differ in sign.
-static void fill_row(const ob_batch *b, int l, int row, bool child_is_a, double *child, double *parent)
-{
-	static const lanes none[3];
-	const lanes *along = row < 4 ? b->n : row == 4 ? b->t1 : row == 5 ? b->t2 : none;
-	const lanes *about_a = row < 4 ? b->ja[row] : row == 4 ? b->fa1 : row == 5 ? b->fa2 : b->n;
-	const lanes *about_b = row < 4 ? b->jb[row] : row == 4 ? b->fb1 : row == 5 ? b->fb2 : b->n;
-	for (int c = 0; c < 3; c++) {
-		const double n = child_is_a ? along[c][l] : -along[c][l];
-		child[c] = n;
-		parent[c] = -n;
-		child[3 + c] = child_is_a ? about_a[c][l] : -about_b[c][l];
-		parent[3 + c] = child_is_a ? -about_b[c][l] : about_a[c][l];
-	}
-}
-
 static void fill_joint(const ob_island_work *w, ob_direct_contact *c, double compliance)
 {
 	const ob_batch *b = batch_of(w, c);
 	const int l = lane_of(w, c);
 	ob_joint *j = &c->joint;
+	const bool child_is_a = w->contact[c->contact].a == c->child;
 	double n[4], null_part = 0;
 	for (uint32_t r = 0; r < j->rows; r++) {
 		const int row = c->row[r];
-		fill_row(b, l, row, w->contact[c->contact].a == c->child, j->child[r], j->parent[r]);
+		ob_batch_row_of_lane(b, l, row, child_is_a ? j->child[r] : j->parent[r],
+				     child_is_a ? j->parent[r] : j->child[r]);
 		j->y[r] = -w->direct.velocity[b - w->batch][row][l];
 		j->compliance[r] = compliance * b->diag[row][l];
 	}

@@ -3,9 +3,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "elementary/real.h"
+
+#include "contact/friction.h" // for one number
+
 enum { MOST_ROWS = OB_FEW_CONTACTS * OB_ROWS, NO_BODY = UINT32_MAX };
 
-static const double at_limit = 1 - 1e-9; // share of its bound: a larger friction impulse slides
 // Share of a row's own response. Rows of a face depend on each other; rounding errors grow by its inverse.
 static const double compliance = 1e-7;
 
@@ -31,15 +34,10 @@ typedef struct few {
 
 static void add_row(const ob_batch *b, uint32_t l, int row, double share, double *of_a, double *of_b)
 {
-	const lanes *along = row < OB_POINTS ? b->n : row == 4 ? b->t1 : b->t2;
-	const lanes *about_a = row < OB_POINTS ? b->ja[row] : row == 4 ? b->fa1 : row == 5 ? b->fa2 : b->n;
-	const lanes *about_b = row < OB_POINTS ? b->jb[row] : row == 4 ? b->fb1 : row == 5 ? b->fb2 : b->n;
-	for (int c = 0; c < 3; c++) {
-		of_a[c] += row < 6 ? share * along[c][l] : 0;
-		of_b[c] -= row < 6 ? share * along[c][l] : 0;
-		of_a[3 + c] += share * about_a[c][l];
-		of_b[3 + c] -= share * about_b[c][l];
-	}
+	double a[6], c[6];
+	ob_batch_row_of_lane(b, (int)l, row, a, c);
+	for (int i = 0; i < 6; i++)
+		of_a[i] += share * a[i], of_b[i] += share * c[i];
 }
 
 // Finds the change of velocity by an impulse. Returns false if the body does not move.
@@ -110,21 +108,25 @@ static void add_contact(const ob_island_work *w, few *f, uint32_t lane)
 {
 	const uint32_t l = lane % OB_LANES, contact = f->contacts++;
 	const ob_batch *b = &w->batch[lane / OB_LANES];
-	const double x4 = b->impulse[4][l], x5 = b->impulse[5][l], x6 = b->impulse[6][l],
-		     force = sqrt(x4 * x4 + x5 * x5);
-	double sum = 0, slip[2];
+	const double friction[2] = { b->impulse[4][l], b->impulse[5][l] }, x6 = b->impulse[6][l];
+	double sum = 0, slip[2], *brought = f->brought[contact];
+	disc_tangent tangent;
 	f->lane[contact] = lane;
-	memset(f->brought[contact], 0, sizeof *f->brought);
+	memset(brought, 0, sizeof *f->brought);
 	for (int i = 0; i < OB_POINTS; i++)
 		sum += b->impulse[i][l];
 	if (!(sum > 0))
 		return;
 	const double bound = b->mu[l] * sum, twist = bound * b->radius[l];
-	const bool slides = force >= at_limit * bound, spins = fabs(x6) >= at_limit * twist;
-	if (slides)
-		f->brought[contact][4] = x4 / sum, f->brought[contact][5] = x5 / sum;
+	const bool slides = disc_slides(bound, friction[0] * friction[0] + friction[1] * friction[1]),
+		   spins = disc_slides(twist, x6 * x6);
+	if (slides && bound > 0) {
+		slip_of(w, b, l, slip);
+		tangent = disc_follow(friction, sum, slip);
+		memcpy(brought + OB_ROW_FRICTION, tangent.brought, sizeof tangent.brought);
+	}
 	if (spins)
-		f->brought[contact][6] = x6 / sum;
+		brought[OB_ROW_TWIST] = x6 / sum;
 	for (int i = 0; i < OB_POINTS; i++)
 		if (b->impulse[i][l] > 0 && ob_batch_has_point(b, (int)l, i))
 			add_unknown(w, f, contact, i, NULL);
@@ -132,10 +134,7 @@ static void add_contact(const ob_island_work *w, few *f, uint32_t lane)
 		add_unknown(w, f, contact, OB_POINTS, (double[2]){ 1, 0 });
 		add_unknown(w, f, contact, OB_POINTS, (double[2]){ 0, 1 });
 	} else if (bound > 0) {
-		slip_of(w, b, l, slip);
-		const double against = -(slip[0] * x4 + slip[1] * x5) / (force * force);
-		add_unknown(w, f, contact, OB_POINTS, (double[2]){ -x5 / force, x4 / force })->extra =
-			ob_max(0, against);
+		add_unknown(w, f, contact, OB_POINTS, tangent.across)->extra = tangent.t;
 	}
 	if (!spins)
 		add_unknown(w, f, contact, 6, NULL);
