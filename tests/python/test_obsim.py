@@ -99,6 +99,21 @@ class Steps(Case):
             for name, values in first.items():
                 self.assertTrue((values == other[name]).all(), (options, name))
 
+    def test_as_run(self):
+        """A run that is led makes the steps of one that runs by itself."""
+        try:
+            import h5py # pylint: disable=import-outside-toplevel
+        except ImportError:
+            self.skipTest('python3-h5py is not installed')
+        record = self.scene + '.h5'
+        subprocess.run([os.environ['OBSIM'], 'run', self.scene, '--duration', '2', '--record', record], check=True,
+                       stdout=subprocess.DEVNULL)
+        u = self.run_()
+        u.step(170)
+        u.step(30)
+        with h5py.File(record, 'r') as f:
+            self.assertTrue((f['position'][-1] == u.position.astype(f['position'].dtype)).all())
+
     def test_clock(self):
         u = self.run_()
         self.assertEqual((u.steps, u.time, u.step_length), (0, 0, .01))
