@@ -166,6 +166,9 @@ size_t ob_universe_list(char names[][OB_NAME_MAX], size_t max);
 // exists. If not, the state is OB_UNIVERSE_LOST from now on, and all functions below return false, or 0. If a program
 // of the same user truncates the memory during a read, the reader ends (SIGBUS).
 void ob_universe_get_info(const ob_universe *u, ob_universe_info *out);
+// Waits until so many steps are complete, without polling where the universe pauses there. false: not within timeout (s),
+// or no further step will come.
+bool ob_universe_wait(const ob_universe *u, uint64_t step, double timeout);
 // Returns false if there is no such worker.
 bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_info *out);
 // Home worker of the object's simulator: the one that solved its island last, or to which it was moved; its own, if

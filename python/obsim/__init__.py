@@ -161,6 +161,14 @@ class Universe:
     deaths = property(lambda self: self._info().deaths, doc='Times that simulators died.')
     universe_name = property(lambda self: self._info().name.decode(), doc='As obsim top shows it.')
 
+    def wait(self, steps, timeout=numpy.inf):
+        """Waits until so many steps are complete; False if that takes longer (s), or no further step will come."""
+        until = time.monotonic() + timeout
+        while not _native.library().ob_universe_wait(self._u, steps, min(.1, max(0, until - time.monotonic()))): # hears Ctrl-C
+            if time.monotonic() >= until or self._info().state > 1 or not _native.library().ob_universe_is_hosted(self._u):
+                return self.steps >= steps
+        return True
+
     def __len__(self):
         """Number of objects."""
         return _native.library().ob_universe_get_states(self._u, ctypes.byref(_native.StateArrays()), 0)

@@ -64,6 +64,7 @@ _functions = {
     'ob_universe_is_hosted': (ctypes.c_bool, [_pointer]),
     'ob_universe_list': (_size, [_pointer, _size]),
     'ob_universe_get_info': (None, [_pointer, _pointer]),
+    'ob_universe_wait': (ctypes.c_bool, [_pointer, _u64, ctypes.c_double]),
     'ob_universe_get_passport': (ctypes.c_bool, [_pointer, _u32, _pointer]),
     'ob_universe_get_states': (_size, [_pointer, _pointer, _size]),
     'ob_universe_get_contacts': (_size, [_pointer, _pointer, _size]),

@@ -10,6 +10,7 @@
 
 #include "base/utf8.h"
 #include "shape/shape.h"
+#include "table/futex.h"
 #include "table/layout.h"
 #include "table/pages.h"
 #include "table/segment.h"
@@ -123,6 +124,37 @@ void ob_universe_get_info(const ob_universe *u, ob_universe_info *out)
 	ob_utf8_make_plain(out->name);
 	ob_utf8_make_plain(out->isolation);
 	strcpy(out->arch, h->run.monolith ? "monolith" : "obs");
+}
+
+static int64_t monotonic_ns(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return t.tv_sec * INT64_C(1000000000) + t.tv_nsec;
+}
+
+// The host's word moves when the universe pauses, and wakes all that wait for it. A reader cannot tell one pause from the
+// next by the word, and steps on the way move no word: hence it looks every millisecond, too.
+bool ob_universe_wait(const ob_universe *u, uint64_t step, double timeout)
+{
+	enum { LOOK_NS = 1000000, LOOKS_PER_STATE = 64 };
+	const int64_t end = monotonic_ns() + (int64_t)(fmin(timeout, 1e9) * 1e9);
+	ob_universe_info info;
+	for (unsigned look = 0;; look++) {
+		const uint32_t seen = is_lost(u) ? 0 : __atomic_load_n(&u->gate->host_turn, __ATOMIC_ACQUIRE);
+		if (!is_lost(u) && ob_step_count(u) >= step)
+			return true;
+		const int64_t now = monotonic_ns(), until = now + LOOK_NS < end ? now + LOOK_NS : end;
+		if (now >= end)
+			return false;
+		if (look % LOOKS_PER_STATE == 0) {
+			ob_universe_get_info(u, &info);
+			if (info.state > OB_UNIVERSE_RUNNING || !ob_universe_is_hosted(u))
+				return !is_lost(u) && ob_step_count(u) >= step;
+		}
+		ob_futex_wait(&u->gate->host_turn, seen, FUTEX_BITSET_MATCH_ANY,
+			      &(struct timespec){ until / 1000000000, until % 1000000000 });
+	}
 }
 
 bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_info *out)

@@ -183,6 +183,36 @@ static void test_states(const ob_universe *u, ob_controller *c)
 	}
 }
 
+typedef struct waiter {
+	const ob_universe *u;
+	uint64_t step;
+	bool came;
+} waiter;
+
+static void *wait_for_step(void *argument)
+{
+	waiter *w = argument;
+	w->came = ob_universe_wait(w->u, w->step, WAIT_S);
+	return NULL;
+}
+
+static void test_wait(const char *name, ob_controller *c)
+{
+	ob_error e;
+	ob_universe *u = ob_universe_attach(name, &e); // a reader's handle sees whether the universe has a host
+	CHECK(u);
+	const uint64_t now = ob_controller_steps(c);
+	waiter w = { u, now + 5, false };
+	pthread_t thread;
+	CHECK(ob_universe_wait(u, now, 0) && !ob_universe_wait(u, now + 1, .01));
+	CHECK(pthread_create(&thread, NULL, wait_for_step, &w) == 0);
+	for (int i = 0; i < 5; i++)
+		CHECK(ob_controller_step(c, 1, &e));
+	pthread_join(thread, NULL);
+	CHECK(w.came);
+	ob_universe_detach(u);
+}
+
 static void refuse(bool fine, const ob_error *e, const char *text)
 {
 	if (fine || !strstr(e->text, text))
@@ -258,6 +288,7 @@ static void test_session(ob_isolation isolation)
 	CHECK(c && ob_controller_step(c, 30, &e));
 	if (c) {
 		test_states(u, c);
+		test_wait(ob_universe_name(u), c);
 		test_refused(u, c);
 		CHECK(ob_controller_run(c, INFINITY, &e));
 		for (int i = 0; i < 10 * WAIT_S && ob_controller_pause(c, &e) && ob_controller_steps(c) < 40; i++) {
