@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "contact/bias.h"
 #include "contact/boxes.h"
 #include "contact/lone.h"
 #include "contact/patch_lanes.h"
@@ -546,11 +547,7 @@ PER_KIND void write_changes(const ob_batch *b, ob_batch_kind kind, bool jacobi, 
 	scatter_both(b, v, va, vb);
 }
 
-// Sets the velocity at which each gap may close in the substep. Points of a resting contact keep the gaps that rounding
-// left: they would take turns for ever to close them. Restitution is exact in time, so an elastic point must not be
-// stopped early. A body in free fall closes less than its final velocity says, by half of what it gains. A point at the
-// surface that does not leave has no room for such a fall. In an isolated lane, a point that opens now may close as
-// fast again: over the substep, the push that turns it back does no work.
+// Sets the velocity at which each gap may close in the substep (contact/bias.h).
 PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteration *iteration, const ob_body_row *v,
 		       const ob_body_row *d)
 {
@@ -562,9 +559,9 @@ PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteratio
 		b->bias[i] = b->gap[i] + moved[i];
 	const lane_mask turning = lanes_mask(b->turning);
 	const lanes most = lanes_select(turning, lanes_of(iteration->turning_gap), lanes_of(iteration->resting_gap));
-	lane_mask free[4];
+	lane_mask keeps[4];
 	for (int i = 0; i < points_of(kind); i++)
-		free[i] = ~((b->impulse[i] > 0) & (b->bias[i] < most));
+		keeps[i] = bias_keeps(b->impulse[i], b->bias[i], most);
 	if (b->elastic) {
 		lanes va[6], vb[6], now[4], gained[4];
 		gather_both(b, v, va, vb);
@@ -572,14 +569,11 @@ PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteratio
 		gather_both(b, iteration->dv, va, vb);
 		normal_velocities(b, kind, va, vb, gained);
 		const lane_mask elastic = lanes_mask(b->elastic);
-		for (int i = 0; i < points_of(kind); i++) {
-			lanes fall = lanes_min(-.5 * h * gained[i], b->bias[i] + h * now[i]);
-			b->bias[i] += lanes_where(elastic, lanes_max(fall, lanes_of(0)));
-		}
+		for (int i = 0; i < points_of(kind); i++)
+			b->bias[i] += lanes_where(elastic, bias_of_fall(b->bias[i], now[i], gained[i], h));
 	}
 	for (int i = 0; i < points_of(kind); i++)
-		b->bias[i] = (lanes)(free[i] & (lane_mask)lanes_max(b->bias[i], lanes_of(0))) / h +
-			     (lanes)(turning & (lane_mask)b->turn[i]);
+		b->bias[i] = bias_of(b->bias[i], keeps[i], h) + lanes_where(turning, b->turn[i]);
 	const unsigned alone = b->isolated & ~b->hit;
 	if (!alone)
 		return;
@@ -587,7 +581,7 @@ PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteratio
 	gather_both(b, v, va, vb);
 	normal_velocities(b, kind, va, vb, now);
 	for (int i = 0; i < points_of(kind); i++)
-		b->bias[i] = lanes_select(lanes_mask(alone), lanes_max(b->bias[i], now[i]), b->bias[i]);
+		b->bias[i] = lanes_select(lanes_mask(alone), bias_alone(b->bias[i], now[i]), b->bias[i]);
 }
 
 // Square of the largest change of a row's velocity (m/s), as if each impulse acted alone.

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/bias.h"
 #include "elementary/real.h"
 
 enum {
@@ -480,7 +481,7 @@ static inline lone_rates lone_rates_of(const ob_batch *b, int l, const lone_body
 	return r;
 }
 
-// Speed (m/s) at which each gap may close, as in set_bias of kernel.c; computed in the first iteration.
+// Speed (m/s) at which each gap may close (contact/bias.h); computed in the first iteration.
 static inline lanes lone_bias(const ob_batch *b, int l, const lone *p, const lone_body *o,
 			      const ob_solver_iteration *iteration, lanes now, const ob_body_row *d)
 {
@@ -489,16 +490,16 @@ static inline lanes lone_bias(const ob_batch *b, int l, const lone *p, const lon
 	const double h = iteration->h;
 	const bool turning = b->turning >> l & 1;
 	lanes bias = lone_four(b->gap, l) + lone_rates_of(b, l, o, d).opening;
-	const double most = turning ? iteration->turning_gap : iteration->resting_gap;
-	const lane_mask held = (p->x > 0) & (bias < most);
+	const lanes most = lanes_of(turning ? iteration->turning_gap : iteration->resting_gap);
+	const lane_mask keeps = bias_keeps(p->x, bias, most);
 	if (b->elastic >> l & 1) {
 		const lanes gained = lone_rates_of(b, l, o, iteration->dv).opening;
-		bias += lanes_max(lanes_min(-.5 * h * gained, bias + h * now), lanes_of(0));
+		bias += bias_of_fall(bias, now, gained, h);
 	}
-	bias = lanes_where(~held, lanes_max(bias, lanes_of(0))) / h;
+	bias = bias_of(bias, keeps, h);
 	if (turning)
 		bias += lone_four(b->turn, l);
-	return b->hit >> l & 1 ? bias : lanes_max(bias, now);
+	return b->hit >> l & 1 ? bias : bias_alone(bias, now);
 }
 
 // Square of the largest change of a row's velocity (m/s), as if each impulse acted alone
