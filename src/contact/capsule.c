@@ -1,6 +1,12 @@
+// Contacts of capsules with planes, spheres, boxes and capsules. A capsule is a segment grown by its radius. The
+// nearest points are in closed form: segment and segment (Ericson 2005, 5.1.9), and segment and box (zero of the
+// squared distance's derivative, which is piecewise linear along the segment). The separation is the distance itself
+// while the segment is outside the other shape. One point is at the nearest place. Up to two more are at the ends of
+// the part of the segment that runs along a face, an edge or another capsule.
 #include "contact/capsule.h"
 
 #include "contact/facets.h"
+#include "contact/pairs.h"
 
 static const double side_by_side = .99; // cosine: directions this near to each other run side by side
 static const double crossing =

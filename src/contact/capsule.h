@@ -1,19 +1,8 @@
-// Contacts of capsules with planes, spheres, boxes and capsules. A capsule is a segment grown by its radius. The
-// nearest points are in closed form: segment and segment (Ericson 2005, 5.1.9), and segment and box (zero of the
-// squared distance's derivative, which is piecewise linear along the segment). Pure functions, thread-safe.
-//
-// out: as for ob_manifold_find. The normal points to a, the capsule. The separation is the distance itself while the
-// segment is outside the other shape. One point is at the nearest place. Up to two more are at the ends of the part of
-// the segment that runs along a face, an edge or another capsule.
+// Contacts of segments, for shapes that are grown about one. Pure functions, thread-safe.
 #ifndef OB_CONTACT_CAPSULE_H
 #define OB_CONTACT_CAPSULE_H
 
 #include "contact/manifold.h"
-
-void ob_manifold_capsule_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
-void ob_manifold_capsule_sphere(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
-void ob_manifold_capsule_box(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
-void ob_manifold_capsules(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 // Finds the nearest points of two segments: directions u and v, w from the middle of the second to that of the first
 // (m), half lengths la and lb (m). Results: s and t along them (m). Parallel segments: the middle of the part side by

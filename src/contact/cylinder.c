@@ -1,7 +1,12 @@
-#include "contact/cylinder.h"
-
+// Contacts of cylinders. They are exact convex solids with a disc for a cap, a line for a side and a circle for a rim,
+// never polygons. Planes and spheres are in closed form. Against a box, a capsule, another cylinder or a hull, the
+// search tries the directions along which two features can touch: normals of caps and faces, and those across the axis
+// and an edge or another axis. Then it tries the best direction across each axis and each edge, along which an arc
+// touches a corner, an edge or an arc (contact/support.h). Two rims take Newton's method. The separation is the
+// distance if it is at most the margin; for a rim beside a box's corner it is a lower bound.
 #include "contact/capsule.h"
 #include "contact/facets.h"
+#include "contact/pairs.h"
 #include "contact/support.h"
 #include "shape/shape.h"
 

@@ -1,7 +1,10 @@
-#include "contact/hull_round.h"
-
+// Contacts of hulls with spheres and capsules: a point or a segment, grown by its radius. The nearest points of segment
+// and polyhedron are in closed form: an end and a face, or the segment and an edge. The separation is the distance
+// itself while the segment is outside the hull. A body that rolls or slides over coplanar faces hits no seam, as on
+// boxes.
 #include "contact/capsule.h"
 #include "contact/facets.h"
+#include "contact/pairs.h"
 #include "shape/shape.h"
 
 static const double side_by_side = .99; // cosine: directions this near to each other run side by side

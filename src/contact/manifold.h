@@ -39,7 +39,8 @@ typedef struct ob_manifold {
 } ob_manifold;
 
 // Finds points with a gap up to margin (m). The caller sets out->disc_radius to 0 and out->valid_path to infinity.
-// Returns false for two planes, or for an object without a shape; out is then untouched.
+// Returns false for shapes that do not know each other, as two planes: out then has no points, and an infinite
+// separation.
 bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 // Time (s) until a gap (m) that changes at this rate (m/s) has closed; at most the far future of the two.
@@ -48,10 +49,6 @@ static inline double ob_time_to_close(const ob_placed *a, const ob_placed *b, do
 	const double far = ob_min(a->far_future, b->far_future), latest = far > 0 ? far : INFINITY;
 	return gap <= 0 ? 0 : rate < 0 ? ob_min(latest, -gap / rate) : latest;
 }
-
-// Two boxes: separating axes (Gottschalk et al. 1996), of which the one that closes last is chosen, and face clipping
-// (Sutherland and Hodgman 1974).
-void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 // Collision test of two shapes. Without points, out->separation must be a lower bound of their distance.
 typedef struct ob_manifold_finder {

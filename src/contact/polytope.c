@@ -1,7 +1,12 @@
+// Contacts of hulls with planes, boxes and hulls. The decisions are those for boxes (boxes.h), for any polyhedron. Axes
+// are the normals of faces, and those of two edges that are a face of the Minkowski difference (the arcs of their
+// normals cross: Gregorius 2013). Among several separating axes the one that closes last decides. A face's points are
+// the other's face, clipped. The separation is that of the best axis: a lower bound of the distance.
 #include "contact/polytope.h"
 
 #include <string.h>
 
+#include "contact/pairs.h"
 #include "elementary/elementary.h"
 #include "shape/shape.h"
 

@@ -1,17 +1,8 @@
-// Contacts of hulls with planes, boxes and hulls. The decisions are those for boxes (boxes.h), for any polyhedron. Axes
-// are the normals of faces, and those of two edges that are a face of the Minkowski difference (the arcs of their
-// normals cross: Gregorius 2013). Among several separating axes the one that closes last decides. A face's points are
-// the other's face, clipped. Pure functions, thread-safe.
-//
-// out: as for ob_manifold_find. The separation is that of the best axis: a lower bound of the distance.
+// Points of a convex polygon that hold as the whole of it does. Pure functions, thread-safe.
 #ifndef OB_CONTACT_POLYTOPE_H
 #define OB_CONTACT_POLYTOPE_H
 
-#include "contact/manifold.h"
-
-void ob_manifold_hull_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
-// Shapes: each a hull or a box.
-void ob_manifold_polytopes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+#include <ob/hull.h>
 
 // Convex polygon over a plane: u and w in the plane, z above it (m); counterclockwise or clockwise.
 enum { OB_POLYGON_MAX = 2 * OB_HULL_CORNERS_MAX };

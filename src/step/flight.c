@@ -2,7 +2,7 @@
 
 #include "contact/facets.h"
 #include "contact/impact.h"
-#include "contact/polytope.h"
+#include "contact/pairs.h"
 #include "exchange/results.h"
 #include "exchange/touches.h"
 #include "motion/flight.h"

@@ -1,5 +1,5 @@
 // Contacts of two shapes, against scenes with known solutions, in random places and attitudes.
-#include <string.h>
+#include "contact/pairs.h"
 
 #include "check.h"
 #include "placed.h"
@@ -304,16 +304,13 @@ static void test_box_separation_tight(void)
 
 static void test_unknown_shapes(void)
 {
-	ob_manifold m, untouched;
-	memset(&untouched, 0x5a, sizeof untouched);
+	ob_manifold m;
 	uint64_t seed = 9;
 	ob_placed plane = random_placed(&seed, OB_SHAPE_PLANE, 1);
 	for (ob_shape other = OB_SHAPE_SPHERE; other <= OB_SHAPE_CYLINDER; other++) {
 		ob_placed a = random_placed(&seed, OB_SHAPE_NONE, .1), b = random_placed(&seed, other, .1);
-		m = untouched;
-		CHECK(!ob_manifold_find(&a, &b, 1, &m));
-		CHECK(!ob_manifold_find(&b, &a, 1, &m));
-		CHECK(memcmp(&m, &untouched, sizeof m) == 0);
+		CHECK(!ob_manifold_find(&a, &b, 1, &m) && m.points == 0 && isinf(m.separation));
+		CHECK(!ob_manifold_find(&b, &a, 1, &m) && m.points == 0 && isinf(m.separation));
 	}
 	CHECK(!ob_manifold_find(&plane, &plane, 1, &m));
 }
