@@ -18,7 +18,7 @@ static const double faults_timeout = 10; // s, for further attempts after the fi
 static const double checkpoint_interval = .25; // s, between checkpoints
 static const double checkpoint_share = .05; // share of the time that checkpoints may take
 static const double least_start_patience = 5; // s
-static const double kill_timeout = 10; // s to wait until killed processes are gone
+static const double kill_timeout = 10; // s to wait at least until workers have ended
 static const double interrupted_kill_timeout = .05; // s, same after Ctrl-C
 
 void ob_restart_prepare(ob_host *h)
@@ -236,17 +236,31 @@ bool ob_restart_freeze(ob_host *h)
 
 // ---- restart
 
-static void fail_to_end_workers(ob_host *h)
+// The kernel's word on the first worker that is still there: "process 42, waits for a disk"; "" if none is.
+static const char *describe_left(const ob_host *h, char *text, size_t size)
+{
+	ob_worker_info w;
+	*text = 0;
+	for (uint32_t i = 0; i < h->workers && !*text; i++)
+		if (ob_universe_get_worker(h->u, i, &w) && w.pid && ob_state_of_thread(w.pid, w.tid))
+			snprintf(text, size, ", one of them process %d, %s", (int)w.pid,
+				 ob_state_word(ob_state_of_thread(w.pid, w.tid)));
+	return text;
+}
+
+static void fail_to_end_workers(ob_host *h, double waited)
 {
 	ob_error text;
+	char left[160];
 	const pid_t server = ob_fork_server_pid(h->fork_server);
 	if (h->spawn->own_memory)
-		ob_host_set_failure(h, "%s; the fork server (process %d, %s) has not killed %u simulators within %g s",
+		ob_host_set_failure(h,
+				    "%s; the fork server (process %d, %s) has not killed %u simulators%s within %g s",
 				    describe(h, &text), (int)server, ob_state_word(ob_state_of_thread(server, server)),
-				    h->running_workers, kill_timeout);
+				    h->running_workers, describe_left(h, left, sizeof left), waited);
 	else
 		ob_host_set_failure(h, "%s; %u simulators' threads have not left within %g s", describe(h, &text),
-				    h->running_workers, kill_timeout);
+				    h->running_workers, waited);
 }
 
 // Keeps the resource use of dead workers, for the sums of the run.
@@ -262,13 +276,15 @@ static void save_accounts(ob_host *h)
 static bool end_all_workers(ob_host *h)
 {
 	save_accounts(h);
+	// processes that were killed end, however busy the machine is; threads may hang for good
+	const double most = h->spawn->own_memory ? fmax(kill_timeout, h->patience) : kill_timeout;
 	ob_hang_clock clock = ob_hang_clock_start();
 	h->spawn->end(h->group);
 	while (h->running_workers > 0 && !h->failed &&
-	       ob_hang_clock_tick(&clock) < (h->interrupted ? interrupted_kill_timeout : kill_timeout))
+	       ob_hang_clock_tick(&clock) < (h->interrupted ? interrupted_kill_timeout : most))
 		nanosleep(&(struct timespec){ .tv_nsec = 100000 }, NULL);
 	if (h->running_workers > 0 && !h->interrupted)
-		fail_to_end_workers(h);
+		fail_to_end_workers(h, most);
 	return h->running_workers == 0 && !h->failed;
 }
 
