@@ -216,22 +216,6 @@ const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, o
 	return take(p, u, all, all ? *at : NULL);
 }
 
-const char *ob_parcel_next(const char **from, size_t *bytes, ob_parcel *p, bool *sound)
-{
-	const char *parcel = *from;
-	if (!*bytes)
-		return NULL;
-	*sound = *bytes >= sizeof *p;
-	if (*sound)
-		memcpy(p, parcel, sizeof *p);
-	*sound = *sound && p->bytes >= sizeof *p && p->bytes <= *bytes;
-	if (!*sound)
-		return NULL;
-	*from += p->bytes;
-	*bytes -= p->bytes;
-	return parcel;
-}
-
 void ob_peers_blame(const ob_peers *p, ob_universe *u, uint32_t rank)
 {
 	blame(p, u, rank, "is of a rank that has sent what makes no sense");
@@ -242,14 +226,17 @@ bool ob_parcels_exchange(ob_peers *p, ob_universe *u, uint64_t phase, ob_mail *m
 {
 	const ob_peers_head head = { .phase = phase };
 	const size_t *at;
-	const char *parcel, *all = ob_peers_exchange(p, u, head, mail, each, &at);
+	const char *all = ob_peers_exchange(p, u, head, mail, each, &at);
 	ob_parcel of;
 	bool sound = true;
 	for (uint32_t r = 0; all && sound && r < p->ranks; r++) {
-		const char *from = all + at[r] + sizeof head;
-		size_t left = at[r + 1] - at[r] - sizeof head;
-		while (r != p->rank && sound && (parcel = ob_parcel_next(&from, &left, &of, &sound)))
-			sound = take_it(with, u, parcel, &of, r);
+		const char *from = all + at[r] + sizeof head, *end = all + at[r + 1];
+		for (; r != p->rank && sound && from < end; from += of.bytes) {
+			const size_t left = (size_t)(end - from);
+			if ((sound = left >= sizeof of))
+				memcpy(&of, from, sizeof of);
+			sound = sound && of.bytes >= sizeof of && of.bytes <= left && take_it(with, u, from, &of, r);
+		}
 		if (!sound)
 			ob_peers_blame(p, u, r);
 	}

@@ -84,9 +84,6 @@ void ob_peers_begin(ob_mail *mail);
 // numbers of islands and of awake bodies.
 const char *ob_peers_exchange(ob_peers *p, ob_universe *u, ob_peers_head head, ob_mail *mail, bool each,
 			      const size_t **at);
-// Returns the next parcel at *from, which has *bytes left, and moves both past it. NULL: there is none; *sound becomes
-// false if it is malformed. p: its head.
-const char *ob_parcel_next(const char **from, size_t *bytes, ob_parcel *p, bool *sound);
 // Takes a parcel from a rank. Returns false if it is malformed.
 typedef bool (*ob_parcel_take)(void *with, ob_universe *u, const char *parcel, const ob_parcel *head, uint32_t from);
 // Sends parcels to the other ranks, by one mail to all or (each) by mail[rank], and takes those that they have sent.

@@ -100,7 +100,8 @@ uint64_t ob_profile_end(ob_sim *s)
 	return (uint64_t)cpu;
 }
 
-uint64_t ob_profile_show(ob_sim *s)
+// Makes each section a span in the trace, until hide_sections. The first is LOAD. Returns now (ns).
+static uint64_t show_sections(ob_sim *s)
 {
 	if (s->times.timed)
 		count_section(s);
@@ -111,7 +112,7 @@ uint64_t ob_profile_show(ob_sim *s)
 	return s->times.since;
 }
 
-void ob_profile_hide(ob_sim *s)
+static void hide_sections(ob_sim *s)
 {
 	count_section(s);
 	s->times.shown = false;
@@ -167,7 +168,7 @@ bool ob_span_island_begin(ob_sim *s, uint32_t i, bool first)
 	bool sampled = first && ob_step_count(s->u) % SAMPLED_STEPS == 0;
 	if (!sampled && s->data->island[i].members < LARGE_ISLAND)
 		return false;
-	s->span.island = ob_profile_show(s);
+	s->span.island = show_sections(s);
 	return true;
 }
 
@@ -175,6 +176,6 @@ void ob_span_island_end(ob_sim *s, uint32_t i)
 {
 	const ob_step_data *data = s->data;
 	const ob_island *is = &data->island[i];
-	ob_profile_hide(s);
+	hide_sections(s);
 	ob_trace_span(s->u, s->worker, OB_TRACE_ISLAND, s->span.island, data->member[is->first_member], is->members);
 }

@@ -32,10 +32,6 @@ static inline void ob_profile_task_done(ob_sim *s, uint32_t task)
 // CPU time, ns, of the phase that has ended which belongs to none of its tasks.
 uint64_t ob_profile_beside(const ob_sim *s, uint64_t worked);
 
-// Makes each section a span in the trace, until ob_profile_hide. The first is LOAD. Returns now (ns).
-uint64_t ob_profile_show(ob_sim *s);
-void ob_profile_hide(ob_sim *s);
-
 // ---- spans of the trace (table/trace.h)
 //
 //   level 0   wait | objects | solve                                        | schedule | wait ...

@@ -73,16 +73,17 @@ static void link_pairs(const rank *r, uint32_t pairs)
 	ob_pairs_link(r->u);
 }
 
+static bool take(void *halo, ob_universe *u, const char *parcel, const ob_parcel *head, uint32_t from)
+{
+	return ob_halo_take(halo, u, parcel, head);
+}
+
 // All ranks know the bodies' homes; the previous owner sends a body to the new one.
 static void move(rank *r)
 {
 	ob_step_data *data = ob_universe_step_data(r->u);
 	const story *s = r->s;
-	const size_t *at;
-	const char *parcel;
 	uint32_t left = 0, leaving[BODIES];
-	bool sound = true;
-	ob_parcel head;
 	for (uint32_t id = 0; id < BODIES; id++) {
 		const uint32_t before = ob_home_of(r->u, id);
 		data->result_island[id] = s->solved[id] && s->home[id] == r->number ? 0 : UINT32_MAX;
@@ -96,14 +97,7 @@ static void move(rank *r)
 		ob_peers_begin(&r->mail[to]);
 	for (uint32_t i = 0; i < left; i++)
 		ob_halo_give(r->h, r->u, leaving[i], &r->mail[s->home[leaving[i]]]);
-	const char *all = ob_peers_exchange(&r->p, r->u, (ob_peers_head){ .phase = OB_PEERS_MOVE }, r->mail, true, &at);
-	for (uint32_t from = 0; all && from < RANKS; from++) {
-		const char *rest = all + at[from] + sizeof(ob_peers_head);
-		size_t bytes = at[from + 1] - at[from] - sizeof(ob_peers_head);
-		while (sound && from != r->number && (parcel = ob_parcel_next(&rest, &bytes, &head, &sound)))
-			sound = ob_halo_take(r->h, r->u, parcel, &head);
-	}
-	r->wrong += !all || !sound;
+	r->wrong += !ob_parcels_exchange(&r->p, r->u, OB_PEERS_MOVE, r->mail, true, take, r->h);
 }
 
 static bool is_true(const rank *r, uint32_t id)

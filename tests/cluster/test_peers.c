@@ -106,6 +106,40 @@ static void check_lost(void)
 	close_two(s, &l);
 }
 
+static bool count(void *with, ob_universe *u, const char *parcel, const ob_parcel *head, uint32_t from)
+{
+	unsigned *taken = with;
+	CHECK(from == 1 && head->kind == OB_PARCEL_COST && head->bytes == 16 &&
+	      memcmp(parcel, head, sizeof *head) == 0);
+	return ++*taken < 3;
+}
+
+// Parcels of 16 bytes come from the other rank. The last gives its size as `last`; `more` bytes follow it. Wrong are a
+// size below that of a head, or beyond the message, an end within a head, and a parcel that is refused.
+static void check_parcels(uint32_t parcels, uint32_t last, size_t more, unsigned taken, bool sound)
+{
+	little_scene *s;
+	little_universe l;
+	echo wire = { .calls = 0 };
+	ob_peers p = { .ranks = 2, .gather = gather, .wire = &wire };
+	ob_mail mail = { 0 };
+	unsigned found = 0;
+	open_two(&s, &l);
+	ob_peers_begin(&mail);
+	for (uint32_t i = 0; i < parcels; i++) {
+		const struct {
+			ob_parcel head;
+			uint64_t word;
+		} one = { { OB_PARCEL_COST, i + 1 < parcels ? 16 : last }, i };
+		ob_mail_append(&mail, &one, sizeof one);
+	}
+	ob_mail_append(&mail, words, more);
+	CHECK(ob_parcels_exchange(&p, l.u, OB_PEERS_CUT, &mail, false, count, &found) == sound && found == taken);
+	CHECK(ob_step_failed(l.u, NULL) == (sound ? OB_STEP_OK : OB_STEP_DAMAGED));
+	ob_mail_finish(&mail);
+	close_two(s, &l);
+}
+
 // A digest that differs, then the object in which the ranks differ: each sends the digests and steps of all objects.
 // first: byte of the head, likewise.
 static void check_difference(size_t first, size_t place, const char *named)
@@ -185,6 +219,13 @@ int main(void)
 {
 	check_mail();
 	check_lost();
+	check_parcels(0, 16, 0, 0, true);
+	check_parcels(2, 16, 0, 2, true);
+	check_parcels(3, 16, 0, 3, false);
+	check_parcels(2, 24, 0, 1, false);
+	check_parcels(2, 4, 0, 1, false);
+	check_parcels(1, 0, 0, 0, false);
+	check_parcels(1, 16, 4, 1, false);
 	check_difference(1 + offsetof(ob_peers_head, digest), DIGEST_OF_CRATE, "object \"crate\"");
 	check_difference(1 + offsetof(ob_peers_head, digest), 0, "otherwise");
 	check_difference(1 + offsetof(ob_peers_head, phase), 0, "otherwise");

@@ -1,0 +1,134 @@
+// Reasons why a run cannot go on, as the host shows them.
+#include <stdio.h>
+
+#include "step/sim.h"
+
+enum { NAMED = 120 }; // bytes of "object 4294967295 (" and a name
+
+// Returns "object 3 (crate)", in one of two texts of the thread in turn.
+static const char *name_of(const ob_universe *u, uint32_t id)
+{
+	static _Thread_local char texts[2][NAMED];
+	static _Thread_local unsigned turn;
+	char *text = texts[turn++ % 2];
+	const char *name = ob_passport_of(u, id)->name;
+	snprintf(text, NAMED, "object %u%s%.*s%s", id, *name ? " (" : "", OB_NAME_MAX, name, *name ? ")" : "");
+	return text;
+}
+
+// Names the object that is near most others: the one that is too large, or too fast.
+static void tell_of_neighbours(const ob_universe *u, const char *what, uint32_t most, uint32_t blamed, char *text,
+			       size_t size)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	uint32_t id = blamed;
+	uint64_t near = 0;
+	for (uint32_t i = 0; i < ob_universe_ids(u); i++)
+		if (data->neighbours[i].count != UINT32_MAX && data->neighbours[i].count > near)
+			near = data->neighbours[i].count, id = i;
+	char others[32] = "most";
+	if (near)
+		snprintf(others, sizeof others, "%u", (uint32_t)near);
+	snprintf(text, size,
+		 "more than %u %s: %s alone is near %s others; make it smaller or slower, or try a smaller --step",
+		 most, what, name_of(u, id), others);
+}
+
+// Names some objects of the island that took so much work.
+static void tell_of_work(const ob_universe *u, uint32_t object, unsigned long long step, char *text, size_t size)
+{
+	enum { SHOWN = 4 };
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t place = data->result_island[object];
+	const ob_island *is = place < data->count->islands && place < data->objects_max ? &data->island[place] : NULL;
+	int n = snprintf(text, size, "step %llu takes more work than a step may: ", step);
+	for (uint32_t i = 0; is && i < is->members && i < SHOWN && is->first_member + i < data->objects_max; i++) {
+		uint32_t id = data->member[is->first_member + i];
+		if (id < data->objects_max)
+			n += snprintf(text + n, size - (size_t)n, "%s%s", i ? ", " : "", name_of(u, id));
+	}
+	if (!is)
+		n += snprintf(text + n, size - (size_t)n, "%s", name_of(u, object));
+	if (is && is->members > SHOWN)
+		n += snprintf(text + n, size - (size_t)n, " and %u more", is->members - SHOWN);
+	if (data->script_of && object < data->objects_max && data->script_of[object])
+		n += snprintf(text + n, size - (size_t)n, " would need millions of instructions of scripts, or of");
+	else
+		n += snprintf(text + n, size - (size_t)n, " would need millions of");
+	snprintf(text + n, size - (size_t)n,
+		 " substeps or collision tests; make what is fast slower, what is thin thicker, or try a smaller "
+		 "--step");
+}
+
+// Names the culprit, which is known if simulators are contained.
+static const char *damage(const ob_universe *u)
+{
+	static _Thread_local char text[OB_STEP_BLAME_MAX + 32];
+	const struct ob_step_counts *count = ob_universe_step_data(u)->count;
+	if (!ob_universe_contains(u) || !count->culprit)
+		return "what simulators share makes no sense: one of them has written where it should not";
+	snprintf(text, sizeof text, "simulator %u %.*s", count->culprit - 1, (int)sizeof count->blamed_for - 1,
+		 count->blamed_for);
+	return text;
+}
+
+const char *ob_sim_failure(const ob_universe *u)
+{
+	static _Thread_local char text[6 * NAMED + 256];
+	const ob_step_data *data = ob_universe_step_data(u);
+	const unsigned long long step = ob_step_count(u) + 1;
+	uint32_t object;
+	switch (ob_step_failed(u, &object)) {
+	case OB_STEP_PAIRS_FULL:
+		tell_of_neighbours(u, "pairs of neighbours", data->pairs_max, object, text, sizeof text);
+		return text;
+	case OB_STEP_NEIGHBOURS_FULL:
+		tell_of_neighbours(u, "neighbours", data->neighbours_max, object, text, sizeof text);
+		return text;
+	case OB_STEP_DIVERGED:
+		snprintf(text, sizeof text,
+			 "%s diverged in step %llu: its state is no longer a number, or beyond 1e15 m, m/s or rad/s; "
+			 "try more "
+			 "substeps or a smaller step",
+			 name_of(u, object), step);
+		return text;
+	case OB_STEP_ENGINE:
+		snprintf(text, sizeof text,
+			 "ODE gave up in step %llu at %s, whose state is too wild for it; try more substeps or a "
+			 "smaller step",
+			 step, name_of(u, object));
+		return text;
+	case OB_STEP_OVERWORKED:
+		tell_of_work(u, object, step, text, sizeof text);
+		return text;
+	case OB_STEP_BROKEN:
+		snprintf(text, sizeof text, "what simulators share is wrong when %llu steps are complete: %.*s",
+			 step - 1, (int)sizeof data->count->blamed_for - 1, data->count->blamed_for);
+		return text;
+	case OB_STEP_LEFT:
+		return ob_universe_ranks(u) > 1 ? "another rank has left the run" : "the run was stopped";
+	case OB_STEP_MEMORY_FULL:
+		return "/dev/shm is full, and more objects touch: enlarge it (mount -o remount,size=..., docker run "
+		       "--shm-size=...) or take fewer objects";
+	case OB_STEP_OK:
+		return NULL;
+	default:
+		return damage(u);
+	}
+}
+
+uint32_t ob_sim_culprit(const ob_universe *u)
+{
+	return ob_universe_contains(u) ? ob_universe_step_data(u)->count->culprit - 1 : UINT32_MAX;
+}
+
+bool ob_sim_failed_alone(const ob_universe *u, uint32_t *object)
+{
+	const ob_step_failure why = ob_step_failed(u, object);
+	return why == OB_STEP_OVERWORKED || why == OB_STEP_DIVERGED || why == OB_STEP_ENGINE;
+}
+
+bool ob_sim_damaged(const ob_universe *u)
+{
+	return ob_step_failed(u, NULL) >= OB_STEP_DAMAGED;
+}
