@@ -65,6 +65,41 @@ ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *
 	return m;
 }
 
+ob_message *ob_facts_metrics(ob_host *h, uint32_t viewers)
+{
+	const ob_universe *u = ob_host_universe(h);
+	ob_universe_info info;
+	ob_worker_info w;
+	uint64_t cpu_ns = 0;
+	ob_universe_get_info(u, &info);
+	for (uint32_t i = 0; ob_universe_get_worker(u, i, &w); i++)
+		cpu_ns += w.cpu_ns;
+	const struct metric {
+		const char *name, *type, *help;
+		double value;
+	} metrics[] = {
+		{ "steps_total", "counter", "Steps that are complete.", (double)info.step },
+		{ "simulated_seconds_total", "counter", "Simulated time.", info.time },
+		{ "simulator_cpu_seconds_total", "counter", "CPU time of all workers.", 1e-9 * (double)cpu_ns },
+		{ "simulator_deaths_total", "counter", "Times that simulators died or stalled.", info.deaths },
+		{ "objects", "gauge", "Objects that exist.", info.objects },
+		{ "objects_awake", "gauge", "Dynamic objects that are not asleep.", info.awake },
+		{ "objects_frozen", "gauge", "Objects frozen by deaths or failures.", info.frozen },
+		{ "pairs", "gauge", "Pairs of objects whose bounds overlap.", info.pairs },
+		{ "islands", "gauge", "Groups of objects solved together.", info.islands },
+		{ "workers", "gauge", "Workers.", info.workers },
+		{ "viewers", "gauge", "Viewers connected.", viewers },
+		{ "running", "gauge", "1: the run goes on or is paused; 0: it has ended.",
+		  info.state == OB_UNIVERSE_RUNNING },
+	};
+	ob_message *m = ob_message_new(true);
+	for (size_t i = 0; m && i < sizeof metrics / sizeof *metrics; i++)
+		ob_message_print(m, "# HELP obsim_%s %s\n# TYPE obsim_%s %s\nobsim_%s{universe=\"%s\"} %.17g\n",
+				 metrics[i].name, metrics[i].help, metrics[i].name, metrics[i].type, metrics[i].name,
+				 info.name, metrics[i].value);
+	return m;
+}
+
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
 {
 	ob_universe_info info;

@@ -78,11 +78,10 @@ static int end_transaction(struct lws *wsi)
 	return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
-static bool write_refusal(struct lws *wsi, unsigned status, const char *text)
+static bool write_text(struct lws *wsi, unsigned status, const char *text, size_t n)
 {
 	head h;
-	unsigned char body[LWS_PRE + 256];
-	size_t n = strlen(text);
+	unsigned char body[LWS_PRE + OB_HTTP_TEXT];
 	begin_head(&h, wsi, status, "text/plain; charset=utf-8", n);
 	if (status == HTTP_STATUS_METHOD_NOT_ALLOWED)
 		add(&h, "allow:", "GET, HEAD");
@@ -92,13 +91,13 @@ static bool write_refusal(struct lws *wsi, unsigned status, const char *text)
 
 static int refuse(struct lws *wsi, unsigned status, const char *text)
 {
-	return write_refusal(wsi, status, text) ? end_transaction(wsi) : -1;
+	return write_text(wsi, status, text, strlen(text)) ? end_transaction(wsi) : -1;
 }
 
 // Refuses a request that may have a body, which is not read: the connection ends.
 static int refuse_body(struct lws *wsi, unsigned status, const char *text)
 {
-	write_refusal(wsi, status, text);
+	write_text(wsi, status, text, strlen(text));
 	return -1;
 }
 
@@ -108,6 +107,17 @@ static bool has_body(struct lws *wsi)
 	const int n = lws_hdr_copy(wsi, length, sizeof length, WSI_TOKEN_HTTP_CONTENT_LENGTH);
 	return n < 0 || (n > 0 && strspn(length, "0") < (size_t)n) ||
 	       lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0;
+}
+
+int ob_http_answer_text(struct lws *wsi, const char *text, size_t size)
+{
+	char *uri;
+	int length;
+	if (lws_http_get_uri_and_method(wsi, &uri, &length) != LWSHUMETH_GET)
+		return refuse_body(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, "only GET is answered here\n");
+	if (has_body(wsi))
+		return refuse_body(wsi, HTTP_STATUS_REQ_ENTITY_TOO_LARGE, "requests have no body here\n");
+	return size <= OB_HTTP_TEXT && write_text(wsi, HTTP_STATUS_OK, text, size) ? end_transaction(wsi) : -1;
 }
 
 // By default browsers keep a content, but revalidate its tag each time.

@@ -19,6 +19,9 @@ bool ob_http_is_ours(struct lws *wsi, const char *address, int port, bool any_na
 // Both return the value of the library's callback: other than 0 ends the connection. own: contents that take precedence
 // over content.h; ends with one without a path.
 int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path, const ob_content *own);
+// A short text, made for this request. The value is that of the callback, too.
+enum { OB_HTTP_TEXT = 4096 };
+int ob_http_answer_text(struct lws *wsi, const char *text, size_t size);
 int ob_http_go_on(struct lws *wsi, ob_http_answer *a);
 
 #endif

@@ -26,6 +26,7 @@ static const double share = .3; // limit of their share of the time
 static const double detail_interval = .25; // s, between two statistics, and details of inspected objects
 static const double commands_rate = 200, creations_rate = 40; // 1/s, per client
 static const char film_path[] = "/recording", meshes_path[] = "/meshes/";
+static const char metrics_path[] = "/metrics";
 static const double door_interval = .25; // s, between two checks of deadlines
 static const struct timespec idle_wait = { .tv_nsec = 1000000 };
 enum {
@@ -290,6 +291,14 @@ static int let_in(const ob_server *s, struct lws *wsi)
 	return why != NULL;
 }
 
+static int answer_metrics(const ob_server *s, struct lws *wsi)
+{
+	ob_message *m = ob_facts_metrics(s->host, s->count);
+	const int result = m && !m->failed ? ob_http_answer_text(wsi, (const char *)m->bytes, m->size) : -1;
+	ob_message_release(m);
+	return result;
+}
+
 static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const char *path)
 {
 	const char *why = NULL;
@@ -297,9 +306,12 @@ static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const 
 	lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); // else the library ends a long answer, at any speed
 	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback))
 		why = "this is not the name of this server";
-	else if ((strcmp(path, film_path) == 0 || strncmp(path, meshes_path, strlen(meshes_path)) == 0) &&
+	else if ((strcmp(path, film_path) == 0 || strcmp(path, metrics_path) == 0 ||
+		  strncmp(path, meshes_path, strlen(meshes_path)) == 0) &&
 		 !has_token(s, wsi))
 		why = "the token is missing or wrong: use the address that obsim serve has printed";
+	if (!why && s->host && strcmp(path, metrics_path) == 0)
+		return answer_metrics(s, wsi);
 	if (!why)
 		return ob_http_answer_request(wsi, a, path, s->own);
 	lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, why);

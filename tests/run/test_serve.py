@@ -3,6 +3,7 @@
 import glob
 import os
 import random
+import re
 import signal
 import socket
 import struct
@@ -33,6 +34,16 @@ class Serve(Case):
 		for request, status in ("GET /../../etc/passwd", 404), ("GET /x", 404), ("POST /", 405), ("GET /main.js?x=1", 200):
 			head, _ = self.http(f"{request} HTTP/1.1\nHost: HOST\nConnection: close\nContent-Length: 0")
 			self.assertIn(f" {status} ", head, request)
+		head, metrics = self.http("GET /metrics HTTP/1.1\nHost: HOST\nConnection: close")
+		self.assertIn("text/plain", head)
+		values = dict(line.rsplit(" ", 1) for line in metrics.decode().splitlines() if not line.startswith("#"))
+		self.assertTrue(all(re.fullmatch(r'obsim_[a-z_]+\{universe="[\w.-]+"\}', name) for name in values), values)
+		number = {name.split("{")[0]: float(value) for name, value in values.items()}
+		self.assertEqual((number["obsim_running"], number["obsim_viewers"]), (1, 0))
+		self.assertGreater(number["obsim_objects"], 0)
+		self.assertEqual(len(re.findall("^# TYPE ", metrics.decode(), re.M)), len(values))
+		head, _ = self.http("HEAD /metrics HTTP/1.1\nHost: HOST\nConnection: close")
+		self.assertIn("405", head)
 		head, _ = self.http("GET / HTTP/1.1\nHost: stranger.example\nConnection: close")
 		self.assertIn(" 403 ", head)
 		self.end()
@@ -195,6 +206,8 @@ class Serve(Case):
 		for path in "/universe", "/universe?token=", "/universe?token=" + "0" * 32, "/universe?token=" + token[:-1]:
 			with self.assertRaisesRegex(Refused, "403"):
 				Viewer(self.port, path)
+		for path, status in ("/metrics", "403"), ("/metrics?token=" + token[1:], "403"), ("/metrics?token=" + token, "200"):
+			self.assertIn(status, self.http(f"GET {path} HTTP/1.1\nHost: HOST\nConnection: close")[0].split("\r\n")[0])
 		self.viewer(path="/universe?token=" + token)
 		with self.assertRaisesRegex(Refused, "403"):
 			Viewer(self.port, "/universe?token=" + token, headers=["Origin: http://stranger.example"])
