@@ -22,6 +22,7 @@
 #include <mujoco/mujoco.h>
 
 #include "engine/part.h"
+#include "shape/shape.h"
 
 enum {
 	CONTACTS_PER_BODY = 12, // average limit: memory for their rows grows with the square of the bodies
@@ -104,12 +105,12 @@ static void write_solref(FILE *f, double e, double h)
 
 static void write_geom(FILE *f, const ob_passport *o, double h)
 {
-	static const char *const type[] = {
+	static const char *const type[OB_SHAPE_KINDS] = {
 		[OB_SHAPE_SPHERE] = "sphere",   [OB_SHAPE_BOX] = "box",           [OB_SHAPE_PLANE] = "plane",
 		[OB_SHAPE_CAPSULE] = "capsule", [OB_SHAPE_CYLINDER] = "cylinder",
 	};
 	ob_vec3 size = o->shape == OB_SHAPE_PLANE ? ob_v3(0, 0, 1) : o->size;
-	if (o->shape == OB_SHAPE_NONE)
+	if (!type[o->shape])
 		return;
 	fprintf(f, "<geom name=\"%u\" type=\"%s\" size=\"%.17g %.17g %.17g\" friction=\"%.17g 0 0\"", o->id,
 		type[o->shape], size.x, size.y, size.z, o->friction);

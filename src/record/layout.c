@@ -2,6 +2,8 @@
 
 #include <assert.h>
 
+#include "shape/shape.h"
+
 // A new member of one of these structures may be needed to draw a record again: decide here.
 static_assert(sizeof(ob_passport) == 184 && sizeof(ob_motion) == 176, "members of /events and /motions");
 static_assert(sizeof(ob_hull) == 7008, "members of /hulls");
@@ -28,8 +30,8 @@ static const ob_record_member event_members[] = {
 };
 const ob_record_table ob_record_events = {
 	{ "events", "SI; colour: linear RGB, alpha", "size, inertia: body; force: world",
-	  "objects that come (kind 1), change (2) and go (3), in the order of steps; shape: 1 sphere, 2 box, 3 plane, "
-	  "4 capsule, 5 cylinder, 6 hull; flags: 1 present, 2 static, 8 kinematic" },
+	  "objects that come (kind 1), change (2) and go (3), in the order of steps; shape: from 1," OB_SHAPE_NAMES
+	  "; flags: 1 present, 2 static, 8 kinematic" },
 	sizeof(ob_record_event),
 	COUNT(event_members),
 	event_members,

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "record/layout.h"
+#include "shape/shape.h"
 
 // ---- preallocation
 
@@ -73,9 +74,7 @@ static const struct fact {
 	  INTEGER,
 	  offsetof(ob_passport, generation) },
 	{ { "name", "1", NULL, "name given by the scene" }, NAME, offsetof(ob_passport, name) },
-	{ { "shape", "1", NULL, "sphere, box, plane, capsule, cylinder, hull; empty: no object" },
-	  SHAPE,
-	  offsetof(ob_passport, shape) },
+	{ { "shape", "1", NULL, "one of" OB_SHAPE_NAMES "; empty: no object" }, SHAPE, offsetof(ob_passport, shape) },
 	{ { "size", "m", "body",
 	    "sphere: radius; box: half extents; capsule and cylinder: radius, half length along body z; "
 	    "hull: radius of the ball that holds it, half its least width, radius of the ball in it" },

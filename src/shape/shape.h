@@ -29,6 +29,9 @@ typedef enum ob_shape_property {
 #define OB_SHAPE_COUNTED(NAME, name, properties) +1
 #define OB_SHAPE_BIT(NAME, name, properties) | (any & (properties) ? 1u << OB_SHAPE_##NAME : 0)
 
+#define OB_SHAPE_TEXT(NAME, name, properties) " " #name
+#define OB_SHAPE_NAMES OB_SHAPES(OB_SHAPE_TEXT) // text of all names, in the order of ob_shape, each after a space
+
 enum { OB_SHAPE_KINDS = 1 OB_SHAPES(OB_SHAPE_COUNTED) }; // with OB_SHAPE_NONE, from 0
 
 // True if the shape has any of the properties. One instruction where they are constant; false for an unknown shape.
