@@ -1,4 +1,4 @@
-// obsim export: a page of a record.
+// obsim export: a page of a record, or MCAP.
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/request.h"
+#include "record/mcap.h"
 #include "serve/film.h"
 #include "serve/film_page.h"
 
@@ -13,10 +14,10 @@ static bool check_operands(const ob_arguments *a, ob_error *e)
 {
 	struct stat from, to;
 	if (!a->operand || !a->operands[1])
-		return ob_fail(e, "export needs a record and a page: obsim export FILE.h5 PAGE.html");
+		return ob_fail(e, "export needs a record and a file: obsim export FILE.h5 PAGE.html, or FILE.mcap");
 	if (stat(a->operands[0], &from) == 0 && stat(a->operands[1], &to) == 0 && from.st_dev == to.st_dev &&
 	    from.st_ino == to.st_ino)
-		return ob_fail(e, "%s: the page would replace the record", a->operands[1]);
+		return ob_fail(e, "%s: this would replace the record", a->operands[1]);
 	return true;
 }
 
@@ -46,9 +47,30 @@ static bool write_page(const ob_message *page, const char *path, ob_error *e)
 	return whole || ob_fail(e, "%s: %s", path, errno ? strerror(errno) : "not all of it was taken");
 }
 
+static bool is_mcap(const char *path)
+{
+	const size_t n = strlen(path);
+	return n > 5 && strcmp(path + n - 5, ".mcap") == 0;
+}
+
+static int export_mcap(const ob_arguments *a, ob_error *e)
+{
+	double seconds = OB_FILM_SECONDS;
+	ob_recording *r = ob_request_read_patience(a, &seconds, e) ? ob_recording_open(a->operand, e) : NULL;
+	if (!r)
+		return ob_command_fail(OB_EXIT_USAGE, e->text);
+	const bool written = ob_mcap_write(r, a->operand, a->operands[1], seconds, e);
+	ob_recording_close(r);
+	if (written)
+		printf("%s: MCAP, for Foxglove and others\n", a->operands[1]);
+	return written ? OB_EXIT_OK : ob_command_fail(OB_EXIT_FAILED, e->text);
+}
+
 int ob_command_export(const ob_arguments *a)
 {
 	ob_error e;
+	if (a->operand && a->operands[1] && is_mcap(a->operands[1]) && check_operands(a, &e))
+		return export_mcap(a, &e);
 	ob_message *page = check_operands(a, &e) ? make_page(a, &e) : NULL;
 	if (!page)
 		return ob_command_fail(OB_EXIT_USAGE, e.text);

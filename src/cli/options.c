@@ -339,7 +339,7 @@ static const struct {
 	{ OB_COMMAND_SEND, "obsim send NAME create|remove|colour|message|move ...",
 	  "Changes objects of a running universe, or sends messages." },
 	{ OB_COMMAND_EXPORT, "obsim export FILE.h5 PAGE.html [OPTION ...]",
-	  "Makes a page of what was recorded, which any browser plays by itself." },
+	  "Makes a page of what was recorded, for any browser, or MCAP (FILE.mcap)." },
 	{ OB_COMMAND_INSPECT, "obsim inspect FILE [OPTION ...]",
 	  "Says what a checkpoint holds, and whether it is whole." },
 	{ OB_COMMAND_LAB, "obsim lab [CASE ...] [OPTION ...]",

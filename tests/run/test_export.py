@@ -6,7 +6,9 @@ If OBSIM_PICTURES names a directory, screenshots are kept there.
 
 import base64
 import gzip
+import json
 import os
+import struct
 import unittest
 
 import browser
@@ -107,8 +109,8 @@ class Served(Case):
 		self.refuse("serve", "--replay", self.record, program.scene("stack"), saying="expected one of them")
 		self.refuse("serve", "--replay", self.record, "--paused", saying="--paused: a record is shown as it was run")
 		self.refuse("serve", "--replay", self.path("nothing"), saying="No such file or directory")
-		self.refuse("export", self.record, saying="export needs a record and a page")
-		self.refuse("export", saying="export needs a record and a page")
+		self.refuse("export", self.record, saying="export needs a record and a file")
+		self.refuse("export", saying="export needs a record and a file")
 		self.refuse("export", self.record, "a.html", "b.html", saying="unexpected 'b.html'")
 		self.refuse("export", self.record, self.record, saying="would replace the record")
 		self.refuse("export", self.scene, "a.html", saying="no HDF5 file")
@@ -116,6 +118,57 @@ class Served(Case):
 			self.refuse(*words, "--patience", "1e-5", saying="takes more than 1e-05 s of CPU to show it in a browser: --patience")
 		self.refuse("export", self.record, self.path("no/a.html"), saying="No such file or directory", code=1)
 		self.refuse("export", self.record, "/dev/full", saying="No space left on device", code=1)
+
+
+def mcap_records(data):
+	"""(type, content) of each record, by the specification of MCAP."""
+	magic = b"\x89MCAP0\r\n"
+	assert data.startswith(magic) and data.endswith(magic)
+	at = len(magic)
+	while at < len(data) - len(magic):
+		kind, size = struct.unpack_from("<BQ", data, at)
+		yield kind, data[at + 9:at + 9 + size]
+		at += 9 + size
+	assert at == len(data) - len(magic)
+
+
+class Mcap(Case):
+	def test_mcap(self):
+		path = self.path("run.mcap")
+		done = program.call("export", self.record, path)
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		with open(path, "rb") as f:
+			records = list(mcap_records(f.read()))
+		self.assertEqual([kind for kind, _ in records if kind != 5], [1, 3, 4, 3, 4, 15, 2])
+		self.assertEqual(records[-1][1], bytes(20)) # no summary
+		messages, numbers, before = {1: [], 2: []}, {1: 0, 2: 0}, 0
+		for kind, content in records:
+			if kind == 5:
+				channel, number, log, publish = struct.unpack_from("<HIQQ", content)
+				self.assertEqual(number, numbers[channel])
+				self.assertTrue(before <= log == publish)
+				numbers[channel], before = number + 1, log
+				messages[channel].append((log * 1e-9, json.loads(content[22:])))
+		entities = [e for _, m in messages[1] for e in m["entities"]]
+		names = {e["id"]: e["metadata"][0]["value"] for e in entities}
+		self.assertIn("ball", names.values())
+		for e in entities: # each shape has a body
+			self.assertTrue(e["cubes"] or e["spheres"] or e["cylinders"] or e["triangles"], names[e["id"]])
+			self.assertEqual(e["frame_id"], "object/" + e["id"])
+		self.assertEqual(sum(len(m["deletions"]) for _, m in messages[1]), 1) # the capsule dies
+		at = {}
+		for time, m in messages[2]:
+			for t in m["transforms"]:
+				q = t["rotation"]
+				self.assertAlmostEqual(sum(v * v for v in q.values()), 1, 6)
+				at.setdefault(t["child_frame_id"].split("/")[1], []).append((time, t["translation"]))
+		self.assertEqual(set(at), set(names)) # all that is shown has a place
+		ball = next(i for i, name in names.items() if name == "ball")
+		for time, p in at[ball]:
+			if time < .5: # it falls from 2 m
+				self.assertAlmostEqual(p["z"], 2 - .5 * 9.81 * time ** 2, 6)
+		self.refuse("export", self.record, path, "--patience", "1e-6", saying="takes more than 1e-06 s of CPU to write", code=1)
+		self.refuse("export", self.record, self.path("no/a.mcap"), saying="No such file or directory", code=1)
 
 
 @unittest.skipUnless(browser.CHROMIUM and browser.DRIVER, "no Chromium with its driver")
