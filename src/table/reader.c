@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/utf8.h"
+#include "motion/flight.h"
 #include "shape/shape.h"
 #include "table/futex.h"
 #include "table/layout.h"
@@ -251,16 +252,22 @@ static void put3(double *array, size_t row, ob_vec3 v)
 		array[3 * row] = v.x, array[3 * row + 1] = v.y, array[3 * row + 2] = v.z;
 }
 
-static void put_state(const ob_state_arrays *out, size_t row, const ob_passport *p, const ob_state *s)
+// Evaluates the attitude only where it is asked for: that takes longest.
+static void put_state(const ob_state_arrays *out, size_t row, const ob_passport *p, const ob_motion *m, double t)
 {
-	const ob_quat q = s->pose.q;
+	ob_quat q = m->q;
+	ob_vec3 w = m->w;
 	if (out->id)
 		out->id[row] = p->id;
 	if (out->generation)
 		out->generation[row] = p->generation;
-	put3(out->position, row, s->pose.p);
-	put3(out->velocity, row, s->v);
-	put3(out->angular_velocity, row, s->w);
+	put3(out->position, row, ob_centre_at(m, t));
+	put3(out->velocity, row, ob_velocity_at(m, t));
+	if (!out->attitude && !out->angular_velocity)
+		return;
+	if (t > m->t0)
+		ob_rotate_free(m->q, m->w, p->inertia, t - m->t0, &q, &w);
+	put3(out->angular_velocity, row, w);
 	if (out->attitude)
 		memcpy(&out->attitude[4 * row], (double[4]){ q.w, q.x, q.y, q.z }, 4 * sizeof(double));
 }
@@ -275,11 +282,9 @@ size_t ob_universe_get_states(const ob_universe *u, const ob_state_arrays *out, 
 	for (uint32_t id = 0; id < info.capacity; id++) {
 		if (!ob_universe_get_motion(u, id, &m) || !ob_universe_get_passport(u, id, &p))
 			continue;
-		if (n < max) {
-			const ob_state s = ob_motion_at(&m, p.inertia, fmax(info.time, m.t0));
-			p.id = id;
-			put_state(out, n, &p, &s);
-		}
+		p.id = id;
+		if (n < max)
+			put_state(out, n, &p, &m, fmax(info.time, m.t0));
 		n++;
 	}
 	return n;
