@@ -35,16 +35,7 @@ typedef struct axis_gaps {
 	int face, edge; // axes of the largest gaps: faces 0 .. 5, edges 0 .. 8
 } axis_gaps;
 
-static const double along_face = .99; // cosine: an axis of edges this near counts as a face's normal
-// Fraction of the thickness by which an axis of edges must separate more than a face's. The resting depth limits it:
-// bodies get that deep before the edge holds them.
-static const double prefer_face = 1e-3;
-static const double prefer_face_when_deep = .02; // fraction of the depth, in addition
-static const double nearby = .05; // fraction of the thickness: boxes farther apart need no axes of edges
-static const double parallel_edges = 1e-10; // sin^2 of the edges' angle
 static const double same_axis = .99; // cosine: axes that count as one
-static const double same_depth = 1e-4; // relative to the reference box's least half extent: points that count as
-	// equally deep
 
 static inline lanes lanes_of_three(double x, double y, double z)
 {

@@ -10,15 +10,8 @@
 #include "elementary/elementary.h"
 #include "shape/shape.h"
 
-static const double along_face = .99; // cosine: an axis of edges this near counts as a face's normal
-// Fraction of the thickness, up to the resting depth, by which an axis of edges must separate more than a face's.
-static const double prefer_face = 1e-3;
-static const double prefer_face_when_deep = .02; // fraction of the depth, in addition
-static const double nearby = .05; // fraction of the thickness: shapes farther apart need no axes of edges
-static const double parallel_edges = 1e-10; // sin^2 of the edges' angle
 static const double crossing_faces = .5; // cosine: faces with a smaller one cross
 static const double as_low = 2e-9; // relative to the radius: corners that count as equally low
-static const double same_depth = 1e-4; // relative to half the thickness: points that count as equally deep
 
 // ---- boxes and hulls alike
 

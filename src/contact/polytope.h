@@ -1,8 +1,19 @@
-// Points of a convex polygon that hold as the whole of it does. Pure functions, thread-safe.
+// Contacts of boxes and other polyhedra: limits that both share, and points of a polygon that hold as all of it does. Pure
+// functions, thread-safe.
 #ifndef OB_CONTACT_POLYTOPE_H
 #define OB_CONTACT_POLYTOPE_H
 
 #include <ob/hull.h>
+
+// Decisions about boxes and other polyhedra.
+static const double along_face = .99; // cosine: an axis of edges this near counts as a face's normal
+// Fraction of the thickness by which an axis of edges must separate more than a face's. The resting depth limits it:
+// bodies get that deep before the edge holds them.
+static const double prefer_face = 1e-3;
+static const double prefer_face_when_deep = .02; // fraction of the depth, in addition
+static const double nearby = .05; // fraction of the thickness: shapes farther apart need no axes of edges
+static const double parallel_edges = 1e-10; // sin^2 of the edges' angle
+static const double same_depth = 1e-4; // relative to half the thickness: points that count as equally deep
 
 // Convex polygon over a plane: u and w in the plane, z above it (m); counterclockwise or clockwise.
 enum { OB_POLYGON_MAX = 2 * OB_HULL_CORNERS_MAX };
