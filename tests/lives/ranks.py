@@ -23,7 +23,7 @@ def run(scene, *before):
 		return "hangs"
 	ends = [line for line in done.stderr.splitlines() if line.startswith("obsim: step ") and "takes more work" in line]
 	if done.returncode == 1 and ends:
-		return ends[0].replace(" ", "_")
+		return ends[0].split(":")[1].strip().replace(" ", "_") # each rank names objects of its own
 	if done.returncode:
 		return f"exit {done.returncode}: " + " ".join(l for l in done.stderr.splitlines() if l.startswith("obsim: "))[:300]
 	return json.loads(done.stdout)["state_hash"]
