@@ -234,12 +234,15 @@ __attribute__((visibility("default"))) time_t time(time_t *out)
 	return t.tv_sec;
 }
 
+// The exact remainder, called by its address: clang replaces fmodl of two doubles by fmod, which is defined below.
+static long double (*const volatile exact_remainder)(long double, long double) = fmodl;
+
 // The remainder in Lua, a % b: long work where one is huge and the other tiny. It is exact with any precision.
 __attribute__((visibility("default"))) double fmod(double a, double b)
 {
 	if (running && isfinite(a) && b != 0 && fabs(a) > fabs(b))
 		spend_silently(running, (size_t)(ilogb(a) - ilogb(b)) / BITS_DIVIDED);
-	return (double)fmodl(a, b);
+	return (double)exact_remainder(a, b);
 }
 
 void ob_sandbox_spend_search(lua_State *L)
