@@ -48,7 +48,7 @@ typedef struct original {
 } original;
 
 original relation_original(const random_scene *s, uint64_t steps);
-// seed: for the angle, the velocity and so on
+// seed: for the angle, the velocity and so on. Before a relation fails, more twins are watched.
 judged relation_judge(relation_id r, const original *o, uint64_t seed, uint64_t steps);
 bool relation_fails(const judged *j);
 
