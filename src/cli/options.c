@@ -45,6 +45,8 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 				  "error that objects that touch may reach, as .5mm: chooses the substeps",
 				  STEPPED | COMPARE, 0 },
 	[OB_OPTION_STRICT] = { NULL, "strict", NULL, "exit with 1 where the tolerance is missed", RUN, 0 },
+	[OB_OPTION_VERIFY] = { NULL, "verify", NULL,
+			       "solve a sample of steps again with 512 substeps, and print the errors", RUN, 0 },
 	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", "N", "substeps a step (the scene's; monolith: 1)", STEPPED | COMPARE,
 				 0 },
 	[OB_OPTION_ITERATIONS] = { NULL, "iterations", "N",

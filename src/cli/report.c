@@ -36,6 +36,17 @@ static const struct field {
 	FIELD(COUNT, substeps_max),
 	FIELD(COUNT, islands_redone),
 	FIELD(COUNT, islands_over),
+	FIELD(COUNT, verified_steps),
+	FIELD(COUNT, unverified_steps),
+	FIELD(REAL, verified_p50_m),
+	FIELD(REAL, verified_p90_m),
+	FIELD(REAL, verified_p99_m),
+	FIELD(REAL, verified_max_m),
+	FIELD(REAL, verified_second_p50_m),
+	FIELD(REAL, verified_second_p90_m),
+	FIELD(REAL, verified_second_p99_m),
+	FIELD(REAL, verified_second_max_m),
+	FIELD(REAL, verified_share),
 	FIELD(COUNT, iterations),
 	FIELD(TEXT, solver),
 	FIELD(COUNT, lag),
@@ -166,6 +177,51 @@ static uint64_t quantile(const ob_counters *c, double share)
 	return 0;
 }
 
+static uint64_t sum_of(const uint32_t *count, int n)
+{
+	uint64_t sum = 0;
+	for (int i = 0; i < n; i++)
+		sum += count[i];
+	return sum;
+}
+
+// Error (m) that this share of those counted in bins does not exceed: the end of a bin, at most the largest.
+static double error_quantile(const uint32_t bin[OB_ERROR_BINS], double share, double largest)
+{
+	const uint64_t all = sum_of(bin, OB_ERROR_BINS);
+	uint64_t sum = 0;
+	int i = 0;
+	while (i + 1 < OB_ERROR_BINS && (double)(sum += bin[i]) < share * (double)all)
+		i++;
+	return all ? fmin(largest, ldexp(1, OB_ERROR_LEAST_EXPONENT + i + 1)) : NAN;
+}
+
+// Share of the errors of a second that are certainly below the tolerance.
+static double share_below(const uint32_t bin[OB_ERROR_BINS], double tolerance)
+{
+	uint64_t sum = 0;
+	for (int i = 0; i < OB_ERROR_BINS && ldexp(1, OB_ERROR_LEAST_EXPONENT + i + 1) <= tolerance; i++)
+		sum += bin[i];
+	return (double)sum / (double)sum_of(bin, OB_ERROR_BINS);
+}
+
+static void count_verified(ob_report *r, const ob_counters *c)
+{
+	const uint32_t *step = c->verified_step, *second = c->verified_second;
+	const double most = c->verified_most[0], most_of_second = c->verified_most[1];
+	r->verified_steps = sum_of(step, OB_ERROR_BINS);
+	r->unverified_steps = c->unverified;
+	r->verified_p50_m = error_quantile(step, .5, most);
+	r->verified_p90_m = error_quantile(step, .9, most);
+	r->verified_p99_m = error_quantile(step, .99, most);
+	r->verified_max_m = r->verified_steps ? most : NAN;
+	r->verified_second_p50_m = error_quantile(second, .5, most_of_second);
+	r->verified_second_p90_m = error_quantile(second, .9, most_of_second);
+	r->verified_second_p99_m = error_quantile(second, .99, most_of_second);
+	r->verified_second_max_m = r->verified_steps ? most_of_second : NAN;
+	r->verified_share = r->verified_steps && r->tolerance > 0 ? share_below(second, r->tolerance) : NAN;
+}
+
 static double work_of(const ob_counters *c)
 {
 	double sum = 0;
@@ -202,6 +258,7 @@ void ob_report_count(ob_report *r, const ob_counters *c, bool timed)
 	r->substeps_max = quantile(c, 1);
 	r->islands_redone = c->islands_redone;
 	r->islands_over = c->islands_over;
+	count_verified(r, c);
 	r->energy_recovered = strcmp(r->arch, "monolith") == 0 ? NAN : c->recovered;
 	r->box_tests = c->box_tests;
 	r->work_s = timed ? work_of(c) : NAN;
@@ -238,6 +295,24 @@ static void print_tolerance(const ob_report *r, FILE *f)
 		fputs("nothing touched", f);
 	if (r->islands_over)
 		fprintf(f, ", %" PRIu64 " above it all the same", r->islands_over);
+	fputc('\n', f);
+}
+
+static void print_verified(const ob_report *r, FILE *f)
+{
+	ob_quantity a, b, c, d;
+	if (!r->verified_steps && !r->unverified_steps)
+		return;
+	fprintf(f, "  verified     %" PRIu64 " body steps with %d substeps", r->verified_steps, OB_VERIFY_SUBSTEPS);
+	if (r->verified_steps)
+		fprintf(f, ": errors of a step %s in the median, %s at 99 %%, %s most; of a second %s in the median",
+			ob_quantity_text(&a, r->verified_p50_m, "m"), ob_quantity_text(&b, r->verified_p99_m, "m"),
+			ob_quantity_text(&c, r->verified_max_m, "m"),
+			ob_quantity_text(&d, r->verified_second_p50_m, "m"));
+	if (!isnan(r->verified_share))
+		fprintf(f, ", %.3g %% within the tolerance", 100 * r->verified_share);
+	if (r->unverified_steps)
+		fprintf(f, "; %" PRIu64 " take too much work", r->unverified_steps);
 	fputc('\n', f);
 }
 
@@ -322,6 +397,7 @@ void ob_report_print(const ob_report *r, FILE *f)
 {
 	print_setup(r, f);
 	print_tolerance(r, f);
+	print_verified(r, f);
 	if (own_time(r) > 0)
 		print_cost(r, f);
 	if (r->faults > 0 || r->faults_overwritten > 0)

@@ -28,6 +28,11 @@ typedef struct ob_report {
 	uint64_t substeps_min, substeps_median, substeps_max; // substeps of island-steps, if a tolerance chose; else 0
 	uint64_t islands_redone, islands_over;
 	double tolerance, error_reached; // m
+	uint64_t verified_steps, unverified_steps; // of bodies, in the sample of --verify; too much work
+	// m: errors of those steps at surface points, in a step; and in a second if all errors add up
+	double verified_p50_m, verified_p90_m, verified_p99_m, verified_max_m;
+	double verified_second_p50_m, verified_second_p90_m, verified_second_p99_m, verified_second_max_m;
+	double verified_share; // share of them whose error of a second is within the tolerance
 	double energy_recovered; // J
 	double step, simulated_s;
 	double resumed_s; // s, simulated: start of a process that resumed the run; NaN = it began it

@@ -462,6 +462,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 			isolation && strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
 		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
 		.strict = a->value[OB_OPTION_STRICT] != NULL,
+		.verify = a->value[OB_OPTION_VERIFY] != NULL,
 		.check = a->value[OB_OPTION_CHECK] != NULL,
 		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
 			   : strcmp(measure, "profile") == 0        ? OB_MEASURE_PROFILE
@@ -569,6 +570,9 @@ static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 	if (r->strict && !(r->run.tolerance > 0))
 		return ob_fail(e,
 			       "--strict: this run has no tolerance that it could miss; give it one with --tolerance");
+	if (r->run.monolith && r->verify)
+		return ob_fail(e, "--verify means nothing to --arch monolith");
+	r->run.verify = r->verify;
 	r->run.fault = r->fault;
 	r->run.timed = r->explain || r->measure == OB_MEASURE_PROFILE;
 	uint64_t steps = ob_request_steps(r->duration, r->run.step_length);

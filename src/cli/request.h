@@ -40,6 +40,7 @@ typedef struct ob_run_request {
 	ob_run_settings run; // after ob_request_resolve
 	bool explain;
 	bool strict; // a missed tolerance is a failure
+	bool verify; // a sample of steps is solved finely besides
 	bool check; // checks the simulators' shared state after each step
 	ob_measure_when measure;
 	ob_frames_request frames;

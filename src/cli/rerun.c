@@ -16,7 +16,7 @@ ob_request_log_head ob_rerun_head(const ob_run_request *r, const ob_scene *s, ui
 		.run = r->run, .seed = s->seed, .objects = s->objects, .spare = spare, .on_death = r->on_death
 	};
 	head.run.fault = (ob_fault_plan){ 0 };
-	head.run.timed = 0;
+	head.run.timed = head.run.verify = 0;
 	return head;
 }
 

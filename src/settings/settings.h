@@ -108,6 +108,8 @@ typedef struct ob_run_settings {
 	uint32_t timed; // 1 = counters measure each section of the step
 	uint32_t load; // > 0: each test of two axis-aligned boxes adds up 1 + 2 + .. + load
 	uint32_t freezes; // 1 = unsolvable bodies are frozen: budgets are per island; set by the host
+	uint32_t verify; // 1 = a sample of islands is solved finely besides, to know their errors
+	uint32_t zero;
 	ob_fault_plan fault;
 } ob_run_settings;
 
@@ -131,6 +133,8 @@ enum {
 
 // Most substeps that a tolerance chooses.
 #define OB_MAX_SUBSTEPS 1024
+// Substeps of the fine solution that a run's own is verified with.
+#define OB_VERIFY_SUBSTEPS 512
 
 // Fewest substeps that a tolerance (m) chooses from: 8, and fewer only for tolerances coarser than the default. The
 // error estimate misses some errors (a pivot's energy, a slow creep), so a smaller tolerance never starts from less.

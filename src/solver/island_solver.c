@@ -165,6 +165,16 @@ void ob_island_solve(ob_solver *s, const ob_island_input *in)
 	ob_bodies_report(s, rest);
 }
 
+void ob_island_probe(ob_solver *s, const ob_island_input *in, uint32_t substeps)
+{
+	s->in = in;
+	s->island.in_field = false;
+	s->island.substeps = substeps;
+	(void)solve_step(s, in);
+	ob_frame_leave(s);
+	ob_bodies_report(s, 0);
+}
+
 // ---- life
 
 bool ob_solver_create(ob_solver *s, const ob_run_settings *settings, const ob_island_calls *calls, uint32_t objects)

@@ -123,6 +123,8 @@ void ob_solver_finish(ob_solver *s);
 
 // Solves an island through the coming step, and reports its contacts and motions.
 void ob_island_solve(ob_solver *s, const ob_island_input *in);
+// Solves it once with so many substeps, whatever the error or the equilibrium, and reports motions alone.
+void ob_island_probe(ob_solver *s, const ob_island_input *in, uint32_t substeps);
 
 static inline void ob_solver_enter(ob_solver *s, ob_profile_section section)
 {

@@ -263,6 +263,17 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, const ob_spin *
 	ob_result_stage(s, id, m, OB_SCHEDULE_AWAKE, (uint32_t)due);
 }
 
+ob_state ob_motion_end(ob_sim *s, uint32_t id, ob_motion *m, bool free)
+{
+	if (!free || !s->solver.methods.exact)
+		return (ob_state){ { m->p, m->q }, m->v, m->w };
+	const ob_motion flight = ob_ballistic_flight(s, id);
+	const ob_state end = ob_ballistic_state(s, id, &flight, m->t0);
+	m->t0 = flight.t0, m->valid_until = flight.valid_until;
+	m->p = flight.p, m->q = flight.q, m->v = flight.v, m->w = flight.w;
+	return end;
+}
+
 void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end)
 {
 	const ob_run_settings *run = s->settings;

@@ -5,6 +5,7 @@
 #include "exchange/commit.h"
 #include "step/islands.h"
 #include "step/ode_flight.h"
+#include "step/probe.h"
 #include "step/sim.h"
 #include "step/state.h"
 
@@ -35,6 +36,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 	const ob_island_calls calls = ob_island_calls_of(s);
 	if (!s || !ob_solver_create(&s->solver, run, &calls, ode_bodies_of(u)) || !ob_island_scratch_create(s) ||
 	    !ob_rotation_cache_create(&s->rotations, capacity) ||
+	    (run->verify && !ob_probe_create(&s->verify.probe, s, OB_VERIFY_SUBSTEPS)) ||
 	    (run->monolith && !(s->baseline = ob_ode_baseline_create(u)))) {
 		ob_sim_destroy(s);
 		ob_fail(e, "worker %u: no memory for %u objects", worker, capacity);
@@ -68,6 +70,7 @@ void ob_sim_destroy(ob_sim *s)
 	ob_ode_baseline_destroy(s->baseline);
 	ob_solver_finish(&s->solver);
 	ob_island_scratch_finish(s);
+	ob_probe_destroy(s->verify.probe);
 	ob_rotation_cache_finish(&s->rotations);
 	ob_committer_destroy(s->committer);
 	ob_cluster_destroy(s->cluster);

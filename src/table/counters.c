@@ -18,6 +18,7 @@ const char *ob_profile_name(uint32_t section)
 		[OB_PROFILE_PROJECT] = "project",
 		[OB_PROFILE_PUBLISH] = "publish",
 		[OB_PROFILE_SCRIPTS] = "scripts",
+		[OB_PROFILE_VERIFY] = "verify",
 	};
 	return section < OB_PROFILE_SECTIONS && names[section] ? names[section] : "?";
 }
@@ -45,6 +46,13 @@ static void add_counters(ob_counters *to, const ob_counters *c)
 	to->gyroscopic_steps += c->gyroscopic_steps;
 	to->recovered += c->recovered;
 	to->error = fmax(to->error, c->error);
+	for (int i = 0; i < OB_ERROR_BINS; i++) {
+		to->verified_step[i] += c->verified_step[i];
+		to->verified_second[i] += c->verified_second[i];
+	}
+	for (int i = 0; i < 2; i++)
+		to->verified_most[i] = fmax(to->verified_most[i], c->verified_most[i]);
+	to->unverified += c->unverified;
 	for (int i = 0; i < OB_PROFILE_SECTIONS; i++)
 		to->time_ns[i] += c->time_ns[i];
 	to->held_ns += c->held_ns;

@@ -18,6 +18,7 @@ typedef enum ob_profile_section {
 	OB_PROFILE_PROJECT, // position correction of penetrations
 	OB_PROFILE_PUBLISH, // rest timers, boxes, motions into their slots
 	OB_PROFILE_SCRIPTS, // objects' scripts
+	OB_PROFILE_VERIFY, // solving islands again, with other substeps, to know their errors
 	OB_PROFILE_SECTIONS
 } ob_profile_section;
 
@@ -25,6 +26,9 @@ typedef enum ob_profile_section {
 const char *ob_profile_name(uint32_t section);
 
 enum { OB_SUBSTEP_CHOICES = 11 }; // islands take 1, 2, 4 .. 1024 substeps if a tolerance chooses
+
+// Bins of errors, by powers of two: from 2^-40 m (1e-12; the first bin has smaller ones, too) to 16 m.
+enum { OB_ERROR_BINS = 44, OB_ERROR_LEAST_EXPONENT = -40 };
 
 typedef struct ob_counters {
 	uint64_t ballistic_advances; // steps of objects without contacts: their closed form
@@ -46,6 +50,11 @@ typedef struct ob_counters {
 	uint64_t gyroscopic_steps; // substeps of bodies whose inertia needed Euler's equations
 	double recovered; // J, potential energy added by position correction
 	double error; // m, largest error estimate of an accepted solution
+	// Errors of body steps that were verified: of a step, and of a second, if all errors add up. Their largest (m); and
+	// body steps of the sample that took too much work.
+	uint32_t verified_step[OB_ERROR_BINS], verified_second[OB_ERROR_BINS];
+	double verified_most[2];
+	uint64_t unverified;
 	uint64_t time_ns[OB_PROFILE_SECTIONS]; // CPU time
 	// If timed: the rest of the worker's time, wall time except for gate_cpu_ns.
 	uint64_t held_ns; // it had work, but no core

@@ -334,7 +334,7 @@ class Scenes:
 				(.1, ["--measure", r.choice(["step", "end", "profile"])]), (.05, ["--step", r.choice(["1e-4", "1/60", ".1", "10"])]),
 				(.05, ["--iterations", r.choice(["1", "64"])]), (.05, ["--solver", "lagged", "--lag", r.choice(["0", "3"])]), (.05, ["--sleeping", r.choice(["on", "off"])]),
 				(.05, ["--seed", r.choice(["0", "7"])]), (.02, ["-D", r.choice(["n=5", "s=b", "p=1/3", "m=1"])]), (.1, ["--explain"]), (.05, ["--trace", "t.json"]), (.05, ["--json", "/dev/null"]),
-				(.05, ["--series", "s.csv"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--every", ".01"]), (.05, ["--strict", "--tolerance", "1mm"]), (.1, ["--on-death", "freeze"])]:
+				(.05, ["--series", "s.csv"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--every", ".01"]), (.05, ["--strict", "--tolerance", "1mm"]), (.05, ["--verify"]), (.1, ["--on-death", "freeze"])]:
 			words += more if r.random() < chance else []
 		if "process" in words and not self.scripts:
 			words += ["--harden"] if r.random() < .3 else []

@@ -12,7 +12,8 @@ KEYS = """objects steps simulated_s wall_s cpu_s body_step_cpu_us state_hash ene
 momentum_error penetration_max_m penetration_mean_m worst_penetration_m fps frames workers isolation arch commit scene
 step substeps solver integrator seed startup_s step_p50_s step_p99_s memory_bytes outcome bodies iterations total_s
 frame_rate worst_penetration_time_s lag tolerance error_reached substeps_min substeps_median substeps_max islands_redone
-islands_over energy_recovered narrow load box_tests step_p90_s step_max_s critical_s critical_16_s work_s held_s gate_s gate_cpu_s idle_s
+islands_over verified_steps unverified_steps verified_p50_m verified_p90_m verified_p99_m verified_max_m
+verified_second_p50_m verified_second_p90_m verified_second_p99_m verified_second_max_m verified_share energy_recovered narrow load box_tests step_p90_s step_max_s critical_s critical_16_s work_s held_s gate_s gate_cpu_s idle_s
 elapsed_s host_cpu_s renderer_cpu_s switches deaths worker_memory_bytes separation_max_m separation_mean_m trace_events
 trace_lost resumed_s checkpoints checkpoint_bytes checkpoint_s faults fault_kinds faults_overwritten frozen
 scripts_stopped scripts_warned""".split()
@@ -71,6 +72,27 @@ class Report(program.Case):
 		self.assertIn(" kept, ", done.stdout)
 		self.refuse("run", program.scene("stack"), "--substeps", "4", "--strict", saying="no tolerance")
 
+	def test_verify(self):
+		"""Errors of a sample of steps: fewer substeps show larger ones, and nothing else changes."""
+		words = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "2", "--measure", "end", "--workers", "1"]
+		plain = program.report(*words)
+		r, fine = (program.report(*words, "--verify", *more) for more in ([], ["--substeps", "128"]))
+		self.assertEqual(r["state_hash"], plain["state_hash"])
+		for key in "substeps_median", "islands_redone", "box_tests", "error_reached", "energy_recovered":
+			self.assertEqual(r[key], plain[key], key)
+		self.assertEqual((plain["verified_steps"], plain["verified_max_m"], r["unverified_steps"]), (0, None, 0))
+		self.assertGreater(r["verified_steps"], 20)
+		for name in "verified_", "verified_second_":
+			errors = [r[name + what] for what in ("p50_m", "p90_m", "p99_m", "max_m")]
+			self.assertEqual(errors, sorted(errors))
+			self.assertLess(fine[name + "p50_m"], errors[0])
+		self.assertLess(r["verified_p99_m"], r["verified_second_p99_m"])
+		self.assertTrue(0 <= r["verified_share"] <= 1)
+		self.assertIsNone(fine["verified_share"])
+		done = program.call("run", *words, "--verify")
+		self.assertRegex(done.stdout, r"verified     \d+ body steps with 512 substeps: errors of a step .* in the median")
+		self.refuse("run", *words, "--arch", "monolith", "--verify", saying="monolith")
+
 	def test_hits_in_the_air_keep_the_tolerance(self):
 		"""Hulls that hit each other while they fall: two of them jam as bodies that float do."""
 		shapes = os.path.join(program.SCENES, "..", "bench", "shapes.lua")
@@ -88,7 +110,7 @@ class Report(program.Case):
 		for line in "restitution  none: no object has any", "flight       closed form", "collision", "Coulomb's cone":
 			self.assertIn(line, boxes.stderr)
 		shares = [float(x) for x in re.findall(r"([\d.]+) %", boxes.stderr)]
-		self.assertEqual(len(shares), 12)
+		self.assertEqual(len(shares), 13)
 		self.assertAlmostEqual(sum(shares), 100, delta=2)
 
 	def test_energy_is_exact(self):

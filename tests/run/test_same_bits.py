@@ -48,6 +48,15 @@ class SameBits(program.Case):
 		words = [program.scene(NAME), *SCENES[NAME]]
 		self.assertEqual(program.report(*words, "--measure", "step")["state_hash"], self.hash_of())
 
+	def test_verified(self):
+		"""The fine solutions of --verify leave no trace, and the sample is the same everywhere."""
+		expected, errors = self.hash_of("--workers", "1"), set()
+		for isolation, words in ("thread", ["--workers", "1"]), ("thread", ["--workers", "3"]), ("process", ["--harden", "--workers", "2"]):
+			found = program.report(program.scene(NAME), *SCENES[NAME], "--verify", "--measure", "end", "--isolation", isolation, *words)
+			self.assertEqual(found["state_hash"], expected)
+			errors.add((found["verified_steps"], found["verified_p50_m"], found["verified_max_m"], found["verified_second_max_m"]))
+		self.assertEqual(len(errors), 1)
+
 	def test_jacobi(self):
 		expected = self.hash_of("--solver", "jacobi", "--workers", "1")
 		for isolation, workers in ("thread", "3"), ("process", "2"), ("process", "objects"):
