@@ -442,18 +442,21 @@ static bool newton(const impact_set *s, newton_system *y, bool downhill, double 
 // iterations go on from their last result.
 static void solve_cycles(const impact_set *s, double *x, double *u)
 {
-	newton_system y;
+	newton_system *y = ob_allocate(sizeof *y); // larger than the stack of one of many threads
 	double start[MAX_DENSE_ROWS];
-	fill_matrix(s, &y);
-	for (int cycle = 0; cycle < MAX_CYCLES; cycle++) {
+	bool solved = false;
+	fill_matrix(s, y);
+	for (int cycle = 0; cycle < MAX_CYCLES && !solved; cycle++) {
 		iterate(s, cycle == 0 ? 0 : cycle == 1 ? CYCLE_ITERATIONS : 3 * CYCLE_ITERATIONS, x, u);
-		memcpy(start, x, (unsigned)y.n * sizeof *x);
-		for (int downhill = 0; downhill <= (cycle + 1 == MAX_CYCLES); downhill++) { // downhill is seldom needed
-			if (newton(s, &y, downhill, x, u))
-				return;
-			memcpy(x, start, (unsigned)y.n * sizeof *x);
+		memcpy(start, x, (unsigned)y->n * sizeof *x);
+		const int last = cycle + 1 == MAX_CYCLES; // downhill is seldom needed
+		for (int downhill = 0; downhill <= last && !solved; downhill++) {
+			solved = newton(s, y, downhill, x, u);
+			if (!solved)
+				memcpy(x, start, (unsigned)y->n * sizeof *x);
 		}
 	}
+	free(y);
 }
 
 // ---- one point

@@ -111,10 +111,9 @@ static bool read_point(lua_State *L, double most, int numbers, ob_path_point *ou
 	return good;
 }
 
-// Reads the points of the table at the top of the stack; returns their number. turns: set if they have attitudes; NULL:
-// attitudes are errors.
-static uint32_t read_points(lua_State *L, const char *where, double most, ob_path_point point[OB_PATH_POINTS_MAX],
-			    bool *turns)
+// Reads the points of the table at the top of the stack; returns their number. They lie in a value of Lua's, which is
+// pushed. turns: set if they have attitudes; NULL: attitudes are errors.
+static uint32_t read_points(lua_State *L, const char *where, double most, ob_path_point **out, bool *turns)
 {
 	int numbers = PLACED;
 	lua_getfield(L, -1, "points");
@@ -122,6 +121,8 @@ static uint32_t read_points(lua_State *L, const char *where, double most, ob_pat
 	if (n < 2 || n > OB_PATH_POINTS_MAX)
 		ob_sandbox_fail(L, "%s.points: expected 2 to %d points {t, x, y, z}, got %d", where, OB_PATH_POINTS_MAX,
 				(int)n);
+	ob_path_point *point = *out = lua_newuserdatauv(L, n * sizeof *point, 0);
+	lua_insert(L, -2);
 	for (size_t i = 0; i < n; i++) {
 		lua_rawgeti(L, -1, (lua_Integer)i + 1);
 		if (i == 0 && turns && lua_istable(L, -1) && lua_rawlen(L, -1) == TURNED)
@@ -164,9 +165,9 @@ static void make_turns(lua_State *L, const char *where, const draft *d, ob_objec
 
 static void make_spline(lua_State *L, const char *where, const draft *d, ob_object_def *o)
 {
-	ob_path_point point[OB_PATH_POINTS_MAX];
+	ob_path_point *point;
 	bool turns;
-	const uint32_t n = read_points(L, where, OB_PLACE_MOST, point, &turns);
+	const uint32_t n = read_points(L, where, OB_PLACE_MOST, &point, &turns);
 	const ob_vec3 first = point[0].p, last = point[n - 1].p;
 	if (d->loop && (first.x != last.x || first.y != last.y || first.z != last.z))
 		ob_sandbox_fail(L, "%s.loop: expected the last point where the first one is", where);
@@ -176,6 +177,7 @@ static void make_spline(lua_State *L, const char *where, const draft *d, ob_obje
 		make_turns(L, where, d, o, point, n);
 	keep_path(L, where, o, &(ob_path){ .points = n, .loop = d->loop, .turns = turns, .point = point });
 	o->state.pose.p = point[0].p;
+	lua_pop(L, 1);
 }
 
 void ob_builder_read_path(lua_State *L, const char *kind, ob_object_def *o)
@@ -235,12 +237,12 @@ void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o)
 {
 	char where[64];
 	force_draft d = { .force = { NAN, NAN, NAN }, .frequency = NAN, .phase = NAN, .from = NAN, .to = NAN };
-	ob_path_point point[OB_PATH_POINTS_MAX];
+	ob_path_point *point = NULL;
 	snprintf(where, sizeof where, "%s.varying_force", kind);
 	luaL_checkstack(L, 8, "nested too deep");
 	ob_fields_read(L, -1, where, force_fields, sizeof force_fields / sizeof *force_fields, &d);
 	check_force(L, where, &d);
-	const uint32_t points = d.kind == OB_FORCE_LINEAR ? read_points(L, where, OB_FORCE_MOST, point, NULL) : 0;
+	const uint32_t points = d.kind == OB_FORCE_LINEAR ? read_points(L, where, OB_FORCE_MOST, &point, NULL) : 0;
 	const ob_force f = { .kind = (ob_force_kind)d.kind,
 			     .force = points ? ob_v3(0, 0, 0) : d.force,
 			     .frequency = isnan(d.frequency) ? 0 : 2 * M_PI * d.frequency,
@@ -248,8 +250,9 @@ void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o)
 			     .from = isnan(d.from) ? 0 : d.from,
 			     .until = isnan(d.to) ? 0 : d.to,
 			     .points = points,
-			     .point = points ? point : NULL };
+			     .point = point };
 	o->force = ob_force_copy(&f);
+	lua_pop(L, points ? 1 : 0);
 	if (!o->force)
 		ob_sandbox_fail(L, "%s: no memory left on this machine", where);
 }
