@@ -31,23 +31,23 @@ static void *open_library(const char *name, bool global, const char *package, ob
 
 bool ob_part_check(const char *name, const char *package, ob_error *e)
 {
-	ob_error told = { "" };
+	ob_error error = { "" };
 	int ends[2];
 	if (pipe2(ends, O_CLOEXEC) != 0)
 		return ob_fail(e, "pipe: %s", strerror(errno));
 	pid_t child = fork();
 	if (child == 0) {
-		if (!open_library(name, false, package, &told) && write(ends[1], &told, sizeof told) < 0)
+		if (!open_library(name, false, package, &error) && write(ends[1], &error, sizeof error) < 0)
 			_exit(2);
 		_exit(0);
 	}
 	close(ends[1]);
 	int status = 0;
-	ssize_t n = child < 0 ? 0 : read(ends[0], &told, sizeof told);
+	ssize_t n = child < 0 ? 0 : read(ends[0], &error, sizeof error);
 	close(ends[0]);
 	if (child < 0 || waitpid(child, &status, 0) != child || status != 0)
 		return ob_fail(e, "obsim-%s.so cannot be loaded: install %s", name, package);
-	return n <= 0 || ob_fail(e, "%s", told.text);
+	return n <= 0 || ob_fail(e, "%s", error.text);
 }
 
 const void *ob_part_load(const char *name, size_t bytes, bool global, const char *package, ob_error *e)

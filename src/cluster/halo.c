@@ -21,11 +21,11 @@ struct ob_halo {
 	// [object], own bodies: another rank may lack MOTION = the motion; BEFORE = the one before this step
 	uint8_t *owed;
 	uint8_t *inland; // [object], own bodies: 1 = no neighbour was elsewhere when a simulator got it
-	uint64_t *told; // [object], own bodies: bit r = rank r has the motion, for the first 64 ranks
+	uint64_t *sent; // [object], own bodies: bit r = rank r has the motion, for the first 64 ranks
 	uint16_t *owner; // [object]: 1 + rank of its home; 0 = not a body
-	uint32_t *heard; // bodies of other ranks with motions received in this step, published at its end
-	uint32_t heard_count;
-	uint8_t *hears; // [object]: 1 = it is in heard
+	uint32_t *received; // bodies of other ranks with motions received in this step, published at its end
+	uint32_t received_count;
+	uint8_t *is_received; // [object]: 1 = it is in received
 	known *known; // [object]
 	uint64_t *staged; // [object]: digest of its staged motion
 	ob_mail *out; // [ranks]: mail to each
@@ -56,14 +56,15 @@ ob_halo *ob_halo_create(const ob_universe *u)
 	h->ranks = ob_universe_ranks(u);
 	h->owed = calloc(objects, sizeof *h->owed);
 	h->inland = calloc(objects, sizeof *h->inland);
-	h->told = calloc(objects, sizeof *h->told);
+	h->sent = calloc(objects, sizeof *h->sent);
 	h->owner = calloc(objects, sizeof *h->owner);
-	h->heard = calloc(objects, sizeof *h->heard);
-	h->hears = calloc(objects, sizeof *h->hears);
+	h->received = calloc(objects, sizeof *h->received);
+	h->is_received = calloc(objects, sizeof *h->is_received);
 	h->known = calloc(objects, sizeof *h->known);
 	h->staged = calloc(objects, sizeof *h->staged);
 	h->out = calloc(h->ranks, sizeof *h->out);
-	if (h->owed && h->inland && h->told && h->owner && h->heard && h->hears && h->known && h->staged && h->out)
+	if (h->owed && h->inland && h->sent && h->owner && h->received && h->is_received && h->known && h->staged &&
+	    h->out)
 		return h;
 	ob_halo_destroy(h);
 	return NULL;
@@ -77,10 +78,10 @@ void ob_halo_destroy(ob_halo *h)
 		ob_mail_finish(&h->out[r]);
 	free(h->owed);
 	free(h->inland);
-	free(h->told);
+	free(h->sent);
 	free(h->owner);
-	free(h->heard);
-	free(h->hears);
+	free(h->received);
+	free(h->is_received);
 	free(h->known);
 	free(h->staged);
 	free(h->out);
@@ -129,17 +130,17 @@ bool ob_halo_digest(const ob_halo *h, const ob_universe *u, uint32_t id, uint64_
 void ob_halo_note(ob_halo *h, uint32_t id, const ob_motion *staged)
 {
 	h->staged[id] = digest_of(staged);
-	if (h->owner[id] == 1 + h->rank || h->hears[id])
+	if (h->owner[id] == 1 + h->rank || h->is_received[id])
 		return;
-	h->hears[id] = 1;
-	h->heard[h->heard_count++] = id;
+	h->is_received[id] = 1;
+	h->received[h->received_count++] = id;
 }
 
-bool ob_halo_take_heard(ob_halo *h, uint32_t *id)
+bool ob_halo_take_received(ob_halo *h, uint32_t *id)
 {
-	while (h && h->heard_count) {
-		*id = h->heard[--h->heard_count];
-		h->hears[*id] = 0;
+	while (h && h->received_count) {
+		*id = h->received[--h->received_count];
+		h->is_received[*id] = 0;
 		if (h->owner[*id] != 1 + h->rank) // else it moved here since, and was solved again
 			return true;
 	}
@@ -162,9 +163,9 @@ static uint64_t bit_of(uint32_t rank)
 	return rank < 64 ? UINT64_C(1) << rank : 0;
 }
 
-static void note_told(ob_halo *h, uint32_t id, uint32_t rank)
+static void note_sent(ob_halo *h, uint32_t id, uint32_t rank)
 {
-	h->told[id] |= bit_of(rank);
+	h->sent[id] |= bit_of(rank);
 }
 
 void ob_halo_prefetch(const ob_halo *h, uint32_t id)
@@ -185,13 +186,13 @@ void ob_halo_note_border(ob_halo *h, uint32_t id, bool is_at)
 		h->inland[id] = !is_at;
 }
 
-bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to)
+bool ob_halo_address(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	const uint64_t told = data->count->merged ? h->told[id] : 0; // void after a merge
+	const uint64_t sent = data->count->merged ? h->sent[id] : 0; // void after a merge
 	ob_pair_place at;
 	for (uint32_t r = 0; r < h->ranks; r++)
-		to[r] = all || told & bit_of(r);
+		to[r] = all || sent & bit_of(r);
 	for (uint32_t link = all || h->inland[id] ? 0 : data->first_pair[id]; ob_pair_at(data, link, &at);
 	     link = ob_pair_next(data, at)) {
 		const uint32_t other = at.side ? data->pair[at.pair].a : data->pair[at.pair].b;
@@ -201,12 +202,12 @@ bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool 
 	to[ob_universe_rank(u)] = true;
 	if (all && h->owed[id])
 		h->owed[id] = BEFORE;
-	h->told[id] = 0;
+	h->sent[id] = 0;
 	for (uint32_t r = 0; r < h->ranks; r++) {
 		if (!to[r])
 			h->owed[id] = MOTION;
 		else if (!all || !h->owed[id]) // else it may lack the motion before the step
-			note_told(h, id, r);
+			note_sent(h, id, r);
 	}
 	return all && h->owed[id];
 }
@@ -309,10 +310,10 @@ bool ob_halo_meet(ob_halo *h, ob_universe *u, ob_peers *p)
 		meet = true;
 		for (int side = 0; side < 2; side++) {
 			const uint32_t id = side ? k->b : k->a, to = ob_home_rank(u, side ? k->a : k->b);
-			if (ob_home_rank(u, id) != p->rank || h->told[id] & bit_of(to))
+			if (ob_home_rank(u, id) != p->rank || h->sent[id] & bit_of(to))
 				continue;
 			pack_body(&h->out[to], u, id, was_solved(u, id));
-			note_told(h, id, to);
+			note_sent(h, id, to);
 		}
 	}
 	return !meet || ob_parcels_exchange(p, u, OB_PEERS_MEET, h->out, true, take, h);
@@ -323,7 +324,7 @@ void ob_halo_rehome(ob_halo *h, ob_universe *u, uint32_t id, uint32_t simulator)
 	ob_home_set(u, id, simulator);
 	h->owner[id] = (uint16_t)(1 + ob_home_rank(u, id));
 	h->owed[id] = h->partial ? MOTION : 0;
-	h->told[id] = 0;
+	h->sent[id] = 0;
 }
 
 void ob_halo_give(const ob_halo *h, const ob_universe *u, uint32_t id, ob_mail *mail)

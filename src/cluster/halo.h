@@ -44,16 +44,16 @@ void ob_halo_part(ob_halo *h); // sets that, from now on
 void ob_halo_prefetch(const ob_halo *h, uint32_t id);
 
 // True if the body is another rank's. Listing the pairs of a body to solve shows if a neighbour is elsewhere, and
-// ob_halo_note_border notes it: without one, ob_halo_tell need not search the pairs. NULL is allowed.
+// ob_halo_note_border notes it: without one, ob_halo_address need not search the pairs. NULL is allowed.
 bool ob_halo_is_elsewhere(const ob_halo *h, uint32_t id);
 void ob_halo_note_border(ob_halo *h, uint32_t id, bool is_at);
 // A body of this rank's was solved: sets to[r] if rank r is sent its motion; all: every rank is. Returns true if a
 // receiver may lack the motion before the step.
-bool ob_halo_tell(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to);
+bool ob_halo_address(ob_halo *h, const ob_universe *u, uint32_t id, bool all, bool *to);
 // Notes the motion of a solved body, from this rank or another, that is to be staged.
 void ob_halo_note(ob_halo *h, uint32_t id, const ob_motion *staged);
 // Takes the next of other ranks' bodies with a staged motion, each once. false: there is none left. NULL is allowed.
-bool ob_halo_take_heard(ob_halo *h, uint32_t *id);
+bool ob_halo_take_received(ob_halo *h, uint32_t *id);
 // Notes that the body's staged motion is published. NULL is allowed.
 void ob_halo_note_published(ob_halo *h, const ob_universe *u, uint32_t id);
 // Gets the digest of the body's motion before the step. false: it differs from the one that was noted.

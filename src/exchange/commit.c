@@ -135,9 +135,9 @@ static void count_woken(ob_committer *c, ob_universe *u, uint32_t id, uint32_t s
 
 static void note_before(ob_committer *c, const ob_universe *u, const ob_mail_record *from, uint32_t id)
 {
-	uint64_t *heard = &c->heard[ob_universe_rank_of(u, from->worker)];
+	uint64_t *received = &c->received[ob_universe_rank_of(u, from->worker)];
 	bool whole;
-	*heard = ob_committer_digest_before(c, u, id, *heard, &whole);
+	*received = ob_committer_digest_before(c, u, id, *received, &whole);
 	if (!whole && !c->damaged)
 		c->damaged = OB_PEERS_MOTION | (1 + id);
 }
@@ -493,10 +493,10 @@ static bool commit_records(ob_committer *c, ob_universe *u, ob_phase phase, ob_m
 
 static void compare_before(ob_committer *c)
 {
-	uint64_t told;
+	uint64_t sent;
 	for (uint32_t rank = 0; rank < c->ranks; rank++) {
-		memcpy(&told, c->all + c->at[rank] + sizeof(ob_peers_head), sizeof told);
-		c->differs |= rank != c->rank && told != c->heard[rank];
+		memcpy(&sent, c->all + c->at[rank] + sizeof(ob_peers_head), sizeof sent);
+		c->differs |= rank != c->rank && sent != c->received[rank];
 	}
 }
 

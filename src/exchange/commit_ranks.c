@@ -12,9 +12,9 @@ bool ob_committer_share(ob_committer *c)
 {
 	c->dealt = calloc(c->ranks, sizeof *c->dealt);
 	c->to = calloc(c->ranks, sizeof *c->to);
-	c->told = calloc(c->ranks, sizeof *c->told);
-	c->heard = calloc(c->ranks, sizeof *c->heard);
-	return c->dealt && c->to && c->told && c->heard;
+	c->sent = calloc(c->ranks, sizeof *c->sent);
+	c->received = calloc(c->ranks, sizeof *c->received);
+	return c->dealt && c->to && c->sent && c->received;
 }
 
 void ob_committer_finish_shared(ob_committer *c)
@@ -24,8 +24,8 @@ void ob_committer_finish_shared(ob_committer *c)
 		ob_mail_finish(&c->dealt[r]);
 	free(c->dealt);
 	free(c->to);
-	free(c->told);
-	free(c->heard);
+	free(c->sent);
+	free(c->received);
 }
 
 // True if the others already know all that they would be sent of a contact: its existence, and the rank that keeps its
@@ -55,7 +55,7 @@ static void put_result(ob_committer *c, const ob_universe *u, const ob_mail_reco
 	const ob_found_result *found = r->data; // valid up to its motion, in both layouts
 	if (!ob_committer_is_result(u, r) || !ob_is_sound_state(found->state)) // the commit will report it
 		return;
-	const bool restores = ob_halo_tell(c->cluster->parts.halo, u, found->id, all, c->to);
+	const bool restores = ob_halo_address(c->cluster->parts.halo, u, found->id, all, c->to);
 	if (restores)
 		restored.data = ob_committer_result_of(u, r, &whole);
 	bool kept; // not used: the commit here tests the motion itself
@@ -63,7 +63,7 @@ static void put_result(ob_committer *c, const ob_universe *u, const ob_mail_reco
 		if (to == c->rank || !c->to[to])
 			continue;
 		if (!restores)
-			c->told[to] = ob_committer_digest_before(c, u, found->id, c->told[to], &kept);
+			c->sent[to] = ob_committer_digest_before(c, u, found->id, c->sent[to], &kept);
 		ob_mail_append_record(&c->dealt[to], restores ? &restored : r);
 	}
 }
@@ -85,7 +85,7 @@ static void find_concerned(ob_committer *c, const ob_universe *u, const ob_mail_
 
 static void put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_record *r, bool all)
 {
-	ob_mail_record told = *r;
+	ob_mail_record copy = *r;
 	if (r->kind == OB_RECORD_RESULT) {
 		put_result(c, u, r, all);
 		return;
@@ -94,11 +94,11 @@ static void put_for_each(ob_committer *c, const ob_universe *u, const ob_mail_re
 		return;
 	if (r->kind == OB_RECORD_CHECK)
 		find_concerned(c, u, r);
-	if (r->kind == OB_RECORD_CONTACT && !(told.bytes = contact_bytes_for_others(c, u, r)))
+	if (r->kind == OB_RECORD_CONTACT && !(copy.bytes = contact_bytes_for_others(c, u, r)))
 		return;
 	for (uint32_t to = 0; to < c->ranks; to++)
 		if (to != c->rank && (r->kind != OB_RECORD_CHECK || c->to[to]))
-			ob_mail_append_record(&c->dealt[to], &told);
+			ob_mail_append_record(&c->dealt[to], &copy);
 }
 
 // Sends each rank the records that it needs: results and checks concern ranks nearby.
@@ -112,16 +112,16 @@ static const char *deal_records(ob_committer *c, ob_universe *u, ob_peers_head h
 		ob_peers_begin(&c->dealt[to]);
 		ob_mail_append(&c->dealt[to], &nothing, sizeof nothing);
 	}
-	memset(c->told, 0, c->ranks * sizeof *c->told);
-	memset(c->heard, 0, c->ranks * sizeof *c->heard);
+	memset(c->sent, 0, c->ranks * sizeof *c->sent);
+	memset(c->received, 0, c->ranks * sizeof *c->received);
 	while (ob_committer_next(c, u, &own, &r))
 		put_for_each(c, u, &r, all);
 	for (uint32_t to = 0; to < c->ranks; to++)
 		if (!c->dealt[to].lost)
-			memcpy(c->dealt[to].bytes + sizeof head, &c->told[to], sizeof *c->told);
+			memcpy(c->dealt[to].bytes + sizeof head, &c->sent[to], sizeof *c->sent);
 	if (!all && head.phase == OB_PHASE_ISLANDS)
 		ob_halo_part(c->cluster->parts.halo);
-	c->ahead = sizeof head + sizeof *c->told;
+	c->ahead = sizeof head + sizeof *c->sent;
 	return ob_peers_exchange(&c->cluster->peers, u, head, c->dealt, true, &c->at);
 }
 

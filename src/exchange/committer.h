@@ -23,7 +23,7 @@ struct ob_committer {
 	uint32_t rank, ranks;
 	ob_mail out, *dealt; // mails to the other ranks: the same to all, or [ranks] one for each
 	bool *to; // [ranks]: true for ranks that receive a motion
-	uint64_t *told, *heard; // [ranks]: digests of motions before the step, of results sent and received
+	uint64_t *sent, *received; // [ranks]: digests of motions before the step, of results sent and received
 	uint64_t damaged; // as in ob_peers_head
 	bool differs; // as in ob_peers_head
 	int32_t woken; // as in ob_peers_head

@@ -191,7 +191,7 @@ static bool await(const ob_process *p, child *c, tail *t)
 {
 	struct pollfd polls[] = { { .fd = c->exit, .events = POLLIN },
 				  { .fd = c->said, .events = POLLIN },
-				  { .fd = p->hear ? p->ear : -1, .events = POLLIN } };
+				  { .fd = p->attend ? p->ear : -1, .events = POLLIN } };
 	for (;;) {
 		double left = time_left(p, c), nap = fmax(fmin(left, tick_s), shortest_nap_s);
 		struct timespec time = { .tv_nsec = (long)(nap * 1e9) };
@@ -202,7 +202,7 @@ static bool await(const ob_process *p, child *c, tail *t)
 			polls[1].fd = -1;
 		if (n > 0 && polls[0].revents)
 			return true;
-		c->called_off = n > 0 && polls[2].revents && !p->hear(p->of);
+		c->called_off = n > 0 && polls[2].revents && !p->attend(p->of);
 		if (left <= 0 || c->called_off)
 			return false;
 		if (p->tick)
@@ -257,16 +257,16 @@ static ob_process_end finish(const ob_process *p, child *c, bool ended, tail *t,
 						    1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec));
 	listen_to(c->said, t);
 	ssize_t size = (ssize_t)(sizeof(verdict) + p->size);
-	bool told = message && ended && read(c->answer, message, (size_t)size) == size;
+	bool answered = message && ended && read(c->answer, message, (size_t)size) == size;
 	ob_process_end end = OB_PROCESS_ANSWERED;
 	verdict v = { .fine = false };
-	if (told)
+	if (answered)
 		memcpy(&v, message, sizeof v);
-	if (told && v.fine)
+	if (answered && v.fine)
 		memcpy(answer, message + sizeof v, p->size);
-	else if (told)
+	else if (answered)
 		end = OB_PROCESS_GAVE_UP;
-	if (told && !v.fine)
+	if (answered && !v.fine)
 		ob_fail(e, "%s", v.why.text);
 	if (!ended && (interrupted || c->called_off)) {
 		ob_fail(e, "interrupted");
@@ -275,7 +275,7 @@ static ob_process_end finish(const ob_process *p, child *c, bool ended, tail *t,
 		bool cpu = p->cpu_limit_s > 0 && c->cost.cpu_s >= p->cpu_limit_s;
 		ob_fail(e, "ran longer than %g s%s", cpu ? p->cpu_limit_s : p->wall_limit_s, cpu ? " of CPU" : "");
 		end = OB_PROCESS_OUT_OF_TIME;
-	} else if (!told) {
+	} else if (!answered) {
 		end = explain_crash(status, t, e);
 	}
 	free(message);

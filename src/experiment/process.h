@@ -20,7 +20,7 @@ typedef struct ob_process {
 	double cpu_limit_s, wall_limit_s; // 0 = none
 	void (*tick)(void *of); // called a few times a second while the child runs; NULL = not wanted
 	// Called while the child runs, as soon as "ear" is readable. Returns false to end the child. NULL = not wanted
-	bool (*hear)(void *of);
+	bool (*attend)(void *of);
 	int ear; // file descriptor
 	void *of;
 } ob_process;

@@ -404,7 +404,7 @@ static bool run_own(session *s, ob_error *e)
 {
 	const ob_trial *t = &s->trials->trial[s->seat[0].trial];
 	const ob_process meanwhile = { .tick = s->experiment->quiet ? NULL : tick,
-				       .hear = s->courier ? attend_to_others : NULL,
+				       .attend = s->courier ? attend_to_others : NULL,
 				       .ear = s->courier ? ob_courier_socket(s->courier) : -1,
 				       .of = s };
 	ob_record r = ob_trial_record(s->records, t);

@@ -31,7 +31,7 @@ typedef struct helper {
 	ob_error why; // reason for which the first has gone
 } helper;
 
-static bool hear(void *of)
+static bool attend(void *of)
 {
 	helper *h = of;
 	uint32_t from;
@@ -42,7 +42,7 @@ static bool hear(void *of)
 // Returns false if interrupted.
 static bool await_order(helper *h, ob_error *e)
 {
-	while (hear(h) && !ob_processes_interrupted())
+	while (attend(h) && !ob_processes_interrupted())
 		ob_processes_wait(ob_courier_socket(h->courier), look_s);
 	if (h->news == OB_COURIER_GONE)
 		return ob_fail(e, "%s", h->why.text);
@@ -51,7 +51,7 @@ static bool await_order(helper *h, ob_error *e)
 
 static bool help(helper *h, const ob_experiment *x, const ob_trials *s, const ob_records *own, ob_error *e)
 {
-	const ob_process meanwhile = { .hear = hear, .ear = ob_courier_socket(h->courier), .of = h };
+	const ob_process meanwhile = { .attend = attend, .ear = ob_courier_socket(h->courier), .of = h };
 	ob_spread_message said = { .kind = OB_SPREAD_JOIN,
 				   .trial = ob_spread_digest(x, s),
 				   .record = ob_trial_record(own, &(ob_trial){ .repeat = 0 }) };
@@ -74,7 +74,7 @@ static void fail(helper *h, const ob_error *why)
 	ob_spread_message said = { .kind = OB_SPREAD_FAILED };
 	snprintf(said.record.reason, sizeof said.record.reason, "%.150s", why->text);
 	ob_courier_send(h->courier, 0, &said, NULL);
-	for (double end = ob_clock_wall() + grace_s; ob_clock_wall() < end && h->news != OB_COURIER_GONE; hear(h))
+	for (double end = ob_clock_wall() + grace_s; ob_clock_wall() < end && h->news != OB_COURIER_GONE; attend(h))
 		ob_processes_wait(ob_courier_socket(h->courier), look_s);
 }
 

@@ -17,9 +17,9 @@ void ob_death_find_object(ob_death *d, const ob_universe *u)
 
 void ob_death_print(const ob_death *d, char *line, size_t size)
 {
-	const bool told = d->object == OB_NO_OBJECT || d->cause == OB_DEATH_FAILURE || d->object == d->worker;
+	const bool named = d->object == OB_NO_OBJECT || d->cause == OB_DEATH_FAILURE || d->object == d->worker;
 	int n = snprintf(line, size, "%s", d->text);
-	if (!told && n >= 0 && (size_t)n < size)
+	if (!named && n >= 0 && (size_t)n < size)
 		n += snprintf(line + n, size - (size_t)n, ", busy with object %u%s%.*s%s", d->object,
 			      *d->name ? " (" : "", OB_NAME_MAX, d->name, *d->name ? ")" : "");
 	if (*d->words && n >= 0 && (size_t)n < size)

@@ -307,7 +307,7 @@ static void get_memory(const ob_host *h, ob_host_times *out)
 }
 
 // True if workers count tasks. Contained simulators, and those of one object each, do not.
-static bool tells_of_tasks(const ob_universe *u)
+static bool has_task_times(const ob_universe *u)
 {
 	return !ob_universe_contains(u) && !ob_universe_settings(u)->one_per_object;
 }
@@ -324,7 +324,7 @@ void ob_host_get_times(ob_host *h, ob_host_times *out)
 		.step_max_s = ob_latency_percentile(steps, 1),
 		.critical_s = 1e-9 * (double)ob_critical_path(h->u),
 		.alone_s = 1e-9 * (double)ob_time_alone(h->u),
-		.simulated_s = tells_of_tasks(h->u) ? 1e-9 * (double)ob_simulated_path(h->u) : NAN,
+		.simulated_s = has_task_times(h->u) ? 1e-9 * (double)ob_simulated_path(h->u) : NAN,
 	};
 	get_memory(h, out);
 	pthread_mutex_lock(&h->failure_lock); // the supervisor may just be counting a death

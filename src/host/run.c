@@ -22,7 +22,7 @@ static void begin_interval(ob_host *h)
 	uint64_t step = ob_step_count(h->u);
 	ob_population_update(h->population, step, h->requests);
 	ob_restart_checkpoint(h, ob_restart_freeze(h));
-	ob_host_tell_of_scripts(h);
+	ob_host_log_scripts(h);
 	if (h->started && step >= h->target)
 		return;
 	uint64_t next = ob_population_next_step(h->population), retry = ob_restart_next_step(h);
@@ -125,7 +125,7 @@ void ob_host_want_contacts(ob_host *h, uint64_t step)
 }
 
 // Warns once of each script that does something without effect.
-static void tell_warning(ob_host *h, const ob_script_turn *turn, const char *warning)
+static void log_warning(ob_host *h, const ob_script_turn *turn, const char *warning)
 {
 	const uint64_t bit = (uint64_t)1 << (turn->script - 1) % OB_SCRIPTS_MAX;
 	if (!(h->scripts.warned & bit))
@@ -135,7 +135,7 @@ static void tell_warning(ob_host *h, const ob_script_turn *turn, const char *war
 }
 
 // Warns once of each object whose script an error has stopped, across restarts.
-static void tell_of_script(ob_host *h, uint32_t cell)
+static void log_script(ob_host *h, uint32_t cell)
 {
 	const ob_step_data *data = ob_universe_step_data(h->u);
 	const ob_script_turn *turn = &data->script_turn[cell];
@@ -143,15 +143,15 @@ static void tell_of_script(ob_host *h, uint32_t cell)
 	memcpy(error, data->script_cell[cell].error, OB_SCRIPT_ERROR_BYTES);
 	ob_utf8_make_plain(error);
 	if (!(turn->flags & OB_SCRIPT_STOPPED)) {
-		tell_warning(h, turn, error);
+		log_warning(h, turn, error);
 		return;
 	}
 	const uint64_t who = (uint64_t)turn->generation << 32 | turn->object;
-	for (uint32_t i = 0; i < h->scripts.told; i++)
+	for (uint32_t i = 0; i < h->scripts.logged; i++)
 		if (h->scripts.who[i] == who)
 			return;
-	if (h->scripts.told < OB_SCRIPTS_TOLD)
-		h->scripts.who[h->scripts.told++] = who;
+	if (h->scripts.logged < OB_SCRIPTS_LOGGED)
+		h->scripts.who[h->scripts.logged++] = who;
 	else if (h->scripts.more++ > 0)
 		return;
 	if (h->scripts.more)
@@ -162,7 +162,7 @@ static void tell_of_script(ob_host *h, uint32_t cell)
 			    data->script_cell[cell].failed_step * ob_universe_settings(h->u)->step_length, error);
 }
 
-void ob_host_tell_of_scripts(ob_host *h)
+void ob_host_log_scripts(ob_host *h)
 {
 	const ob_step_data *data = ob_universe_step_data(h->u);
 	const ob_script_counts *count = data->script_counts;
@@ -173,7 +173,7 @@ void ob_host_tell_of_scripts(ob_host *h)
 		if (data->script_turn[i].script &&
 		    data->script_turn[i].flags & (OB_SCRIPT_STOPPED | OB_SCRIPT_WARNED) &&
 		    data->script_turn[i].object < data->objects_max)
-			tell_of_script(h, i);
+			log_script(h, i);
 }
 
 // A gate that was stopped looks like a pause: the step then falls short of the interval's end.

@@ -16,7 +16,7 @@ enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24 }; // offsets of counts
 // State of an object as sent to viewers
 typedef struct known {
 	uint32_t id, generation;
-	bool announced, told; // announced: the object was sent; told: its motion was
+	bool announced, sent; // announced: the object was sent; sent: its motion was
 	bool fixed, froze; // froze: not yet taken
 	double radius; // m
 	ob_passport passport;
@@ -136,17 +136,17 @@ static ob_feed_kind kind_of(const known *k, const ob_motion *m, double step_leng
 // Deviation (m): largest distance of a point of the object from viewers' prediction, at the beginning of its motion m.
 static double off(const known *k, const ob_motion *m)
 {
-	const ob_motion *told = &k->motion;
-	double s = m->t0 - told->t0;
-	ob_vec3 p = ob_madd(ob_madd(told->p, s, told->v), .5 * s * s, told->a);
-	ob_quat q = ob_quat_turn(told->q, ob_scale(told->w, s));
+	const ob_motion *sent = &k->motion;
+	double s = m->t0 - sent->t0;
+	ob_vec3 p = ob_madd(ob_madd(sent->p, s, sent->v), .5 * s * s, sent->a);
+	ob_quat q = ob_quat_turn(sent->q, ob_scale(sent->w, s));
 	ob_quat turn = ob_quat_mul(m->q, (ob_quat){ q.w, -q.x, -q.y, -q.z });
 	return ob_norm(ob_sub(m->p, p)) + 2 * k->radius * ob_norm(ob_v3(turn.x, turn.y, turn.z));
 }
 
 static bool is_news(const ob_feed *f, const known *k, const ob_motion *m, ob_feed_kind kind)
 {
-	if (!k->told || kind != k->kind || kind >= OB_FEED_FREE)
+	if (!k->sent || kind != k->kind || kind >= OB_FEED_FREE)
 		return true;
 	if (kind == OB_FEED_STANDS)
 		return memcmp(&m->p, &k->motion.p, sizeof m->p) != 0 || memcmp(&m->q, &k->motion.q, sizeof m->q) != 0;
@@ -178,7 +178,7 @@ static bool is_wide(const known *k)
 // Stores the motion as sent: viewers extrapolate from rounded velocities, and so does the feed.
 static void know(known *k, const ob_motion *m, ob_feed_kind kind)
 {
-	k->told = true;
+	k->sent = true;
 	k->kind = kind;
 	k->motion = *m;
 	if (!is_wide(k)) {
@@ -290,7 +290,7 @@ static bool read_roster(ob_feed *f, size_t *entries)
 }
 
 // Sends removed, then created objects, and their number; the list then equals the roster. false: out of memory.
-static bool tell_roster(ob_feed *f, ob_message *out, uint32_t *created)
+static bool write_roster(ob_feed *f, ob_message *out, uint32_t *created)
 {
 	size_t entries, kept = 0;
 	uint32_t removed = 0;
@@ -346,9 +346,9 @@ static bool looks_alike(const ob_passport *a, const ob_passport *b)
 }
 
 // Sends objects whose look has changed, in the form of new ones; returns their number.
-static uint32_t tell_looks(ob_feed *f, ob_message *out)
+static uint32_t write_looks(ob_feed *f, ob_message *out)
 {
-	uint32_t told = 0;
+	uint32_t sent = 0;
 	for (size_t i = 0; i < f->objects; i++) {
 		known *k = &f->object[i];
 		const uint64_t version = f->source.passport_version(f->source.of, k->id);
@@ -362,14 +362,14 @@ static uint32_t tell_looks(ob_feed *f, ob_message *out)
 		k->passport = now;
 		if ((now.flags & OB_OBJECT_STATIC) != 0 && !k->fixed) { // it was frozen: its pose is sent again
 			k->fixed = true;
-			k->told = false;
+			k->sent = false;
 			k->froze = true;
 			f->froze++;
 		}
 		put_object(out, &f->source, k);
-		told++;
+		sent++;
 	}
-	return told;
+	return sent;
 }
 
 bool ob_feed_take_frozen(ob_feed *f, size_t *at, uint32_t *id)
@@ -412,14 +412,14 @@ static ob_message *whole_or_none(ob_message *out)
 	return NULL;
 }
 
-static uint32_t tell_motions(ob_feed *f, ob_message *out, double time)
+static uint32_t write_motions(ob_feed *f, ob_message *out, double time)
 {
-	uint32_t told = 0, before = UINT32_MAX;
+	uint32_t sent = 0, before = UINT32_MAX;
 	for (size_t i = 0; i < f->objects; i++) {
 		known *k = &f->object[i];
 		ob_motion m;
-		if ((k->fixed && k->told) || !f->source.motion(f->source.of, k->id, &m) ||
-		    (k->told && m.t0 == k->seen_t0 && m.step == k->seen_step))
+		if ((k->fixed && k->sent) || !f->source.motion(f->source.of, k->id, &m) ||
+		    (k->sent && m.t0 == k->seen_t0 && m.step == k->seen_step))
 			continue;
 		ob_feed_kind kind = kind_of(k, &m, f->source.step_length);
 		k->seen_t0 = m.t0;
@@ -428,9 +428,9 @@ static uint32_t tell_motions(ob_feed *f, ob_message *out, double time)
 			continue;
 		know(k, &m, kind);
 		put_motion(out, k, time, &before);
-		told++;
+		sent++;
 	}
-	return told;
+	return sent;
 }
 
 ob_message *ob_feed_next(ob_feed *f, const ob_pace_state *pace)
@@ -446,10 +446,10 @@ ob_message *ob_feed_next(ob_feed *f, const ob_pace_state *pace)
 	bool news = anew || number != f->roster_number || time != f->time || pace->paused != f->pace.paused ||
 		    pace->rate != f->pace.rate;
 	uint32_t objects = 0;
-	if ((anew || number != f->roster_number) && !tell_roster(f, out, &objects))
+	if ((anew || number != f->roster_number) && !write_roster(f, out, &objects))
 		out->failed = true;
-	objects += tell_looks(f, out);
-	uint32_t motions = tell_motions(f, out, time);
+	objects += write_looks(f, out);
+	uint32_t motions = write_motions(f, out, time);
 	ob_message_set_u32(out, CREATED_AT, objects);
 	ob_message_set_u32(out, MOTIONS_AT, motions);
 	f->lost = out->failed;
@@ -471,7 +471,7 @@ ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace)
 	for (size_t i = 0; i < f->objects; i++)
 		put_object(out, &f->source, &f->object[i]);
 	for (size_t i = 0; i < f->objects; i++) {
-		if (!f->object[i].told)
+		if (!f->object[i].sent)
 			continue;
 		put_motion(out, &f->object[i], f->time, &before);
 		motions++;

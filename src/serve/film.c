@@ -87,7 +87,7 @@ static double recorded_time(const void *of)
 typedef struct film {
 	ob_recording *recording;
 	ob_feed *feed;
-	ob_message *told; // messages with their lengths
+	ob_message *messages; // with their lengths
 	ob_message *objects, *events; // elements of JSON arrays
 	ob_passport *passport; // [ids]: in the last state
 	uint32_t ids;
@@ -139,13 +139,13 @@ static bool note_population(film *f)
 	return !f->objects->failed && !f->events->failed;
 }
 
-static bool tell_state(film *f)
+static bool write_state(film *f)
 {
 	static const ob_pace_state pace = { .rate = 1 };
 	ob_message *m = ob_feed_next(f->feed, &pace);
 	if (!m)
 		return false; // there is always news: the time
-	put(f->told, m);
+	put(f->messages, m);
 	f->since += m->size;
 	f->whole = f->whole ? f->whole : m->size; // the first is a whole state
 	ob_message_release(m);
@@ -154,7 +154,7 @@ static bool tell_state(film *f)
 	m = ob_feed_whole(f->feed, &pace);
 	if (!m)
 		return false;
-	put(f->told, m);
+	put(f->messages, m);
 	f->since = 0;
 	f->whole = m->size;
 	ob_message_release(m);
@@ -170,18 +170,18 @@ static bool has_time(const film *f, const char *path, ob_error *e)
 							    path, f->seconds, 4 * f->seconds);
 }
 
-static bool tell_all(film *f, const char *path, ob_error *e)
+static bool write_states(film *f, const char *path, ob_error *e)
 {
 	uint64_t population = UINT64_MAX;
 	bool ended = false;
 	while (ob_recording_next(f->recording, &ended, e)) {
 		bool changed = ob_recording_population(f->recording) != population;
 		population = ob_recording_population(f->recording);
-		if ((changed && !note_population(f)) || !tell_state(f) || f->told->failed)
+		if ((changed && !note_population(f)) || !write_state(f) || f->messages->failed)
 			return ob_fail(e, "%s: no memory to show it", path);
 		if (!has_time(f, path, e))
 			return false;
-		if (f->told->size + 2 * (f->objects->size + f->events->size) > bytes_max)
+		if (f->messages->size + 2 * (f->objects->size + f->events->size) > bytes_max)
 			return ob_fail(e,
 				       "%s: it is too long to be shown in a browser, which would need more than %zu "
 				       "MiB for it; record fewer steps, or fewer objects",
@@ -269,10 +269,10 @@ static ob_message *pack(const film *f, const char *path, ob_error *e)
 	bool begun = head && out && put_head(f, head) &&
 		     deflateInit2(&z, 6, Z_DEFLATED, MAX_WBITS + GZIP, 8, Z_DEFAULT_STRATEGY) == Z_OK;
 	bool ok = begun && deflate_some(&z, head->bytes, head->size, false, out), in_time = true;
-	for (size_t at = 0, n; ok && at < f->told->size && (in_time = has_time(f, path, e)); at += n) {
-		const size_t left = f->told->size - at;
+	for (size_t at = 0, n; ok && at < f->messages->size && (in_time = has_time(f, path, e)); at += n) {
+		const size_t left = f->messages->size - at;
 		n = left < PIECE ? left : PIECE;
-		ok = deflate_some(&z, f->told->bytes + at, n, n == left, out);
+		ok = deflate_some(&z, f->messages->bytes + at, n, n == left, out);
 	}
 	if (begun)
 		deflateEnd(&z);
@@ -301,16 +301,16 @@ ob_message *ob_film_make(ob_recording *r, const char *path, double seconds, ob_e
 		   .seconds = seconds,
 		   .until = ob_clock_process_cpu() + seconds,
 		   .feed = ob_feed_create_of(&source),
-		   .told = ob_message_new(false),
+		   .messages = ob_message_new(false),
 		   .objects = ob_message_new(true),
 		   .events = ob_message_new(true) };
 	ob_message *out = NULL;
-	if (!f.feed || !f.told || !f.objects || !f.events)
+	if (!f.feed || !f.messages || !f.objects || !f.events)
 		ob_fail(e, "%s: no memory to show it", path);
-	else if (tell_all(&f, path, e))
+	else if (write_states(&f, path, e))
 		out = pack(&f, path, e);
 	ob_feed_destroy(f.feed);
-	ob_message_release(f.told);
+	ob_message_release(f.messages);
 	ob_message_release(f.objects);
 	ob_message_release(f.events);
 	free(f.passport);

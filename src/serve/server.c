@@ -62,7 +62,7 @@ struct ob_server {
 	ob_client *clients;
 	uint32_t count, numbers; // numbers: given to clients so far
 	double details_at; // s
-	uint64_t frozen_told; // ns: time of the latest failure that viewers were sent
+	uint64_t frozen_sent; // ns: time of the latest failure that viewers were sent
 	bool called; // the library has called back in this turn of the loop
 };
 
@@ -100,7 +100,7 @@ static void send_one(ob_client *c, ob_message *m)
 	ob_message_release(m);
 }
 
-static void tell_error(ob_client *c, const char *text)
+static void send_error(ob_client *c, const char *text)
 {
 	ob_message *m = ob_message_new(true);
 	if (!m)
@@ -112,12 +112,12 @@ static void tell_error(ob_client *c, const char *text)
 }
 
 // Notifies viewers of frozen objects: all of the cause, and the creators of theirs.
-static void tell_frozen(ob_server *s)
+static void send_frozen(ob_server *s)
 {
 	size_t at = 0;
 	uint32_t id;
 	ob_roster_entry entry;
-	send_all(s, ob_facts_frozen(s->host, &s->frozen_told), false);
+	send_all(s, ob_facts_frozen(s->host, &s->frozen_sent), false);
 	while (ob_feed_take_frozen(s->feed, &at, &id)) {
 		if (!ob_roster_find(ob_host_roster(s->host), id, &entry) || entry.origin == 0)
 			continue;
@@ -155,7 +155,7 @@ static void look(lws_sorted_usec_list_t *tick)
 	if (contacts)
 		send_all(s, ob_feed_contacts(s->feed), true);
 	if (details && s->clients) {
-		tell_frozen(s);
+		send_frozen(s);
 		send_all(s, ob_facts_statistics(s->host, s->count), false);
 		s->details_at = begin + detail_interval;
 	}
@@ -168,7 +168,7 @@ static void look(lws_sorted_usec_list_t *tick)
 static bool may(ob_server *s, ob_client *c)
 {
 	if (s->config.look_only)
-		tell_error(c, "viewers of this universe may change nothing");
+		send_error(c, "viewers of this universe may change nothing");
 	return !s->config.look_only;
 }
 
@@ -176,12 +176,12 @@ static void create(ob_server *s, ob_client *c, const ob_object_def *def)
 {
 	ob_error e;
 	if (!ob_allowance_take(&c->creations, ob_clock_wall(), creations_rate))
-		tell_error(c, "too many objects in a second: try again");
+		send_error(c, "too many objects in a second: try again");
 	else if (ob_roster_copy(ob_host_roster(s->host), NULL, 0) >= ob_universe_capacity(ob_host_universe(s->host)))
-		tell_error(c, "the universe is full: remove an object first");
+		send_error(c, "the universe is full: remove an object first");
 	else if (!ob_host_request(s->host, &(ob_request){ .kind = OB_REQUEST_ADD, .origin = c->number, .def = *def },
 				  &e))
-		tell_error(c, e.text);
+		send_error(c, e.text);
 }
 
 static void carry_out(ob_server *s, ob_client *c, const ob_command *asked)
@@ -231,7 +231,7 @@ static int refuse_client(ob_client *c, enum lws_close_status status, const char 
 	return -1;
 }
 
-static int hear(ob_server *s, ob_client *c, const char *bytes, size_t size)
+static int receive(ob_server *s, ob_client *c, const char *bytes, size_t size)
 {
 	ob_command asked;
 	ob_error e;
@@ -251,7 +251,7 @@ static int hear(ob_server *s, ob_client *c, const char *bytes, size_t size)
 	if (ob_command_read(&asked, c->command, size, &e))
 		carry_out(s, c, &asked);
 	else
-		tell_error(c, e.text);
+		send_error(c, e.text);
 	return 0;
 }
 
@@ -423,7 +423,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 		enter(s, &now->client, wsi);
 		return 0;
 	case LWS_CALLBACK_RECEIVE:
-		return hear(s, &now->client, in, size);
+		return receive(s, &now->client, in, size);
 	case LWS_CALLBACK_SERVER_WRITEABLE:
 		return write_some(s, &now->client);
 	case LWS_CALLBACK_CLOSED:

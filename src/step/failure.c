@@ -17,8 +17,8 @@ static const char *name_of(const ob_universe *u, uint32_t id)
 }
 
 // Names the object that is near most others: the one that is too large, or too fast.
-static void tell_of_neighbours(const ob_universe *u, const char *what, uint32_t most, uint32_t blamed, char *text,
-			       size_t size)
+static void describe_neighbours(const ob_universe *u, const char *what, uint32_t most, uint32_t blamed, char *text,
+				size_t size)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	uint32_t id = blamed;
@@ -35,7 +35,7 @@ static void tell_of_neighbours(const ob_universe *u, const char *what, uint32_t 
 }
 
 // Names some objects of the island that took so much work.
-static void tell_of_work(const ob_universe *u, uint32_t object, unsigned long long step, char *text, size_t size)
+static void describe_work(const ob_universe *u, uint32_t object, unsigned long long step, char *text, size_t size)
 {
 	enum { SHOWN = 4 };
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -80,10 +80,10 @@ const char *ob_sim_failure(const ob_universe *u)
 	uint32_t object;
 	switch (ob_step_failed(u, &object)) {
 	case OB_STEP_PAIRS_FULL:
-		tell_of_neighbours(u, "pairs of neighbours", data->pairs_max, object, text, sizeof text);
+		describe_neighbours(u, "pairs of neighbours", data->pairs_max, object, text, sizeof text);
 		return text;
 	case OB_STEP_NEIGHBOURS_FULL:
-		tell_of_neighbours(u, "neighbours", data->neighbours_max, object, text, sizeof text);
+		describe_neighbours(u, "neighbours", data->neighbours_max, object, text, sizeof text);
 		return text;
 	case OB_STEP_DIVERGED:
 		snprintf(text, sizeof text,
@@ -99,7 +99,7 @@ const char *ob_sim_failure(const ob_universe *u)
 			 step, name_of(u, object));
 		return text;
 	case OB_STEP_OVERWORKED:
-		tell_of_work(u, object, step, text, sizeof text);
+		describe_work(u, object, step, text, sizeof text);
 		return text;
 	case OB_STEP_BROKEN:
 		snprintf(text, sizeof text, "what simulators share is wrong when %llu steps are complete: %.*s",

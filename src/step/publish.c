@@ -63,7 +63,7 @@ void ob_results_commit(ob_sim *s, uint32_t first, uint32_t end)
 			publish(s, halo, id);
 		}
 	}
-	for (uint32_t id; ob_halo_take_heard(halo, &id);)
+	for (uint32_t id; ob_halo_take_received(halo, &id);)
 		publish(s, halo, id);
 	ob_step_woken(s->u, woken);
 }

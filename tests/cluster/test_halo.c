@@ -124,7 +124,7 @@ static void solve(rank *r)
 	for (uint32_t id = 0; id < BODIES; id++)
 		if (s->solved[id] && s->home[id] == r->number) {
 			note_border(r, id);
-			s->restored[id] = ob_halo_tell(r->h, r->u, id, s->all, s->told[id]);
+			s->restored[id] = ob_halo_address(r->h, r->u, id, s->all, s->told[id]);
 		}
 	if (!s->all)
 		ob_halo_part(r->h);
@@ -164,7 +164,7 @@ static void publish(rank *r)
 			ob_commit_motion(r->u, id);
 			ob_halo_note_published(r->h, r->u, id);
 		}
-	while (ob_halo_take_heard(r->h, &id)) {
+	while (ob_halo_take_received(r->h, &id)) {
 		r->wrong += r->s->home[id] == r->number || !r->s->solved[id];
 		ob_commit_motion(r->u, id);
 		ob_halo_note_published(r->h, r->u, id);
