@@ -52,7 +52,7 @@ static ob_chart *chart_cost(const ob_comparison *c, const ob_sweep_point *p)
 		return NULL;
 	int n = list_configurations(d, c, p, id);
 	bool interval = false, several = false;
-	snprintf(d->title, sizeof d->title, "What a step of a body costs, %" PRIu32 " objects", p->objects);
+	snprintf(d->title, sizeof d->title, "Cost of a step per body, %" PRIu32 " objects", p->objects);
 	snprintf(d->x_label, sizeof d->x_label, "CPU per body and step (µs)");
 	d->plot.x.scale = OB_SCALE_LOG;
 	for (int i = 0; i < n; i++) { // the interval as a line behind the marker
@@ -114,7 +114,7 @@ static ob_chart *chart_growth(const ob_comparison *c)
 	ob_chart *d = grows ? begin_chart(c, "") : NULL;
 	if (!d)
 		return NULL;
-	snprintf(d->title, sizeof d->title, "What a step of a body costs, by the number of objects");
+	snprintf(d->title, sizeof d->title, "Cost of a step per body over the number of objects");
 	snprintf(d->x_label, sizeof d->x_label, "objects");
 	snprintf(d->y_label, sizeof d->y_label, "CPU per body and step (µs)");
 	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
@@ -217,7 +217,7 @@ static void write_setting(ob_page *p, const void *with)
 	for (size_t i = 0; i < c->records.count; i++)
 		took += c->records.record[i].took_s;
 	ob_comparison_print_runs(c, runs, sizeof runs);
-	ob_page_markup(p, "<dt>Runs</dt><dd>%s, by turns, to and fro; %.0f s in all</dd>\n", runs, took);
+	ob_page_markup(p, "<dt>Runs</dt><dd>%s, interleaved in both orders; %.0f s in all</dd>\n", runs, took);
 }
 
 static void write_growth(ob_page *p, const void *with)

@@ -54,7 +54,7 @@ static void write_headline(char *to, size_t room, const ob_comparison *c, const 
 	if (isnan(r.median))
 		return;
 	if (r.n < runs_least) {
-		say(to, room, "That cannot be told from so few runs: take --repeats 6.");
+		say(to, room, "Too few runs to decide: use --repeats 6.");
 		return;
 	}
 	if (r.low > 1 + alike)
@@ -62,7 +62,7 @@ static void write_headline(char *to, size_t room, const ob_comparison *c, const 
 	else if (r.high < 1 - alike)
 		say(to, room, "Processes");
 	else
-		say(to, room, "Either, for they cost the same");
+		say(to, room, "Either: they cost the same");
 	if (each.low > 1 + alike)
 		say(to, room, "; but let objects share them: one for each object costs %.1f times as much.",
 		    each.median);
@@ -90,8 +90,7 @@ static void compare_worker_counts(char *to, size_t room, const ob_comparison *c,
 	ob_spread threads = cost_over_pool(c, p, OB_CONFIGURATION_THREADS_EACH);
 	ob_spread processes = cost_over_pool(c, p, OB_CONFIGURATION_PROCESSES_EACH);
 	if (!isnan(groups.median))
-		say(to, room,
-		    "Where a crash must not take all along: process groups of %d cost %.2f times the thread pool%s. ",
+		say(to, room, "Process groups of %d, which confine a crash, cost %.2f times the thread pool%s. ",
 		    OB_COMPARE_GROUP, groups.median, range(groups).text);
 	if (!isnan(threads.median))
 		say(to, room, "A thread for each object costs %.2f times the thread pool%s. ", threads.median,
@@ -144,8 +143,9 @@ static void explain_time(char *to, size_t room, const ob_comparison *c, const ob
 	}
 	if (isfinite(least))
 		say(to, room,
-		    "Where the time goes: work, waiting for a core, at the gate and for the host are %.1f %% of the "
-		    "workers' time at least (%s).",
+		    "Work, waiting for a core, at the gate and for the host account for at least %.1f %% of the "
+		    "workers' "
+		    "time (%s).",
 		    100 * least, where);
 }
 

@@ -405,7 +405,7 @@ ob_chart *ob_lab_chart_lag(const ob_lab_analysis *d)
 		ob_chart_free(chart);
 		return NULL;
 	}
-	snprintf(chart->title, sizeof chart->title, "What it costs to read a partner late");
+	snprintf(chart->title, sizeof chart->title, "Error of reading a partner late");
 	add_configuration(chart, d, c);
 	snprintf(chart->x_label, sizeof chart->x_label, "iterations that a partner's state is late");
 	snprintf(chart->y_label, sizeof chart->y_label, "relative error");

@@ -168,7 +168,7 @@ static void write_convergence(ob_page *p, const void *with)
 	for (size_t i = 0; i < CONVERGENCE_CASES; i++) {
 		ob_chart *chart = convergence_chart(with, i);
 		begun = begun || begin_section(p, chart, "order", "Order of convergence",
-					       "What doubling the substeps buys. An error of first order halves, one "
+					       "Gain of doubling the substeps. An error of first order halves, one "
 					       "of second order falls to a quarter; "
 					       "the observed order stands beside each name.");
 		if (chart)

@@ -18,7 +18,7 @@ static const struct {
 	ob_paper_metric metric;
 	const char *name;
 } runtimes[RUNTIMES] = {
-	{ OB_PAPER_STEP, "the step that everybody waits for" },
+	{ OB_PAPER_STEP, "the slowest simulator's step" },
 	{ OB_PAPER_TOTAL, "the CPU time of all simulators together" },
 	{ OB_PAPER_ONE, "the CPU time of one simulator" },
 };
@@ -187,7 +187,7 @@ static void judge_load(const evidence *c)
 		say_all_pairs(c);
 	} else {
 		claim->verdict = OB_PAPER_FAILS;
-		OB_SAY(claim->because, " That is no difference that can be told.");
+		OB_SAY(claim->because, " The difference lies within the noise.");
 	}
 	say_itself(c, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_STEP);
 }
@@ -208,7 +208,7 @@ static void judge_kept(const evidence *c)
 	       claim->verdict == OB_PAPER_HOLDS   ? "A better test costs at least as much again."
 	       : claim->verdict == OB_PAPER_FAILS ? "A better test does not double it: its cost is no reason to keep "
 						    "boxes along the axes."
-						  : "Whether it doubles cannot be told.");
+						  : "These runs do not decide whether it doubles.");
 	OB_SAY(claim->itself, "It has no run with another test.");
 }
 
@@ -227,7 +227,7 @@ static void judge_obb(const evidence *c)
 		return;
 	}
 	OB_SAY(claim->because,
-	       "Of each %s, with OBB the busiest simulator of OBS needs %s of CPU, the common environment ",
+	       "In each %s the busiest simulator of OBS with OBB needs %s of CPU, the common environment ",
 	       ob_word_value(OB_PAPER_STEP_LENGTH, OB_PAPER_STEP).text,
 	       ob_word_value(obs.median, OB_PAPER_BUSIEST).text);
 	OB_SAY(claim->because, "%s. The step takes ", ob_word_value(common.median, OB_PAPER_BUSIEST).text);

@@ -142,7 +142,7 @@ static const char *const verdict_class[OB_PAPER_VERDICTS] = { "met", "partly", "
 static void write_cards(ob_page *p, const void *with)
 {
 	static const char *const texts[OB_PAPER_VERDICTS] = { "hold", "hold only under a condition", "do not hold",
-							      "cannot be told from these runs" };
+							      "undecided by these runs" };
 	const ob_paper_report_model *m = with;
 	int count[OB_PAPER_VERDICTS] = { 0 };
 	for (int i = 0; i < OB_PAPER_CLAIMS; i++)
