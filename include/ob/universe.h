@@ -99,7 +99,8 @@ typedef struct ob_motion {
 		double frequency; // rad/s, if it swings: then a is the acceleration at t0
 	};
 	float reach; // m, most that each step adds to that path, until the next publication
-	uint32_t substeps; // requested by its island for the next step, if a tolerance chooses; 0 = none yet
+	uint16_t substeps; // requested by its island for the next step, if a tolerance chooses; 0 = none yet
+	uint16_t deviation; // bound of the errors since the second began: 2^(deviation / 1024 - 48) m; 0 = none
 } ob_motion;
 
 typedef enum ob_universe_state {

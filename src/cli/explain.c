@@ -138,6 +138,7 @@ static void print_costs(const ob_explained *x, FILE *f)
 		[OB_PROFILE_PROJECT] = "penetrations pushed apart",
 		[OB_PROFILE_PUBLISH] = "publication of motions",
 		[OB_PROFILE_SCRIPTS] = "objects' scripts",
+		[OB_PROFILE_ESTIMATE] = "steps solved again to estimate their errors",
 		[OB_PROFILE_VERIFY] = "steps solved again to know their errors",
 	};
 	double rest = x->cpu_s;

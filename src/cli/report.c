@@ -31,6 +31,13 @@ static const struct field {
 	FIELD(COUNT, substeps),
 	FIELD(REAL, tolerance),
 	FIELD(REAL, error_reached),
+	FIELD(REAL, depth_reached),
+	FIELD(REAL, creep_reached),
+	FIELD(REAL, bounce_reached),
+	FIELD(REAL, deviation_reached),
+	FIELD(REAL, bounded_share),
+	FIELD(COUNT, unbounded_steps),
+	FIELD(COUNT, estimates),
 	FIELD(COUNT, substeps_min),
 	FIELD(COUNT, substeps_median),
 	FIELD(COUNT, substeps_max),
@@ -253,6 +260,12 @@ void ob_report_count(ob_report *r, const ob_counters *c, bool timed)
 {
 	bool chosen = r->tolerance > 0;
 	r->error_reached = chosen ? c->error : NAN;
+	r->depth_reached = chosen ? c->depth : NAN;
+	r->creep_reached = chosen ? c->creep : NAN;
+	r->bounce_reached = chosen ? c->bounce : NAN;
+	r->deviation_reached = chosen ? c->deviation : NAN;
+	r->unbounded_steps = c->unbounded;
+	r->estimates = c->estimates;
 	r->substeps_min = quantile(c, 0);
 	r->substeps_median = quantile(c, .5);
 	r->substeps_max = quantile(c, 1);
@@ -281,13 +294,41 @@ bool ob_report_missed_tolerance(const ob_report *r)
 	return r->tolerance > 0 && r->islands_over > 0;
 }
 
+bool ob_report_motion_is_bounded(const ob_report *r)
+{
+	return !(r->tolerance > 0) || r->unbounded_steps == 0;
+}
+
+// The cause of the largest error.
+static const char *cause_of(const ob_report *r)
+{
+	return r->error_reached == 0                  ? ""
+	       : r->error_reached == r->depth_reached ? " of depth"
+	       : r->error_reached == r->creep_reached ? " of creep"
+						      : " of a bounce";
+}
+
+// States the share of body-time in which the errors of motion are bounded, too.
+static void print_motion(const ob_report *r, FILE *f)
+{
+	ob_quantity a, b;
+	if (!(r->tolerance > 0) || isnan(r->bounded_share))
+		return;
+	fprintf(f, "  motion       errors of a second within %s in %.3g %% of body-time",
+		ob_quantity_text(&a, r->tolerance, "m"), 100 * r->bounded_share);
+	if (r->deviation_reached > 0)
+		fprintf(f, "; the largest by estimate %s", ob_quantity_text(&b, r->deviation_reached, "m"));
+	fputc('\n', f);
+}
+
 static void print_tolerance(const ob_report *r, FILE *f)
 {
 	ob_quantity a, b;
 	if (!(r->tolerance > 0))
 		return;
-	fprintf(f, "  tolerance    %s %s, the largest error was %s; ", ob_quantity_text(&a, r->tolerance, "m"),
-		ob_report_missed_tolerance(r) ? "MISSED" : "kept", ob_quantity_text(&b, r->error_reached, "m"));
+	fprintf(f, "  tolerance    %s %s, the largest error was %s%s; ", ob_quantity_text(&a, r->tolerance, "m"),
+		ob_report_missed_tolerance(r) ? "MISSED" : "kept", ob_quantity_text(&b, r->error_reached, "m"),
+		cause_of(r));
 	if (r->substeps_max)
 		fprintf(f, "%" PRIu64 " to %" PRIu64 " substeps, %" PRIu64 " in the median; %" PRIu64 " solved again",
 			r->substeps_min, r->substeps_max, r->substeps_median, r->islands_redone);
@@ -397,6 +438,7 @@ void ob_report_print(const ob_report *r, FILE *f)
 {
 	print_setup(r, f);
 	print_tolerance(r, f);
+	print_motion(r, f);
 	print_verified(r, f);
 	if (own_time(r) > 0)
 		print_cost(r, f);

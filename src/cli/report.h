@@ -28,6 +28,10 @@ typedef struct ob_report {
 	uint64_t substeps_min, substeps_median, substeps_max; // substeps of island-steps, if a tolerance chose; else 0
 	uint64_t islands_redone, islands_over;
 	double tolerance, error_reached; // m
+	double depth_reached, creep_reached, bounce_reached; // m, of error_reached, by cause
+	double deviation_reached; // m, the largest estimate of the errors of motion in a second
+	double bounded_share; // share of body-time in which that is within the tolerance
+	uint64_t unbounded_steps, estimates; // of bodies: with more; steps with an estimate
 	uint64_t verified_steps, unverified_steps; // of bodies, in the sample of --verify; too much work
 	// m: errors of those steps at surface points, in a step; and in a second if all errors add up
 	double verified_p50_m, verified_p90_m, verified_p99_m, verified_max_m;
@@ -72,6 +76,8 @@ void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS], uint3
 
 // True if a tolerance is set or the default, and an island's error stayed above it.
 bool ob_report_missed_tolerance(const ob_report *r);
+// True if the errors of motion of every second are within the tolerance, by estimate, or no tolerance is set.
+bool ob_report_motion_is_bounded(const ob_report *r);
 
 typedef struct ob_explained {
 	const ob_run_request *request; // resolved

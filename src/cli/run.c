@@ -367,6 +367,8 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	ob_script_count(ob_host_universe(r->host), &p->scripts_stopped, &p->scripts_warned);
 	p->deaths_told = ob_host_get_deaths(r->host, p->death);
 	const double steps = body_steps(r, first_time(r));
+	const double all = body_steps(r, 0);
+	p->bounded_share = p->tolerance > 0 && all > 0 ? fmax(0, 1 - (double)p->unbounded_steps / all) : NAN;
 	p->body_step_cpu_us = steps > 0 ? 1e6 * times.cpu_s / steps : NAN;
 }
 
@@ -389,6 +391,15 @@ static void warn_of_missed_tolerance(const ob_report *p)
 	ob_log_warn("the tolerance of %s was missed in %" PRIu64 " island step%s; the largest error was %s",
 		    ob_quantity_text(&allowed, p->tolerance, "m"), p->islands_over, p->islands_over == 1 ? "" : "s",
 		    ob_quantity_text(&error, p->error_reached, "m"));
+}
+
+static void warn_of_unbounded_motion(const ob_report *p)
+{
+	ob_quantity allowed, error;
+	ob_log_warn("errors of motion may exceed %s a second in %" PRIu64
+		    " step%s of objects; the largest estimate was %s",
+		    ob_quantity_text(&allowed, p->tolerance, "m"), p->unbounded_steps,
+		    p->unbounded_steps == 1 ? "" : "s", ob_quantity_text(&error, p->deviation_reached, "m"));
 }
 
 static void explain(const run *r, const ob_report *p, FILE *f)
@@ -460,6 +471,9 @@ static int carry_out(run *r)
 	if (ob_report_missed_tolerance(report)) {
 		warn_of_missed_tolerance(report);
 		code = r->request.strict ? OB_EXIT_FAILED : code;
+	} else if (r->request.strict && !ob_report_motion_is_bounded(report)) {
+		warn_of_unbounded_motion(report);
+		code = OB_EXIT_FAILED;
 	}
 	return code;
 }

@@ -116,7 +116,7 @@ void ob_bodies_load(ob_solver *s, const ob_island_input *in)
 	w->projected = w->torques = false;
 	w->unpaced = w->time = 0;
 	w->surfaces.count = 0;
-	w->error = w->new_error = 0;
+	w->error = w->new_error = w->depth = w->creep = w->bounce = 0;
 	w->bodies = in->members;
 	// Fixed bodies: at most one for each side of a pair.
 	reserve_rows(w, 1 + in->members + s->methods.sides * in->pairs);
@@ -429,7 +429,8 @@ void ob_bodies_report(ob_solver *s, uint32_t rest)
 				 .step = (uint32_t)step,
 				 .rest_time = body->rest_time,
 				 .island = w->body[1].id,
-				 .substeps = body->next_substeps,
+				 .substeps = (uint16_t)body->next_substeps,
+				 .deviation = body->deviation,
 				 .flags = (body->moved_freely ? OB_MOTION_FREE : 0) | rest |
 					  (expected && ob_equilibrium_body_steady(w, i) ? OB_MOTION_STEADY : 0) };
 		if (!body->contacts)

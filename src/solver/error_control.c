@@ -43,7 +43,7 @@ void ob_error_control_note_depth(ob_solver *s, bool at_start)
 			w->new_error = ob_max(w->new_error, depth);
 			contact->depth_growth = ob_max(contact->depth_growth, depth - contact->initial_depth);
 		}
-		w->error = ob_max(w->error, depth);
+		w->depth = ob_max(w->depth, depth);
 	}
 }
 
@@ -97,7 +97,7 @@ void ob_error_control_note_bounce(ob_solver *s)
 		    ob_impact_time(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &slow, &at) <= slow.h)
 			lost = ob_max(lost, contact->e * contact->e * resolved * resolved / (2 * w->max_acceleration));
 	}
-	w->error = ob_max(w->error, lost);
+	w->bounce = ob_max(w->bounce, lost);
 	w->new_error = ob_max(w->new_error, lost);
 }
 
@@ -118,7 +118,7 @@ static void note_creep(ob_solver *s)
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		ob_contact *contact = &w->contact[i];
 		contact->creep = contact->creep * (1 - fading) + contact->slip;
-		w->error = ob_max(w->error, contact->creep);
+		w->creep = ob_max(w->creep, contact->creep);
 		bool goes_on = contact->slip > fading * tolerance && w->substeps < max_substeps_for_creep;
 		if (contact->creep > tolerance && (goes_on || contact->slip > .5 * tolerance))
 			w->new_error = ob_max(w->new_error, contact->creep);
@@ -168,6 +168,7 @@ bool ob_error_control_accept(ob_solver *s)
 	ob_contacts_update(s, 0);
 	ob_error_control_note_depth(s, false);
 	note_creep(s);
+	w->error = ob_max(w->depth, ob_max(w->creep, w->bounce));
 	if (w->new_error > tolerance && w->substeps < max_substeps) {
 		w->substeps *= w->new_error > 16 * tolerance ? 4 : 2;
 		w->substeps = w->substeps < max_substeps ? w->substeps : max_substeps;
@@ -182,6 +183,9 @@ bool ob_error_control_accept(ob_solver *s)
 	set_next_substeps(s);
 	s->counters.islands_over += w->error > tolerance;
 	s->counters.error = ob_max(s->counters.error, w->error);
+	s->counters.depth = ob_max(s->counters.depth, w->depth);
+	s->counters.creep = ob_max(s->counters.creep, w->creep);
+	s->counters.bounce = ob_max(s->counters.bounce, w->bounce);
 	s->counters.chosen[31 - __builtin_clz(w->substeps)]++;
 	return true;
 }

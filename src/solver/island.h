@@ -45,6 +45,7 @@ typedef struct ob_body {
 	double hit; // s into the partial substep: its last impact; 0: none
 	uint64_t colours; // bit per colour in use
 	uint32_t next_substeps; // its request for the next step (solver/error_control.h)
+	uint16_t deviation; // as ob_motion.deviation (solver/estimate.h)
 	uint32_t active_iteration; // last iteration that changed its velocity by more than the wake threshold
 	uint32_t first_adjacent, adjacent; // range in adjacency
 	uint32_t next_ghost; // chain of its ghosts' rows (solver/ghost.h); 0 ends
@@ -209,8 +210,10 @@ typedef struct ob_island_work {
 	// tolerance
 	bool in_field;
 	bool torques; // a body has an external torque
+	bool balanced; // equilibrium is confirmed: one substep was enough
 	uint32_t substeps; // of this step
 	double error, new_error; // m (solver/error_control.h): of the step; caused by the step itself
+	double depth, creep, bounce; // m: by its causes
 	double substep; // s, length of a whole substep
 	double time; // s, from the step's start to the running partial substep's
 	// s (solver/adaptive_substep.h): length of the running partial substep; the least one, but for the last of a

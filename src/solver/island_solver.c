@@ -1,5 +1,5 @@
 // The step of an island, in the order in which things happen: solve_partial_substep is its table of contents.
-#include "solver/solver.h"
+#include "solver/island_solver.h"
 
 #include <stdlib.h>
 
@@ -146,12 +146,13 @@ static uint32_t rest_flag(ob_solver *s)
 	return ob_balance_may_sleep(s, rest_time) ? OB_MOTION_ASLEEP : 0;
 }
 
-void ob_island_solve(ob_solver *s, const ob_island_input *in)
+void ob_island_step(ob_solver *s, const ob_island_input *in)
 {
 	s->in = in;
 	s->island.in_field = false;
 	s->island.substeps = ob_error_control_substeps(s, in);
-	if (!solve_equilibrium(s, in))
+	s->island.balanced = solve_equilibrium(s, in);
+	if (!s->island.balanced)
 		while (!solve_step(s, in))
 			s->counters.islands_redone++;
 	ob_solver_enter(s, OB_PROFILE_LOAD);
@@ -159,6 +160,11 @@ void ob_island_solve(ob_solver *s, const ob_island_input *in)
 	s->counters.recovered += s->island.recovered;
 	s->counters.body_steps += in->members;
 	ob_frame_leave(s);
+}
+
+void ob_island_report(ob_solver *s)
+{
+	ob_solver_enter(s, OB_PROFILE_LOAD);
 	const uint32_t rest = rest_flag(s);
 	ob_contacts_report(s);
 	ob_solver_enter(s, OB_PROFILE_PUBLISH);
@@ -172,7 +178,6 @@ void ob_island_probe(ob_solver *s, const ob_island_input *in, uint32_t substeps)
 	s->island.substeps = substeps;
 	(void)solve_step(s, in);
 	ob_frame_leave(s);
-	ob_bodies_report(s, 0);
 }
 
 // ---- life

@@ -113,6 +113,10 @@ typedef struct ob_solver {
 	ob_counters counters;
 	ob_methods methods;
 	ob_ode_bodies ode_bodies;
+	struct { // solver/estimate.h
+		struct ob_probe *probe; // NULL: no estimates are made
+		uint16_t bound, largest; // codes of deviations: of the tolerance; the largest so far
+	} estimate;
 	const ob_island_input *in; // input of the running call
 	ob_island_work island; // scratch
 } ob_solver;
@@ -123,8 +127,6 @@ void ob_solver_finish(ob_solver *s);
 
 // Solves an island through the coming step, and reports its contacts and motions.
 void ob_island_solve(ob_solver *s, const ob_island_input *in);
-// Solves it once with so many substeps, whatever the error or the equilibrium, and reports motions alone.
-void ob_island_probe(ob_solver *s, const ob_island_input *in, uint32_t substeps);
 
 static inline void ob_solver_enter(ob_solver *s, ob_profile_section section)
 {

@@ -5,6 +5,7 @@
 #include "contact/pairs.h"
 #include "exchange/results.h"
 #include "exchange/touches.h"
+#include "motion/deviation.h"
 #include "motion/flight.h"
 #include "shape/shape.h"
 #include "step/broadphase.h"
@@ -252,6 +253,7 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, const ob_spin *
 	const ob_state now = { { ob_centre_at(m, end), m->q }, ob_velocity_at(m, end), m->w };
 	double box[6];
 	ob_motion_swept_bounds(&rest, body->shape, body->size, last - from, box);
+	m->deviation = ob_deviation_at(m->deviation, m->step, step, h);
 	m->step = (uint32_t)step;
 	m->reach = (float)reach;
 	m->island = id;
@@ -261,17 +263,6 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, const ob_spin *
 		ob_step_fail(s->u, OB_STEP_DIVERGED, id);
 	ob_fat_aabb_sweep(s->u, id, box, straight ? ob_fat_aabb_margin(run, body->shape, body->size) : reach);
 	ob_result_stage(s, id, m, OB_SCHEDULE_AWAKE, (uint32_t)due);
-}
-
-ob_state ob_motion_end(ob_sim *s, uint32_t id, ob_motion *m, bool free)
-{
-	if (!free || !s->solver.methods.exact)
-		return (ob_state){ { m->p, m->q }, m->v, m->w };
-	const ob_motion flight = ob_ballistic_flight(s, id);
-	const ob_state end = ob_ballistic_state(s, id, &flight, m->t0);
-	m->t0 = flight.t0, m->valid_until = flight.valid_until;
-	m->p = flight.p, m->q = flight.q, m->v = flight.v, m->w = flight.w;
-	return end;
 }
 
 void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end)

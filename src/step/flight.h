@@ -33,9 +33,6 @@ void ob_ballistic_advance(ob_sim *s, const uint32_t *id, uint32_t n, bool *done)
 // approach in straight lines. Returns false, with nothing published, if the contact solver must move them.
 bool ob_ballistic_pair_advance(ob_sim *s, const uint32_t id[2]);
 
-// Returns the state in which a step ends that the solver has solved with the motion m. free: the object touched nothing,
-// so m becomes its flight, as the substeps only searched for impacts.
-ob_state ob_motion_end(ob_sim *s, uint32_t id, ob_motion *m, bool free);
 // Publishes the motion m of an object that must be solved in the next step, or rests until something comes near.
 // Updates its fat AABB for that step from its state at the end of this one, its schedule record, and m->reach.
 void ob_body_publish(ob_sim *s, uint32_t id, ob_motion *m, const ob_state *end);

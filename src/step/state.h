@@ -10,8 +10,6 @@
 
 enum { OB_TASKS_TIMED = 64 };
 
-typedef struct ob_probe ob_probe; // step/probe.h
-
 // Input of the island that is being solved (step/islands.c); memory grown as needed, never shrunk.
 typedef struct ob_island_scratch {
 	ob_island_input in;
@@ -31,10 +29,7 @@ struct ob_sim {
 	void (*fly)(ob_sim *s, const uint32_t *id, uint32_t n, bool *done); // ob_ballistic_advance, or by ODE
 	ob_island_scratch scratch;
 	ob_rotation_cache rotations;
-	struct { // step/verify.h
-		ob_probe *probe; // NULL: the run is not verified
-		bool sampled; // the island that is being solved belongs to the sample
-	} verify;
+	struct ob_probe *verifier; // step/verify.h; NULL: the run is not verified
 	struct ob_committer *committer; // NULL unless this is the arranger (commit.h)
 	ob_cluster *cluster; // the arranger's, of several ranks; else NULL
 	struct ob_ode_baseline *baseline; // NULL unless one ODE world holds all objects

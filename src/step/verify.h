@@ -5,9 +5,7 @@
 
 #include "step/state.h"
 
-// Solves the island finely if it belongs to the sample. Comes before the island's own solution.
-void ob_verify_solve(ob_sim *s, const ob_island_input *in);
-// Counts the error of member i, whose step ends in this state; outside of the sample it does nothing.
-void ob_verify_compare(ob_sim *s, uint32_t i, const ob_island_object *object, const ob_state *end);
+// Verifies the step of an island that has just been solved, if it belongs to the sample.
+void ob_verify(ob_sim *s, const ob_island_input *in);
 
 #endif

@@ -4,8 +4,9 @@
 #include "baseline/ode_baseline.h"
 #include "exchange/commit.h"
 #include "step/islands.h"
+#include "solver/estimate.h"
+#include "solver/probe.h"
 #include "step/ode_flight.h"
-#include "step/probe.h"
 #include "step/sim.h"
 #include "step/state.h"
 
@@ -34,9 +35,9 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e)
 		s->span.traced = ob_universe_traced(u);
 	}
 	const ob_island_calls calls = ob_island_calls_of(s);
-	if (!s || !ob_solver_create(&s->solver, run, &calls, ode_bodies_of(u)) || !ob_island_scratch_create(s) ||
-	    !ob_rotation_cache_create(&s->rotations, capacity) ||
-	    (run->verify && !ob_probe_create(&s->verify.probe, s, OB_VERIFY_SUBSTEPS)) ||
+	if (!s || !ob_solver_create(&s->solver, run, &calls, ode_bodies_of(u)) || !ob_estimate_create(&s->solver) ||
+	    !ob_island_scratch_create(s) || !ob_rotation_cache_create(&s->rotations, capacity) ||
+	    (run->verify && !(s->verifier = ob_probe_create(run, OB_VERIFY_SUBSTEPS))) ||
 	    (run->monolith && !(s->baseline = ob_ode_baseline_create(u)))) {
 		ob_sim_destroy(s);
 		ob_fail(e, "worker %u: no memory for %u objects", worker, capacity);
@@ -68,9 +69,10 @@ void ob_sim_destroy(ob_sim *s)
 	if (!s)
 		return;
 	ob_ode_baseline_destroy(s->baseline);
+	ob_estimate_finish(&s->solver);
 	ob_solver_finish(&s->solver);
 	ob_island_scratch_finish(s);
-	ob_probe_destroy(s->verify.probe);
+	ob_probe_destroy(s->verifier);
 	ob_rotation_cache_finish(&s->rotations);
 	ob_committer_destroy(s->committer);
 	ob_cluster_destroy(s->cluster);

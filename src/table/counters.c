@@ -18,6 +18,7 @@ const char *ob_profile_name(uint32_t section)
 		[OB_PROFILE_PROJECT] = "project",
 		[OB_PROFILE_PUBLISH] = "publish",
 		[OB_PROFILE_SCRIPTS] = "scripts",
+		[OB_PROFILE_ESTIMATE] = "estimate",
 		[OB_PROFILE_VERIFY] = "verify",
 	};
 	return section < OB_PROFILE_SECTIONS && names[section] ? names[section] : "?";
@@ -46,6 +47,12 @@ static void add_counters(ob_counters *to, const ob_counters *c)
 	to->gyroscopic_steps += c->gyroscopic_steps;
 	to->recovered += c->recovered;
 	to->error = fmax(to->error, c->error);
+	to->depth = fmax(to->depth, c->depth);
+	to->creep = fmax(to->creep, c->creep);
+	to->bounce = fmax(to->bounce, c->bounce);
+	to->estimates += c->estimates;
+	to->unbounded += c->unbounded;
+	to->deviation = fmax(to->deviation, c->deviation);
 	for (int i = 0; i < OB_ERROR_BINS; i++) {
 		to->verified_step[i] += c->verified_step[i];
 		to->verified_second[i] += c->verified_second[i];

@@ -18,7 +18,8 @@ typedef enum ob_profile_section {
 	OB_PROFILE_PROJECT, // position correction of penetrations
 	OB_PROFILE_PUBLISH, // rest timers, boxes, motions into their slots
 	OB_PROFILE_SCRIPTS, // objects' scripts
-	OB_PROFILE_VERIFY, // solving islands again, with other substeps, to know their errors
+	OB_PROFILE_ESTIMATE, // solving islands again with half as many substeps, to estimate their errors
+	OB_PROFILE_VERIFY, // solving islands again with many substeps, to know their errors
 	OB_PROFILE_SECTIONS
 } ob_profile_section;
 
@@ -49,7 +50,11 @@ typedef struct ob_counters {
 	uint64_t direct_solves; // solves of an island as a whole
 	uint64_t gyroscopic_steps; // substeps of bodies whose inertia needed Euler's equations
 	double recovered; // J, potential energy added by position correction
-	double error; // m, largest error estimate of an accepted solution
+	double error; // m, largest error estimate of an accepted solution: of these
+	double depth, creep, bounce; // m
+	uint64_t estimates; // body steps whose error was estimated by another solution (solver/estimate.h)
+	uint64_t unbounded; // body steps of seconds in which the errors of motion may exceed the tolerance
+	double deviation; // m, largest of such errors
 	// Errors of body steps that were verified: of a step, and of a second, if all errors add up. Their largest (m); and
 	// body steps of the sample that took too much work.
 	uint32_t verified_step[OB_ERROR_BINS], verified_second[OB_ERROR_BINS];

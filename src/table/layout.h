@@ -14,7 +14,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 30, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
+enum { OB_LAYOUT_VERSION = 31, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -160,7 +160,7 @@ static_assert(sizeof(ob_run_settings) == 128, "run settings");
 static_assert(sizeof(ob_header) == 72 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 128 + 8, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 576, "control");
-static_assert(sizeof(ob_worker_cell) == 896, "worker cell");
+static_assert(sizeof(ob_worker_cell) == 960, "worker cell");
 static_assert(sizeof(ob_pair_state) == 256, "pair state");
 static_assert(sizeof(ob_pair_record) == 520, "pair record");
 static_assert(sizeof(ob_pair_key) == 32 && sizeof(ob_schedule) == 24, "step data");

@@ -1,0 +1,25 @@
+// A second solver, which takes an island through the same step from the same start with another number of substeps. The
+// difference of the two solutions shows the error of the coarser one, whatever causes it.
+//
+//   input ──> probe: other substeps ──> bodies at the step's end ──────────┐
+//     └─────> solver of the run ──────> bodies at the step's end ──> ob_probe_distance
+//
+// It leaves no trace: it has its own memory, counters and budget, and its contacts and touches go nowhere.
+#ifndef OB_SOLVER_PROBE_H
+#define OB_SOLVER_PROBE_H
+
+#include "solver/solver.h"
+
+typedef struct ob_probe ob_probe;
+
+// Creates a probe with the thresholds of a run with so many substeps. NULL if there is no memory.
+ob_probe *ob_probe_create(const ob_run_settings *run, uint32_t substeps);
+void ob_probe_destroy(ob_probe *p);
+
+// Solves the island. Returns false if that would take more work (solver/budget.h) than `most`.
+bool ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most);
+// Returns the distance (m) of any surface point of the body in this row of w from where the probe has it, at most; 0 if
+// both solutions are its flight. speed: m/s, the same of the point's velocity.
+double ob_probe_distance(const ob_probe *p, const ob_island_work *w, uint32_t row, double *speed);
+
+#endif
