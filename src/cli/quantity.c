@@ -57,6 +57,16 @@ bool ob_number_real(const char *option, const char *text, double above, double m
 	return true;
 }
 
+bool ob_number_share(const char *option, const char *text, double most, double *out, ob_error *e)
+{
+	const char *at = text;
+	const double x = read_decimal(&at) / 100;
+	if (isnan(x) || strcmp(at, "%") != 0 || !(x > 0 && x <= most))
+		return ob_fail(e, "--%s %s: expected more than 0%%, at most %g%%, as .1%%", option, text, 100 * most);
+	*out = x;
+	return true;
+}
+
 bool ob_number_length(const char *option, const char *text, double least, double most, double *out, ob_error *e)
 {
 	static const struct {

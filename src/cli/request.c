@@ -331,6 +331,12 @@ static bool read_settings(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	r->asked = ob_run_settings_unset();
 	for (int i = 0; i < OB_SETTINGS; i++) {
 		const char *text = a->value[option[i]];
+		if (i == OB_SETTING_TOLERANCE && text && strchr(text, '%')) {
+			if (!ob_number_share("tolerance", text, 1, &r->tolerance_share, e))
+				return false;
+			r->asked.tolerance = OB_DEFAULT_TOLERANCE; // until the scene is known
+			continue;
+		}
 		if (text && !read_setting(&r->asked, &ob_setting_table[i], text, e))
 			return false;
 	}
@@ -583,8 +589,35 @@ static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 	return ob_request_check_camera(&r->frames, s, e);
 }
 
+double ob_request_thinnest(const ob_scene *s)
+{
+	double least = INFINITY;
+	for (uint32_t i = 0; i < s->objects; i++) {
+		const ob_passport *p = &s->object[i].passport;
+		if (!(p->flags & OB_OBJECT_PRESCRIBED))
+			least = fmin(least, ob_shape_thickness(p->shape, p->size));
+	}
+	return least;
+}
+
+// Sets the tolerance if it is a share of the thinnest object's thickness. A scene in which nothing moves keeps the default.
+static bool resolve_share(ob_run_request *r, const ob_scene *s, ob_error *e)
+{
+	const ob_setting *t = &ob_setting_table[OB_SETTING_TOLERANCE];
+	const double thin = ob_request_thinnest(s), tolerance = r->tolerance_share * thin;
+	if (!(r->tolerance_share > 0) || isinf(thin))
+		return true;
+	if (tolerance < t->least || tolerance > t->most)
+		return ob_fail(e, "--tolerance %g%%: of the thinnest object's %gm that is %gm; expected %gm to %gm",
+			       100 * r->tolerance_share, thin, tolerance, t->least, t->most);
+	r->asked.tolerance = tolerance;
+	return true;
+}
+
 bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
+	if (!resolve_share(r, s, e))
+		return false;
 	r->duration = r->duration > 0 ? r->duration : s->duration;
 	r->run = s->run;
 	return ob_run_settings_resolve(&r->run, &r->asked, e) && check_run(r, s, e);

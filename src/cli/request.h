@@ -38,6 +38,7 @@ typedef struct ob_run_request {
 	ob_restart_limit limit; // of deaths
 	ob_run_settings asked; // a layer: settings that are not on the command line are unset
 	ob_run_settings run; // after ob_request_resolve
+	double tolerance_share; // of the thickness of the thinnest body: the tolerance; 0: it is a length
 	bool explain;
 	bool strict; // a missed tolerance is a failure
 	bool verify; // a sample of steps is solved finely besides
@@ -54,6 +55,9 @@ typedef struct ob_run_request {
 // false and e on malformed numbers, values out of range, contradictions, or missing directories.
 // The strings stay those of a.
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
+
+// Thickness (m) of the thinnest object that moves; infinity: none does.
+double ob_request_thinnest(const ob_scene *s);
 
 // Seconds given by --patience; unchanged without it.
 bool ob_request_read_patience(const ob_arguments *a, double *seconds, ob_error *e);

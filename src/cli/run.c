@@ -393,6 +393,18 @@ static void warn_of_missed_tolerance(const ob_report *p)
 		    ob_quantity_text(&error, p->error_reached, "m"));
 }
 
+// Warns of a tolerance that is a length, and no small part of the thinnest object.
+static void warn_of_coarse_tolerance(const run *r)
+{
+	enum { COARSE = 10 }; // thickness by tolerance
+	const double tolerance = r->request.run.tolerance, thin = ob_request_thinnest(r->scene);
+	ob_quantity allowed, size;
+	if (r->ranks.rank == 0 && !(r->request.tolerance_share > 0) && COARSE * tolerance > thin)
+		ob_log_warn("the tolerance of %s is coarse for the thinnest object, of %s: --tolerance .1%% follows "
+			    "the size",
+			    ob_quantity_text(&allowed, tolerance, "m"), ob_quantity_text(&size, thin, "m"));
+}
+
 static void warn_of_unbounded_motion(const ob_report *p)
 {
 	ob_quantity allowed, error;
@@ -453,6 +465,7 @@ static int carry_out(run *r)
 	ob_pace_end(&r->pace);
 
 	int code = OB_EXIT_OK;
+	warn_of_coarse_tolerance(r);
 	if (interrupted)
 		code = ob_command_fail(OB_EXIT_FAILED, "interrupted: the files hold what was done so far");
 	else if (!done)

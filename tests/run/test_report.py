@@ -101,6 +101,19 @@ class Report(program.Case):
 		self.assertNotIn("MISSED", done.stdout)
 		self.assertIn(" kept, ", done.stdout)
 
+	def test_tolerance_by_size(self):
+		"""A share is one of the thinnest object's thickness; a length that is coarse for it is warned of."""
+		disk = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "disk.lua")
+		share, length = (program.report(disk, "-D", "radius=.5", "--tolerance", t, "--duration", ".1") for t in ("10%", "1mm"))
+		for key in "tolerance", "state_hash", "iterations", "error_reached":
+			self.assertEqual(share[key], length[key], key)
+		for share in "0%", "101%", "1%x", "%":
+			self.refuse("run", disk, "--tolerance", share, saying="expected more than 0%")
+		self.refuse("run", disk, "-D", "radius=.01", "--tolerance", ".1%", saying="thinnest")
+		coarse, fine = (program.call("run", disk, "--tolerance", t, "--duration", ".1") for t in ("1mm", "20%"))
+		self.assertEqual((coarse.returncode, fine.returncode, fine.stderr), (0, 0, ""))
+		self.assertRegex(coarse.stderr, r"^obsim: warning: the tolerance of 1.00 mm is coarse for the thinnest object, of 5.00 mm: .*\n$")
+
 	def test_motion_is_estimated(self):
 		"""A disk that rolls loses energy at the default, and no contact shows it: the estimate does."""
 		disk = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "disk.lua")
@@ -110,7 +123,7 @@ class Report(program.Case):
 			self.assertEqual(r["bounded_share"], 1 - r["unbounded_steps"] / 60)
 			self.assertEqual(r["unbounded_steps"] == 0, bounded)
 			self.assertEqual(max(r["depth_reached"], r["creep_reached"], r["bounce_reached"]), r["error_reached"])
-		done = program.call("run", disk, "--strict")
+		done = program.call("run", disk, "-D", "radius=1", "--strict")
 		self.assertEqual(done.returncode, 1)
 		self.assertRegex(done.stderr, r"^obsim: warning: errors of motion may exceed 1.00 mm a second in \d+ steps of objects; .*\n$")
 		self.assertIn("motion       errors of a second within 1.00 mm in 0 % of body-time", done.stdout)
