@@ -22,10 +22,10 @@ grep -q no-such-universe "$root/said" || { echo "watch does not name it: $(cat "
 "$(find "$root" -path '*/bin/obsim')" run stack --duration .02 --json - 2>/dev/null | grep -q "\"$root.*/scenes/stack.lua\"" ||
 	{ echo "the installed obsim does not find its scenes"; exit 1; }
 
-nm -D --defined-only "$library" | awk '$2 ~ /[TDBR]/ { print $3 }' | sort >"$root/shown"
+nm -D --defined-only "$library" | awk '$2 ~ /[TDBR]/ { sub(/@.*/, "", $3); print $3 }' | sort >"$root/shown"
 cat "$source"/include/ob/*.h | grep -o '\bob_[a-z_]*(' | tr -d '(' | sort -u >"$root/declared"
 extra=$(comm -23 "$root/shown" "$root/declared")
 [ -z "$extra" ] || { echo "libobsim shows what no installed header declares: $extra"; exit 1; }
-for function in ob_universe_attach ob_universe_get_motion ob_motion_at; do
-	grep -qx $function "$root/shown" || { echo "libobsim lacks $function"; exit 1; }
-done
+grep -o '\bob_[a-z_]*;' "$source/include/ob/libobsim.map" | tr -d ';' | sort >"$root/versioned"
+missing=$(comm -13 "$root/shown" "$root/versioned")
+[ -z "$missing" ] || { echo "libobsim lacks what its map names: $missing"; exit 1; }
