@@ -152,6 +152,7 @@ void ob_bodies_load(ob_solver *s, const ob_island_input *in)
 static const double unnoticed_turn = 1e-5;
 static const double deferred_turn = 1e-4; // accumulated turn (rad) at which the attitude is updated
 static const double deferred_turn_isotropic = .02;
+static const double same_axis = 1e-13; // product of two turns (rad): with less across each other they add up
 
 // Updates the gaps of the row's contacts by its displacement, to first order.
 static void update_gaps(ob_island_work *w, uint32_t row)
@@ -282,6 +283,13 @@ static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 	ob_body_place(body, ob_add(body->p, way), q);
 }
 
+// Angular momentum (N m s, world) of the body at this rate.
+static ob_vec3 momentum_of(const ob_body *body, ob_vec3 rate)
+{
+	const ob_vec3 b = ob_rotate_back(&body->r, rate), j = body->inertia;
+	return ob_rotate(&body->r, ob_v3(j.x * b.x, j.y * b.y, j.z * b.z));
+}
+
 // Advances a body's attitude to the end of the partial substep. Turns at once, as in free flight, if the turn is
 // noticeable or no contact holds the body; else adds to the displacement row. held: contacts have changed its angular
 // velocity.
@@ -301,6 +309,28 @@ static void turn_body(ob_solver *s, uint32_t row, bool held)
 	}
 	s->counters.gyroscopic_steps++;
 	drift_body(w, row, w->h, held && w->max_acceleration > 0);
+}
+
+// Turns a body on which an external torque acts. Half of its change of angular momentum in the partial substep comes
+// before the turn, half after it, so the error is of second order (Strang 1968). A jump that contacts have made comes
+// before.
+static void turn_by_halves(ob_solver *s, uint32_t row, ob_vec3 before, double smooth)
+{
+	ob_island_work *w = &s->island;
+	ob_body *body = &w->body[row];
+	const ob_vec3 change = ob_sub(ob_row_angular(w->v[row]), before),
+		      external = ob_scale(ob_body_turned_by(body, body->torque), w->h);
+	const bool held = !ob_equal(ob_add(before, external), ob_row_angular(w->v[row]));
+	if (held && !(body->radius * body->radius * ob_norm2(change) < smooth)) {
+		turn_body(s, row, held);
+		return;
+	}
+	const ob_vec3 half = ob_scale(change, .5), momentum = momentum_of(body, half), rate = ob_add(before, half);
+	if (ob_norm2(ob_cross(ob_row_angular(w->d[row]), rate)) * w->h * w->h > same_axis * same_axis)
+		ob_body_update_pose(w, row); // turns about two axes are no sum
+	set_rate(w->v[row], rate);
+	turn_body(s, row, held);
+	set_rate(w->v[row], ob_add(ob_row_angular(w->v[row]), ob_body_turned_by(body, momentum)));
 }
 
 // ---- velocities
@@ -365,10 +395,14 @@ void ob_body_move(ob_solver *s, uint32_t row, double smooth)
 		finish_halved(w, row, smooth);
 		return;
 	}
-	const bool held = !ob_equal(ob_row_angular(w->u[row]), ob_row_angular(w->v[row]));
+	const ob_vec3 before = ob_row_angular(w->v[row]);
+	const bool held = !ob_equal(ob_row_angular(w->u[row]), before);
 	integrate_exactly(w, row, smooth);
 	memcpy(w->v[row], w->u[row], sizeof *w->v);
-	turn_body(s, row, held);
+	if (ob_norm2(w->body[row].torque) > 0)
+		turn_by_halves(s, row, before, smooth);
+	else
+		turn_body(s, row, held);
 }
 
 static void advance_surface(ob_solver *s, uint32_t row)

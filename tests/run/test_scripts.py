@@ -60,6 +60,36 @@ sphere {{ name = "ball", radius = .5, at = {{ 0, 0, 1000 }}, script = "it", {obj
 		self.assertAlmostEqual(spins[0][2], 1, 9)
 		self.assertAlmostEqual(spins[1][2], 1, 9)
 
+	TORQUES = """
+scene { duration = 5 }
+ground { friction = .8 }
+script("it", [[
+function on_start() self:torque(self.state.x, self.state.y, 0) self:wake(2) end
+function on_wake() print(self:name(), self:attitude()) end
+]])
+cylinder { name = "wheel", radius = .5, length = .2, rotation = { axis = { 1, 0, 0 }, degrees = 90 }, at = { 0, 0, .5 },
+	mass = 2, friction = .8, script = "it", state = { x = 0, y = 4 } }
+sphere { name = "ball", radius = .5, at = { 0, 2, .5 }, mass = 2, friction = .8, script = "it", state = { x = 0, y = 4 } }
+box { name = "box", size = { .6, .4, .2 }, at = { 0, 5, 1000 }, spin = { 1, 2, 3 }, mass = 2, script = "it",
+	state = { x = .3, y = .1 } }
+"""
+
+	def test_torque_turns(self):
+		"""A wheel and a ball that a torque rolls along have turned by half the acceleration times the square of time."""
+		said = self.run_scene(self.TORQUES)
+		for name, inertia in ("wheel", .25), ("ball", .2):
+			with self.subTest(name=name):
+				w = self.numbers(said, name)[0][0]
+				expected = abs(math.cos(.5 * .5 * 4 / (inertia + .5) * 4)) * (.5 ** .5 if name == "wheel" else 1)
+				self.assertAlmostEqual(abs(w), expected, 9)
+
+	def test_torque_order(self):
+		"""A box that spins under a torque: twice as many substeps, a quarter of the error."""
+		found = [self.numbers(self.run_scene(self.TORQUES, "--substeps", n), "box")[0] for n in (8, 16, 32)]
+		first, second = [math.dist(a, b) for a, b in zip(found, found[1:])]
+		self.assertLess(first, 1e-5)
+		self.assertLess(second, .26 * first)
+
 	def test_push_and_twist(self):
 		said = self.one("function on_start() self:push(4, 0, 0) self:twist { 0, .6, 0 } self:wake(.1) end "
 		                "function on_wake() print('v', self:velocity()) print('w', self:spin()) end")
