@@ -116,6 +116,7 @@ void ob_bodies_load(ob_solver *s, const ob_island_input *in)
 	w->projected = w->torques = false;
 	w->unpaced = w->time = 0;
 	w->surfaces.count = 0;
+	w->surfaces.step_begin = (double)in->step * run->step_length;
 	w->error = w->new_error = w->depth = w->creep = w->bounce = 0;
 	w->bodies = in->members;
 	// Fixed bodies: at most one for each side of a pair.

@@ -6,17 +6,16 @@
 
 #include "base/allocate.h"
 #include "elementary/elementary.h"
-#include "motion/drift.h"
 #include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/budget.h"
 #include "solver/contacts.h"
+#include "solver/instant.h"
 #include "solver/narrowphase.h"
 #include "solver/relative_speed.h"
 #include "solver/surfaces.h"
 #include "solver/touches.h"
 
-static const double max_smooth_acceleration = 3; // times the largest external one: more is the echo of an impact
 static const double least_approach = 1e-6; // m/s
 static const double aftershock_threshold = 1e-10; // m/s: slower approaches of bodies that were just hit are rounding
 static const uint32_t max_aftershocks = 4; // maximum for a contact in a partial substep
@@ -41,58 +40,6 @@ enum {
 // Flag bits of seen[] while a round is chosen.
 static const uint32_t in_group = UINT32_C(1) << 31, is_chosen = UINT32_C(1) << 30;
 
-// ---- motion within the partial substep
-
-// Sets the drift: dv without an impact's echo. The warm start of contacts that were just hit repeats their impact, and
-// must not count as an approach.
-static void set_drift(ob_island_work *w)
-{
-	for (uint32_t i = 1; i <= w->bodies; i++) {
-		const ob_body *body = &w->body[i];
-		const double *dv = w->dv[i], most = max_smooth_acceleration * w->max_acceleration * w->h;
-		double linear = ob_norm(ob_v3(dv[0], dv[1], dv[2])), angular = ob_norm(ob_v3(dv[3], dv[4], dv[5]));
-		ob_vec3 external = ob_scale(body->acceleration, w->h);
-		w->body[i].loaded = linear + body->radius * angular <= most;
-		if (body->loaded)
-			memcpy(w->drift[i], dv, sizeof *w->drift);
-		else
-			memcpy(w->drift[i], (double[8]){ external.x, external.y, external.z }, sizeof *w->drift);
-	}
-	ob_surfaces_set_drift(w);
-}
-
-// Advances a body in free flight by t (s), forwards or backwards: a parabola, with the exact attitude but for the
-// rotation by its contacts, which is added to second order.
-static void fly(const ob_island_work *w, uint32_t row, double t, ob_body_at *x)
-{
-	const ob_body *body = &w->body[row];
-	const ob_vec3 a = ob_scale(ob_row_linear(w->drift[row]), 1 / w->h),
-		      b = ob_scale(ob_row_angular(w->drift[row]), 1 / w->h);
-	if (t == 0)
-		return;
-	x->p = ob_madd(ob_madd(x->p, t, x->v), .5 * t * t, a);
-	x->v = ob_madd(x->v, t, a);
-	if ((body->inv_mass == 0 && !body->surface) || (ob_norm2(x->w) == 0 && ob_norm2(b) == 0))
-		return;
-	if (body->isotropic) {
-		x->q = ob_quat_turn(x->q, ob_madd(ob_scale(x->w, t), .5 * t * t, b));
-	} else {
-		(w->max_acceleration > 0 ? ob_drift_held : ob_drift)(x->q, x->w, body->inertia, t, &x->q, &x->w);
-		x->q = ob_norm2(b) > 0 ? ob_quat_turn(x->q, ob_scale(b, .5 * t * t)) : x->q;
-	}
-	x->w = ob_madd(x->w, t, b);
-	x->r = ob_quat_matrix(x->q);
-}
-
-// Returns the body at time t (s). Its pose in w must be up to date.
-static ob_body_at body_at(const ob_island_work *w, uint32_t row, double t)
-{
-	const ob_body *body = &w->body[row];
-	ob_body_at x = { body->p, ob_row_linear(w->v[row]), ob_row_angular(w->v[row]), body->q, body->r };
-	fly(w, row, t, &x);
-	return x;
-}
-
 // ---- the instant of a contact
 
 static double row_velocity(const ob_batch *b, uint32_t l, uint32_t j, const double *xa, const double *xb)
@@ -108,14 +55,16 @@ static double slow_of(const ob_island_work *w)
 	return slow_share * w->max_acceleration * w->substep + least_approach * w->unit.speed;
 }
 
-// Returns the error, m, of a contact's rows within the partial substep, as its bodies turn. If hits alone carry a
+// Returns the error, m, of a contact's rows within the partial substep, as its bodies turn or swing. If hits alone carry a
 // contact, it includes their passing each other while they turn.
 static double curvature(const ob_island_work *w, const ob_contact *contact)
 {
-	double speed = ob_norm(ob_contact_velocity(w, w->v, contact)), turn = 0, sum = 0;
+	double speed = ob_norm(ob_contact_velocity(w, w->v, contact)), turn = 0, sum = 0, bend = 0;
 	for (int side = 0; side < 2; side++) {
 		const uint32_t row = side ? contact->b : contact->a;
 		const ob_body *body = &w->body[row];
+		if (body->surface)
+			bend += 2 * ob_surface_bend(w, row);
 		if ((!(body->inv_mass > 0) && !body->surface) || ob_shape_is(body->shape, OB_ISOTROPIC))
 			continue;
 		const double rate = ob_norm(ob_row_angular(w->v[row]));
@@ -123,7 +72,7 @@ static double curvature(const ob_island_work *w, const ob_contact *contact)
 		speed += body->radius * rate;
 		sum += body->radius * rate * rate;
 	}
-	return .5 * w->h * w->h * (w->max_acceleration > 0 ? sum : sum + 2 * turn * speed);
+	return .5 * w->h * w->h * (w->max_acceleration > 0 ? sum : sum + 2 * turn * speed) + bend;
 }
 
 // True for a plastic hit that a coarse run leaves to the contact solver: within the tolerance, its geometry at its
@@ -196,8 +145,8 @@ static void find_at(ob_solver *s, const ob_contact *contact, double t, ob_body_a
 {
 	enum { WORK_OF_FLIGHTS = 32 };
 	ob_budget_note(s, WORK_OF_FLIGHTS);
-	*a = body_at(&s->island, contact->a, t);
-	*b = body_at(&s->island, contact->b, t);
+	*a = ob_body_at_time(&s->island, contact->a, t);
+	*b = ob_body_at_time(&s->island, contact->b, t);
 	find_between(s, contact, a, b, m);
 }
 
@@ -319,7 +268,7 @@ static void look_ahead(ob_solver *s, uint32_t contact)
 	ob_impact in = { .h = w->h,
 			 .threshold = threshold,
 			 .settling = c->e > 0 ? 0 : settling * w->substep,
-			 .gain = 2 * max_smooth_acceleration * w->max_acceleration * w->h,
+			 .gain = 2 * OB_SMOOTH_ACCELERATION * w->max_acceleration * w->h,
 			 .points = mask };
 	const ob_impact_rows at = { w->v, w->drift, w->d };
 	const ob_batch *b = &w->batch[c->lane / OB_LANES];
@@ -543,7 +492,7 @@ static uint32_t body_of_set(ob_solver *s, ob_impacts *x, uint32_t row, double t)
 		return x->slot[row];
 	const uint32_t i = x->slot[row] = x->bodies++;
 	const ob_body *body = &w->body[row];
-	const ob_body_at at = x->at[i] = body_at(w, row, t);
+	const ob_body_at at = x->at[i] = ob_body_at_time(w, row, t);
 	x->row[i] = row;
 	const ob_vec3 v = body->surface ? ob_add(at.v, ob_surface_velocity(w, row)) : at.v;
 	x->body[i] = (ob_impact_body){ .inv_mass = body->inv_mass, .v = v, .w = at.w };
@@ -603,11 +552,21 @@ static ob_body_at body_after(const ob_island_work *w, uint32_t row, double t)
 {
 	const ob_impacts *x = &w->impacts;
 	if (!in_set(x, row))
-		return body_at(w, row, t);
+		return ob_body_at_time(w, row, t);
 	ob_body_at at = x->at[x->slot[row]];
 	at.v = x->body[x->slot[row]].v;
 	at.w = x->body[x->slot[row]].w;
 	return at;
+}
+
+// Returns the body a time h (s) after the impact at the instant t.
+static ob_body_at body_later(const ob_island_work *w, uint32_t row, double t, double h)
+{
+	if (w->body[row].surface)
+		return ob_body_at_time(w, row, t + h);
+	ob_body_at x = body_after(w, row, t);
+	ob_fly(w, row, h, &x);
+	return x;
 }
 
 // Sets the speeds at which points leave. Without a force that presses bodies together, they hit again and again while
@@ -622,13 +581,11 @@ static bool set_hops(ob_solver *s, uint32_t chain, double t, const ob_impact_bod
 	for (uint32_t k = chain; k != NONE; k = x->next[k]) {
 		const ob_impact_instant *i = &x->pending[k];
 		const ob_contact *c = &w->contact[i->contact];
-		ob_body_at at_a = body_after(w, c->a, t), at_b = body_after(w, c->b, t);
 		ob_manifold m;
 		double least = 0;
 		if (!i->joined)
 			continue;
-		fly(w, c->a, w->h, &at_a);
-		fly(w, c->b, w->h, &at_b);
+		const ob_body_at at_a = body_later(w, c->a, t, w->h), at_b = body_later(w, c->b, t, w->h);
 		find_between(s, c, &at_a, &at_b, &m);
 		for (int j = 0; j < m.points; j++)
 			least = ob_min(least, m.gap[j]);
@@ -657,7 +614,7 @@ static void set_back(ob_solver *s, uint32_t row, ob_body_at x, double t)
 	ob_island_work *w = &s->island;
 	ob_body *body = &w->body[row];
 	double *v = w->v[row], *d = w->d[row];
-	fly(w, row, -t, &x);
+	ob_fly(w, row, -t, &x);
 	const double change =
 		ob_norm(ob_sub(x.v, ob_row_linear(v))) + body->radius * ob_norm(ob_sub(x.w, ob_row_angular(v)));
 	for (uint32_t k = 0; k < body->adjacent; k++) // until t it went at another speed
@@ -957,7 +914,7 @@ bool ob_impacts_resolve(ob_solver *s, bool first)
 		any = may_hit(w, &w->contact[i]);
 	if (!any)
 		return false;
-	set_drift(w);
+	ob_set_drift(w);
 	reserve(w);
 	for (uint32_t row = 0; row < w->rows; row++)
 		w->impacts.root[row] = row;

@@ -171,6 +171,7 @@ typedef struct ob_surface {
 typedef struct ob_surfaces {
 	uint32_t count, max;
 	ob_surface *surface; // ascending by pair
+	double step_begin; // s, time of the step's start
 } ob_surfaces;
 
 // Scratch memory of an island's solve, grown as needed, never shrunk.

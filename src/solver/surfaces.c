@@ -48,7 +48,7 @@ void ob_surface_add(ob_solver *s, uint32_t row, uint32_t pair, const ob_island_o
 	body->surface = x->count;
 	if (!goes(&surface->motion))
 		return;
-	const double now = (double)s->in->step * s->settings->step_length;
+	const double now = x->step_begin;
 	const ob_state state = ob_motion_at(&surface->motion, ob_v3(0, 0, 0), now);
 	set_row(w->v[row], state.v, state.w);
 	body->acceleration = ob_acceleration_at(&surface->motion, now);
@@ -193,20 +193,30 @@ void ob_surfaces_renew_contacts(ob_solver *s)
 	}
 }
 
-static double step_time(const ob_solver *s)
-{
-	return (double)s->in->step * s->settings->step_length;
-}
-
 // Returns the surface's state in the island's frame; since: s, from the step's start.
-static ob_state state_at(const ob_solver *s, const ob_surface *x, const ob_body *body, double since)
+static ob_state state_at(const ob_island_work *w, const ob_surface *x, const ob_body *body, double since)
 {
 	if (!goes(&x->motion))
 		return (ob_state){ { body->p, body->q }, { 0, 0, 0 }, { 0, 0, 0 } };
-	ob_state at = ob_motion_at(&x->motion, ob_v3(0, 0, 0), step_time(s) + since);
-	at.pose.p = ob_madd(at.pose.p, -.5 * since * since, s->island.frame);
-	at.v = ob_madd(at.v, -since, s->island.frame);
+	ob_state at = ob_motion_at(&x->motion, ob_v3(0, 0, 0), w->surfaces.step_begin + since);
+	at.pose.p = ob_madd(at.pose.p, -.5 * since * since, w->frame);
+	at.v = ob_madd(at.v, -since, w->frame);
 	return at;
+}
+
+ob_state ob_surface_state(const ob_island_work *w, uint32_t row, double t)
+{
+	const ob_body *body = &w->body[row];
+	return state_at(w, &w->surfaces.surface[body->surface - 1], body, w->time + t);
+}
+
+double ob_surface_bend(const ob_island_work *w, uint32_t row)
+{
+	const ob_surface *x = &w->surfaces.surface[w->body[row].surface - 1];
+	if (!(x->motion.flags & OB_MOTION_SWINGS))
+		return 0;
+	const ob_vec3 by_rule = ob_scale(ob_add(x->begin.v, x->end.v), .5 * w->h);
+	return ob_norm(ob_sub(ob_sub(x->end.pose.p, x->begin.pose.p), by_rule));
 }
 
 // Moves a point of the body in one pose to its place in another.
@@ -240,8 +250,8 @@ void ob_surfaces_warm_start(ob_solver *s)
 		ob_surface *x = &w->surfaces.surface[i];
 		const ob_body *own = &w->body[x->row], *body = &w->body[carried_row(w, x)];
 		const double *v = w->v[carried_row(w, x)];
-		x->begin = state_at(s, x, own, w->time);
-		x->end = state_at(s, x, own, w->time + w->h);
+		x->begin = state_at(w, x, own, w->time);
+		x->end = state_at(w, x, own, w->time + w->h);
 		ob_vec3 target = x->end.v;
 		if (turns(x)) {
 			const ob_vec3 at =
@@ -343,7 +353,7 @@ bool ob_surface_advance(ob_solver *s, uint32_t row, ob_pose *end)
 	if (!goes(&x->motion))
 		return false;
 	set_row(w->d[row], ob_sub(end->p, from), ob_small_turn(body->q, end->q));
-	body->acceleration = ob_sub(ob_acceleration_at(&x->motion, step_time(s) + w->time + w->h), w->frame);
+	body->acceleration = ob_sub(ob_acceleration_at(&x->motion, w->surfaces.step_begin + w->time + w->h), w->frame);
 	set_speed_bound(body, &x->end);
 	body->path += (double)x->motion.reach * w->h / s->settings->step_length;
 	return true;

@@ -39,6 +39,11 @@ void ob_surfaces_predict_velocities(ob_solver *s);
 void ob_surfaces_set_drift(ob_island_work *w);
 // Velocity, m/s, world, of the running surface at the row's contact; 0 for other rows.
 ob_vec3 ob_surface_velocity(const ob_island_work *w, uint32_t row);
+// State of the row's surface, in the island's frame, at t (s) into the partial substep. It does not include a running
+// surface.
+ob_state ob_surface_state(const ob_island_work *w, uint32_t row, double t);
+// Displacement (m) of the row's surface in the partial substep beyond that of a constant acceleration.
+double ob_surface_bend(const ob_island_work *w, uint32_t row);
 // Adds the displacement of carried bodies beyond the trapezoidal rule, before their positions are integrated.
 void ob_surfaces_carry(ob_solver *s);
 // Move a surface to the midpoint of the partial substep (solver/midpoint.h), and all back.
