@@ -130,6 +130,10 @@ static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, co
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	contact->spin_lever_a = ob_spin_lever(a, normal, contact->arm_a, contact->points);
 	contact->spin_lever_b = ob_spin_lever(b, normal, contact->arm_b, contact->points);
+	if (w->surfaces.count) {
+		ob_surface_note_normal(w, contact->a, normal);
+		ob_surface_note_normal(w, contact->b, normal);
+	}
 	ob_batch_lane lane = { .body_a = contact->a,
 			       .body_b = contact->b,
 			       .normal = normal,

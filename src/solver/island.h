@@ -51,6 +51,7 @@ typedef struct ob_body {
 	uint32_t next_ghost; // chain of its ghosts' rows (solver/ghost.h); 0 ends
 	uint32_t ghost_of; // of a ghost: the row that it stands for
 	bool holds; // fixed or driven row that holds the island: accelerations are felt relative to it (solver/frame.h)
+	bool rolls; // its contact does not go along with its spin, which moves no surface (solver/surfaces.h)
 	uint32_t surface; // 1 + index into the kinematic surfaces (solver/surfaces.h); 0: none
 	double carried; // N s, sum over all surfaces that carry it
 	bool among_others; // it touches moving bodies

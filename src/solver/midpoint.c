@@ -56,8 +56,8 @@ static double load_of(const ob_island_work *w, const ob_contact *contact)
 static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	if ((a->surface && ob_norm2(ob_row_angular(w->v[contact->a])) > 0) ||
-	    (b->surface && ob_norm2(ob_row_angular(w->v[contact->b])) > 0))
+	if ((a->surface && !a->rolls && ob_norm2(ob_row_angular(w->v[contact->a])) > 0) ||
+	    (b->surface && !b->rolls && ob_norm2(ob_row_angular(w->v[contact->b])) > 0))
 		return false; // first order, except for carried bodies
 	if (contact->lane == OB_NO_LANE)
 		return false;

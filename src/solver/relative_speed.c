@@ -16,7 +16,7 @@ ob_vec3 ob_contact_velocity(const ob_island_work *w, const ob_body_row *rows, co
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	const double *va = rows[contact->a], *vb = rows[contact->b];
 	const ob_vec3 rel = ob_v3(va[0] - vb[0], va[1] - vb[1], va[2] - vb[2]);
-	if (!(a->surface | b->surface))
+	if (!(a->surface | b->surface) || (a->surface ? a : b)->rolls)
 		return rel;
 	const double *turn = a->surface ? va : vb; // the sign of the other body's arm from it is that of its velocity
 	return ob_sub(rel, ob_cross(ob_v3(turn[3], turn[4], turn[5]), ob_sub(a->p, b->p)));

@@ -24,11 +24,21 @@ bool ob_surface_moves(const ob_passport *p)
 	return p->flags & OB_OBJECT_KINEMATIC || ob_norm2(p->surface_velocity) > 0;
 }
 
-// Sets the speed bound as for a dynamic body: a sphere's spin moves points, but no surface.
+// True if the body spins about an axis of symmetry: that moves its points along its surface, and no surface.
+static bool spins_in_place(const ob_body *body, ob_vec3 rate)
+{
+	const double along = 1e-9; // sine of the angle between spin and axis
+	if (ob_shape_is(body->shape, OB_ISOTROPIC))
+		return true;
+	return ob_shape_is(body->shape, OB_AXIAL) &&
+	       ob_norm(ob_cross(ob_column(&body->r, 2), rate)) <= along * ob_norm(rate);
+}
+
+// Sets the speed bound as for a dynamic body.
 static void set_speed_bound(ob_body *body, const ob_state *now)
 {
 	const double points = body->radius * ob_norm(now->w);
-	body->turning = ob_shape_is(body->shape, OB_ISOTROPIC) ? 0 : points;
+	body->turning = spins_in_place(body, now->w) ? 0 : points;
 	body->speed = ob_norm(now->v) + points;
 }
 
@@ -51,6 +61,7 @@ void ob_surface_add(ob_solver *s, uint32_t row, uint32_t pair, const ob_island_o
 	const double now = x->step_begin;
 	const ob_state state = ob_motion_at(&surface->motion, ob_v3(0, 0, 0), now);
 	set_row(w->v[row], state.v, state.w);
+	body->rolls = spins_in_place(body, state.w) && !ob_shape_is(body->shape, OB_RIMMED);
 	body->acceleration = ob_acceleration_at(&surface->motion, now);
 	set_speed_bound(body, &state);
 }
@@ -76,9 +87,24 @@ bool ob_surface_swings(const ob_island_work *w, uint32_t row)
 	return at && w->surfaces.surface[at - 1].motion.flags & OB_MOTION_SWINGS;
 }
 
-static bool turns(const ob_surface *x)
+void ob_surface_note_normal(ob_island_work *w, uint32_t row, ob_vec3 n)
 {
-	return ob_norm2(x->motion.w) > 0;
+	const double end = .7; // cosine of the angle to the axis: with more, the flat end of a cylinder
+	ob_body *body = &w->body[row];
+	if (body->surface && ob_shape_is(body->shape, OB_RIMMED))
+		body->rolls = fabs(ob_dot(n, ob_column(&body->r, 2))) < end &&
+			      spins_in_place(body, w->surfaces.surface[body->surface - 1].motion.w);
+}
+
+// Returns the rate, rad/s, at which a surface takes along what sticks to it.
+static ob_vec3 turn_of(const ob_island_work *w, const ob_surface *x)
+{
+	return w->body[x->row].rolls ? ob_v3(0, 0, 0) : x->motion.w;
+}
+
+static bool turns(const ob_island_work *w, const ob_surface *x)
+{
+	return ob_norm2(turn_of(w, x)) > 0;
 }
 
 static const ob_contact *contact_of(const ob_island_work *w, const ob_surface *x)
@@ -115,7 +141,7 @@ static double pressing(const ob_island_work *w, const ob_surface *x)
 	const uint32_t row = carried_row(w, x), l = c->lane % OB_LANES;
 	const ob_body *own = &w->body[x->row], *body = &w->body[row];
 	const ob_batch *b = &w->batch[c->lane / OB_LANES];
-	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), turn = ob_row_angular(w->v[x->row]),
+	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), turn = turn_of(w, x),
 		      arm = ob_sub(body->p, own->p), inward = ob_cross(turn, ob_cross(turn, arm));
 	return ob_norm(ob_sub(body->acceleration, own->acceleration)) +
 	       ob_max(0, (c->a == row ? 1 : -1) * ob_dot(n, inward));
@@ -159,7 +185,7 @@ static double reversal(const ob_island_work *w, const ob_surface *x)
 		slip[0] += b->t1[i][l] * (va[i] - vb[i]) + b->fa1[i][l] * va[3 + i] - b->fb1[i][l] * vb[3 + i];
 		slip[1] += b->t2[i][l] * (va[i] - vb[i]) + b->fa2[i][l] * va[3 + i] - b->fb2[i][l] * vb[3 + i];
 	}
-	const ob_vec3 turn = ob_row_angular(w->v[x->row]), arm = ob_sub(body->p, own->p),
+	const ob_vec3 turn = turn_of(w, x), arm = ob_sub(body->p, own->p),
 		      carried = ob_add(own->acceleration, ob_cross(turn, ob_cross(turn, arm)));
 	const ob_vec3 outer = ob_sub(body->acceleration, carried);
 	double s[2], a[2], both = 0, square = 0, along = 0;
@@ -188,7 +214,7 @@ void ob_surfaces_renew_contacts(ob_solver *s)
 	ob_island_work *w = &s->island;
 	for (uint32_t i = 0; i < w->surfaces.count; i++) {
 		const ob_surface *surface = &w->surfaces.surface[i];
-		if (turns(surface) && touches(w, surface))
+		if (turns(w, surface) && touches(w, surface))
 			w->contact[surface->contact].limit = -INFINITY;
 	}
 }
@@ -253,7 +279,7 @@ void ob_surfaces_warm_start(ob_solver *s)
 		x->begin = state_at(w, x, own, w->time);
 		x->end = state_at(w, x, own, w->time + w->h);
 		ob_vec3 target = x->end.v;
-		if (turns(x)) {
+		if (turns(w, x)) {
 			const ob_vec3 at =
 				body->halved ? body->start_p : ob_add(body->p, ob_row_linear(w->d[carried_row(w, x)]));
 			const ob_vec3 slip = ob_sub(ob_row_linear(v), velocity_of(&x->begin, at));
@@ -292,6 +318,15 @@ ob_vec3 ob_surface_velocity(const ob_island_work *w, uint32_t row)
 	return at ? w->surfaces.surface[at - 1].now : ob_v3(0, 0, 0);
 }
 
+// Returns the motion that takes along what sticks to the surface.
+static ob_state without_roll(const ob_island_work *w, const ob_surface *x, const ob_state *state)
+{
+	const bool rolls = w->body[x->row].rolls;
+	return (ob_state){ .pose = { state->pose.p, rolls ? x->begin.pose.q : state->pose.q },
+			   .v = state->v,
+			   .w = rolls ? ob_v3(0, 0, 0) : state->w };
+}
+
 void ob_surfaces_carry(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
@@ -304,12 +339,12 @@ void ob_surfaces_carry(ob_solver *s)
 		const uint32_t row = carried_row(w, x);
 		const ob_body *body = &w->body[row];
 		const double load = load_of(w, x);
-		if (!(load > 0) || body->halved || !(turns(x) || x->motion.flags & OB_MOTION_SWINGS))
+		if (!(load > 0) || body->halved || !(turns(w, x) || x->motion.flags & OB_MOTION_SWINGS))
 			continue;
+		const ob_state begin = without_roll(w, x, &x->begin), end = without_roll(w, x, &x->end);
 		const ob_vec3 at = ob_add(body->p, ob_row_linear(w->d[row])),
-			      then = carried_to(&x->begin.pose, &x->end.pose, at);
-		const ob_vec3 by_rule =
-			ob_scale(ob_add(velocity_of(&x->begin, at), velocity_of(&x->end, then)), .5 * w->h);
+			      then = carried_to(&begin.pose, &end.pose, at);
+		const ob_vec3 by_rule = ob_scale(ob_add(velocity_of(&begin, at), velocity_of(&end, then)), .5 * w->h);
 		const ob_vec3 rest = ob_scale(ob_sub(ob_sub(then, at), by_rule), load / body->carried);
 		w->d[row][0] += rest.x, w->d[row][1] += rest.y, w->d[row][2] += rest.z;
 	}

@@ -5,6 +5,9 @@
 //     v row   at the partial substep's start: the velocity then
 //     u row   at its end: velocity at the future place of the contact's body; so bodies that stick to a turntable turn
 //
+// A body that spins about an axis of symmetry looks the same at any time: where it touches with a round surface, it takes
+// nothing along, and is a running surface. Its contact stays where it is in space.
+//
 // A running surface moves in the plane of the contact only. Its velocity is in the rows from before the iterations
 // until the positions are integrated, and nowhere else, for the shape itself stays.
 //
@@ -21,6 +24,9 @@ bool ob_surface_moves(const ob_passport *p);
 void ob_surface_add(ob_solver *s, uint32_t row, uint32_t pair, const ob_island_object *object);
 // Returns the pair's row; 0: none.
 uint32_t ob_surface_row(const ob_island_work *w, uint32_t pair);
+// Notes the normal n of the row's contact: a cylinder that spins about its axis is a running surface at its side, and a
+// turntable at its ends.
+void ob_surface_note_normal(ob_island_work *w, uint32_t row, ob_vec3 n);
 // True if the row's surface has an acceleration that changes all the time.
 bool ob_surface_swings(const ob_island_work *w, uint32_t row);
 // Links surfaces to contacts when all contacts are loaded; the island's largest acceleration includes that of
