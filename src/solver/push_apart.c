@@ -4,6 +4,7 @@
 
 #include "solver/bodies.h"
 #include "solver/contact_solver.h"
+#include "solver/contacts.h"
 
 static const double pushed_share = .3; // share of the penetration, per partial substep
 static const double most_share = 1.1; // largest factor on relative velocities, where a push has to give energy back
@@ -190,10 +191,43 @@ static void add_push_to_paths(ob_island_work *w)
 	}
 }
 
+static bool carries_load(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	double sum = 0;
+	for (uint32_t j = 0; j < contact->points; j++)
+		sum += b->impulse[j][contact->lane % OB_LANES];
+	return sum > 0;
+}
+
+// True if rows of the body's contacts, which are straight lines, do not describe its turn in the partial substep.
+static bool turns_fast(const ob_island_work *w, const ob_body *body)
+{
+	const double turn = .03; // rad
+	return body->turning * w->h > turn * body->radius;
+}
+
+// Finds contacts anew that carry no load but seem deeper than "left" (m), where a body turns fast: one that only
+// passes another would be pushed, and its angular momentum turned.
+static void renew_passing(ob_solver *s, double left)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		if (contact->lane == OB_NO_LANE ||
+		    !(turns_fast(w, &w->body[contact->a]) || turns_fast(w, &w->body[contact->b])) ||
+		    carries_load(w, contact) || !(ob_contact_gap(w, contact) < -left))
+			continue;
+		s->counters.narrowphase_tests++;
+		ob_contact_find(s, contact);
+	}
+}
+
 void ob_push_apart(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	const double left = ob_solver_slop(s);
+	renew_passing(s, left);
 	if (w->plastic && w->max_acceleration == 0) {
 		push_free(s, left);
 		return;
