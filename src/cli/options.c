@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/spelling.h"
 #include "host/death.h"
+#include "settings/free.h"
 #include "settings/settings.h"
 
 enum {
@@ -76,6 +77,17 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 
 	[OB_OPTION_PACE] = { NULL, "pace", "realtime|RATE|max",
 			     "simulated seconds a second of the clock (run: max; serve: realtime)", RUN | SERVE, 0 },
+
+	[OB_OPTION_SYNC] = { NULL, "sync", OB_SYNC_NAMES,
+			     "step together, or each simulator at times of its own (the scene's)", RUN, 0 },
+	[OB_OPTION_UPDATE_RATE] = { NULL, "update-rate", "HZ", "free: steps of a simulator a second (the scene's)", RUN,
+				    0 },
+	[OB_OPTION_COUPLING] = { NULL, "coupling", OB_COUPLING_NAMES,
+				 "free: who computes a contact: each its own response (own)", RUN, 0 },
+	[OB_OPTION_MAX_LAG] = { NULL, "max-lag", "S|none",
+				"free: seconds ahead of a neighbour (pace max: two steps; else none)", RUN, 0 },
+	[OB_OPTION_JITTER] = { NULL, "jitter", "P", "free: share by which lengths of steps vary (0)", RUN, 0 },
+	[OB_OPTION_DELAY] = { NULL, "delay", "S", "free: seconds until a publication is seen (0)", RUN, 0 },
 
 	[OB_OPTION_LISTEN] = { "The server", "listen", "ADDR:PORT",
 			       "where viewers come to; port 0 is a free one (127.0.0.1:8080)", SERVE, 0 },

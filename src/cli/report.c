@@ -113,6 +113,17 @@ static const struct field {
 	FIELD(REAL, checkpoint_s),
 	FIELD(COUNT, trace_events),
 	FIELD(COUNT, trace_lost),
+	FIELD(TEXT, sync),
+	FIELD(TEXT, coupling),
+	FIELD(REAL, update_rate),
+	FIELD(REAL, max_lag),
+	FIELD(REAL, jitter),
+	FIELD(REAL, delay),
+	FIELD(REAL, updates),
+	FIELD(REAL, waits),
+	FIELD(REAL, wait_s),
+	FIELD(REAL, lag_mean_s),
+	FIELD(REAL, lag_max_s),
 	FIELD(TEXT, commit),
 #undef FIELD
 };
@@ -434,9 +445,21 @@ static void print_quality(const ob_report *r, FILE *f)
 	fprintf(f, "\n  state        %s\n", r->state_hash);
 }
 
+static void print_free(const ob_report *r, FILE *f)
+{
+	ob_quantity a, b, c;
+	fprintf(f, "  free         %g Hz, coupling %s, lag of at most %s; %.0f updates\n", r->update_rate, r->coupling,
+		isnan(r->max_lag) ? "any size" : ob_quantity_text(&a, r->max_lag, "s"), r->updates);
+	fprintf(f, "  lag          %s in the mean, %s most; %.0f waits, %s together\n",
+		ob_quantity_text(&a, r->lag_mean_s, "s"), ob_quantity_text(&b, r->lag_max_s, "s"), r->waits,
+		ob_quantity_text(&c, r->wait_s, "s"));
+}
+
 void ob_report_print(const ob_report *r, FILE *f)
 {
 	print_setup(r, f);
+	if (strcmp(r->sync, "free") == 0)
+		print_free(r, f);
 	print_tolerance(r, f);
 	print_motion(r, f);
 	print_verified(r, f);

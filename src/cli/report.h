@@ -59,6 +59,11 @@ typedef struct ob_report {
 	double penetration_max_m, penetration_mean_m, worst_penetration_m, worst_penetration_time_s;
 	double separation_max_m, separation_mean_m;
 	double fps, frame_rate;
+	// of a free run; else "" and NaN
+	char sync[16], coupling[16];
+	double update_rate, max_lag, jitter, delay; // Hz, s; max_lag NaN = no bound
+	double updates, waits, wait_s; // sums over simulators
+	double lag_mean_s, lag_max_s; // own time less that of the version read, over all readings
 } ob_report;
 
 void ob_report_write_json(const ob_report *r, FILE *f);

@@ -11,6 +11,7 @@
 #include "base/cpu.h"
 #include "base/own_file.h"
 #include "base/spelling.h"
+#include "cli/free_request.h"
 #include "cli/quantity.h"
 #include "plot/plot.h"
 #include "record/record.h"
@@ -486,7 +487,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	       read_pace(r, a, e) && read_settings(r, a, e) && read_workers(r, a, e) && read_harden(r, a, e) &&
 	       read_deaths(r, a, e) && (!r->record || ob_record_check(e)) && check_name(r->name, e) &&
 	       read_frames(&r->frames, a, e) && check_outputs(a, e) && read_checkpoint(r, a, e) &&
-	       read_fault(r, a->value[OB_OPTION_FAULT], e);
+	       read_fault(r, a->value[OB_OPTION_FAULT], e) && ob_free_request_read(r, a, e);
 }
 
 bool ob_request_check_replay(const ob_arguments *a, const ob_option_id *allowed, size_t count, ob_error *e)
@@ -527,6 +528,7 @@ bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_erro
 ob_host_config ob_request_host(const ob_run_request *r)
 {
 	return (ob_host_config){ .run = r->run,
+				 .free = r->is_free ? &r->free : NULL,
 				 .name = r->name,
 				 .isolation = r->isolation,
 				 .workers = r->workers,
@@ -620,7 +622,7 @@ bool ob_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)
 		return false;
 	r->duration = r->duration > 0 ? r->duration : s->duration;
 	r->run = s->run;
-	return ob_run_settings_resolve(&r->run, &r->asked, e) && check_run(r, s, e);
+	return ob_run_settings_resolve(&r->run, &r->asked, e) && ob_free_request_resolve(r, s, e) && check_run(r, s, e);
 }
 
 bool ob_request_resume(ob_run_request *r, const ob_saved_run *saved, const ob_scene *s, ob_error *e)

@@ -50,6 +50,10 @@ typedef struct ob_run_request {
 	const char *checkpoint, *resume; // paths; NULL = not requested
 	double every; // s, simulated, between checkpoints
 	ob_fault_plan fault; // to inject; zeroed = none
+	bool is_free, sync_asked; // is_free: after ob_request_resolve; sync_asked: the command line has --sync
+	bool free_command; // the command can run free
+	const char *of_free, *of_lockstep; // an option that was given, and is for one of the two alone; NULL = none
+	ob_free_settings free; // of a free run
 } ob_run_request;
 
 // false and e on malformed numbers, values out of range, contradictions, or missing directories.

@@ -16,6 +16,7 @@
 #include "cli/quantity.h"
 #include "cli/report.h"
 #include "cli/version.h"
+#include "free/free.h"
 #include "base/interrupt.h"
 #include "ranks/ranks.h"
 #include "record/record.h"
@@ -348,6 +349,29 @@ static void report_separation(const run *r, ob_report *p)
 	ob_snapshot_finish(&s);
 }
 
+// Settings and counters of a free run.
+static void report_free(const run *r, ob_report *p)
+{
+	const ob_free_settings *free = &r->request.free;
+	p->update_rate = p->max_lag = p->jitter = p->delay = p->updates = p->waits = p->wait_s = NAN;
+	p->lag_mean_s = p->lag_max_s = NAN;
+	snprintf(p->sync, sizeof p->sync, "%s", r->request.is_free ? "free" : "lockstep");
+	if (!r->request.is_free)
+		return;
+	ob_free_sums sums;
+	ob_free_sum(ob_host_universe(r->host), &sums);
+	snprintf(p->coupling, sizeof p->coupling, "%s", free->coupling == OB_COUPLING_LEDGER ? "ledger" : "own");
+	p->update_rate = free->update_rate;
+	p->max_lag = isinf(free->max_lag) ? NAN : free->max_lag;
+	p->jitter = free->jitter;
+	p->delay = free->delay;
+	p->updates = (double)sums.counts.updates;
+	p->waits = (double)sums.counts.waits;
+	p->wait_s = 1e-9 * (double)sums.counts.wait_ns;
+	p->lag_mean_s = 1e-9 * (double)sums.counts.lag_ns / (double)(sums.counts.readings + !sums.counts.readings);
+	p->lag_max_s = 1e-9 * (double)sums.counts.lag_most_ns;
+}
+
 static void make_report(run *r, const char *outcome, ob_report *p)
 {
 	ob_host_times times;
@@ -366,6 +390,7 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->frozen = times.frozen;
 	ob_script_count(ob_host_universe(r->host), &p->scripts_stopped, &p->scripts_warned);
 	p->deaths_told = ob_host_get_deaths(r->host, p->death);
+	report_free(r, p);
 	const double steps = body_steps(r, first_time(r));
 	const double all = body_steps(r, 0);
 	p->bounded_share = p->tolerance > 0 && all > 0 ? fmax(0, 1 - (double)p->unbounded_steps / all) : NAN;
@@ -520,6 +545,8 @@ static ob_scene *read_scene(run *r, const ob_arguments *a, ob_error *e)
 static bool share(run *r, ob_ranks ranks, ob_error *e)
 {
 	ob_run_request *q = &r->request;
+	if (q->is_free)
+		return ob_fail(e, "--sync free: expected a single rank, for ranks run in lockstep");
 	if (q->run.monolith || q->workers == 0)
 		return ob_fail(e,
 			       "on several ranks a universe has object simulators in a pool: leave --arch monolith and "

@@ -30,6 +30,7 @@ void ob_host_halt(ob_host *h)
 void ob_host_pause_early(ob_host *h)
 {
 	ob_interval *interval = &h->interval;
+	h->free_hold = true;
 	pthread_mutex_lock(&interval->lock);
 	uint64_t next = ob_step_count(h->u) + 1;
 	if (interval->running && next < interval->end) {

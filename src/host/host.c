@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/log.h"
+#include "free/free.h"
 #include "host/accounting.h"
 #include "host/host_state.h"
 #include "host/restart.h"
@@ -145,6 +146,13 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 	setup.run.one_per_object = one_per_object;
 	setup.run.freezes = ob_on_death_freezes_failed(c->on_death);
 	setup.workers += has_outboxes(c); // the arranger
+	ob_free_settings settings;
+	if (c->free) {
+		settings = *c->free;
+		settings.objects = scene->objects;
+		setup.free = &settings;
+		ob_free_plan_depths(&settings, c->run.step_length, capacity, &setup.history, &setup.ledgers);
+	}
 	ob_script_directory *texts = NULL;
 	if (scene->scripts) {
 		texts = script_texts(scene, &setup.script_bytes);
@@ -215,8 +223,10 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_confi
 	    (!ob_population_replay(h->population, config->replay->request, config->replay->requests) ||
 	     !ob_restart_replay(h, config->replay)))
 		return ob_fail(e, "out of memory");
-	ob_restart_prepare(h);
-	ob_restart_checkpoint(h, false);
+	if (!config->free) { // a free simulator goes on alone where it had published
+		ob_restart_prepare(h);
+		ob_restart_checkpoint(h, false);
+	}
 	return true;
 }
 
@@ -257,6 +267,9 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->wake_fd = h->interrupt_fd = h->asked.events = h->asked.socket = -1;
 	h->patience = config->patience > 0 ? config->patience : default_patience;
 	h->saved = config->saved;
+	h->free_end = config->free && isfinite(config->free->end)
+			      ? (uint64_t)ceil(config->free->end / config->run.step_length - 1e-9)
+			      : UINT64_MAX;
 	h->on_death = config->on_death;
 	h->limit = config->limit;
 	h->control = config->control;

@@ -20,6 +20,7 @@
 #include "host/timeline.h"
 #include "ranks/ranks.h"
 #include "scene/scene.h"
+#include "settings/free.h"
 #include "table/saved.h"
 
 // Saved run at a step boundary: all that it needs to go on, beside its scene and its settings. The arrays belong to
@@ -55,6 +56,8 @@ typedef struct ob_host_config {
 	bool check; // checks the state that simulators share after each step (step/invariants.h)
 	const char *trace; // file for the timeline of workers and host (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers
+	const ob_free_settings
+		*free; // settings of a free run (free/free.h); NULL: in lockstep. `objects` is set by the host
 	ob_request_log *log; // input from outside; NULL = none. It must outlive the host
 	struct ob_control *control; // takes programs that control the run (control.h); NULL = refuses them. Likewise
 	const ob_logged_requests *replay; // requests to carry out again, each in its place; NULL = none

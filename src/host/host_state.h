@@ -81,6 +81,8 @@ struct ob_host {
 		uint64_t warned; // bit i: script i was warned of
 	} scripts; // scripts that errors have stopped, or that have no effect
 	uint64_t target; // the caller's
+	uint64_t free_end; // last step of a free run
+	atomic_bool free_hold; // simulators of a free run are to stop and wait where they may run to now
 	bool started; // the gate was opened once
 	double patience; // s
 	bool saved; // see ob_host_config

@@ -44,7 +44,7 @@ void ob_restart_finish(ob_host *h)
 uint64_t ob_restart_next_step(const ob_host *h)
 {
 	const ob_restart_state *r = &h->restart;
-	uint64_t next = r->attempts > 0 ? ob_checkpoint_step(r->checkpoint) + r->half_way : UINT64_MAX;
+	uint64_t next = r->checkpoint && r->attempts > 0 ? ob_checkpoint_step(r->checkpoint) + r->half_way : UINT64_MAX;
 	for (uint32_t i = 0; i < r->freezes; i++)
 		next = r->freeze[i].step < next ? r->freeze[i].step : next;
 	return next;
@@ -127,6 +127,43 @@ void ob_restart_request(ob_host *h, const ob_death *d)
 				    missed ? "; there was no memory for a checkpoint" : "");
 	}
 	ob_gate_stop(h->u); // the others leave, and the host wakes
+}
+
+// Counts a death of a free run. Returns true if there were too many, or no step was completed for long.
+static bool is_hopeless(ob_host *h)
+{
+	ob_restart_state *r = &h->restart;
+	const double now = ob_clock_wall();
+	if (ob_step_count(h->u) > r->half_way || r->attempts == 0) {
+		r->half_way = ob_step_count(h->u);
+		r->attempts = 0;
+		r->progress_at = now;
+	}
+	return ++r->attempts > QUICK_ATTEMPTS && now - r->progress_at > fmax(faults_timeout, h->patience);
+}
+
+void ob_restart_worker(ob_host *h, const ob_death *d)
+{
+	ob_restart_state *r = &h->restart;
+	ob_worker_info info;
+	ob_error text;
+	ob_death_print(d, text.text, sizeof text.text);
+	pthread_mutex_lock(&h->failure_lock);
+	r->deaths++;
+	*latest(r) = *d;
+	latest(r)->when = ob_clock_ns();
+	const bool over = h->on_death == OB_ON_DEATH_ABORT || is_over_limit(h) || is_hopeless(h);
+	pthread_mutex_unlock(&h->failure_lock);
+	ob_universe_note_death(h->u, text.text);
+	if (ob_universe_get_worker(h->u, d->worker, &info))
+		r->cpu += info.cpu_ns;
+	ob_worker_set_cpu(h->u, d->worker, 0);
+	if (over || !h->spawn->revive || !h->spawn->revive(h->group, d->worker)) {
+		ob_host_set_failure(h, "%s%s", text.text, over ? "; giving up" : "");
+		return;
+	}
+	h->running_workers++;
+	ob_log_warn("%s; it goes on where it had published", text.text);
 }
 
 void ob_restart_add_words(ob_host *h, const ob_worker_end *end)

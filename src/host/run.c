@@ -6,6 +6,8 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/utf8.h"
+#include "free/free.h"
+#include "host/free_run.h"
 #include "host/host_state.h"
 #include "host/restart.h"
 #include "host/stall.h"
@@ -20,7 +22,8 @@ static void begin_interval(ob_host *h)
 {
 	ob_interval *interval = &h->interval;
 	uint64_t step = ob_step_count(h->u);
-	ob_population_update(h->population, step, h->requests);
+	if (!ob_host_free_is_ahead(h))
+		ob_population_update(h->population, step, h->requests);
 	ob_restart_checkpoint(h, ob_restart_freeze(h));
 	ob_host_log_scripts(h);
 	if (h->started && step >= h->target)
@@ -46,7 +49,10 @@ static void begin_interval(ob_host *h)
 	pthread_mutex_unlock(&interval->lock);
 	h->interval_first_step = step;
 	h->interval_start = ob_clock_wall();
-	ob_sim_resume(h->u);
+	if (ob_free_settings_of(h->u))
+		ob_host_free_resume(h);
+	else
+		ob_sim_resume(h->u);
 }
 
 static void end_interval(ob_host *h)
@@ -231,11 +237,12 @@ static bool result_of_run(ob_host *h, ob_error *e)
 }
 
 // True if the host gets its turn within one poll interval.
-static bool wait_for_turn(const ob_host *h)
+static bool wait_for_turn(ob_host *h)
 {
 	bool turn = false;
 	for (int i = 0; i < LOOKS_PER_POLL && !turn; i++) {
-		turn = ob_gate_host_wait(h->u, poll_interval / LOOKS_PER_POLL);
+		turn = ob_free_settings_of(h->u) ? ob_host_free_wait(h, poll_interval / LOOKS_PER_POLL)
+						 : ob_gate_host_wait(h->u, poll_interval / LOOKS_PER_POLL);
 		if (h->interrupted)
 			break;
 	}

@@ -28,6 +28,8 @@ typedef struct ob_spawn {
 	// restart: starts all anew, once the ends of all have been fetched. false and e: they do not start.
 	void (*end)(ob_worker_group *g);
 	bool (*restart)(ob_worker_group *g, ob_error *e);
+	// Starts one worker again, whose end was fetched, while the others go on; NULL: it cannot die alone.
+	bool (*revive)(ob_worker_group *g, uint32_t worker);
 	// CPU time of the worker in ns; 0 when it is gone.
 	uint64_t (*cpu)(const ob_worker_info *w);
 	// After ob_gate_stop: waits until all have left, at most timeout (s), and frees g. false: some have not left

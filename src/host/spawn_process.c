@@ -48,6 +48,13 @@ static bool process_restart(ob_worker_group *g, ob_error *e)
 	return fork_workers(g) || ob_fail(e, "the fork server has ended");
 }
 
+static bool process_revive(ob_worker_group *g, uint32_t worker)
+{
+	const bool revived = ob_fork_server_fork(g->fork_server, worker, 1);
+	g->ended -= revived;
+	return revived;
+}
+
 static uint64_t process_cpu(const ob_worker_info *w)
 {
 	return ob_clock_cpu_of_process(w->pid);
@@ -96,6 +103,7 @@ const ob_spawn ob_spawn_processes = {
 	.next_end = process_next_end,
 	.end = process_end,
 	.restart = process_restart,
+	.revive = process_revive,
 	.cpu = process_cpu,
 	.join = process_join,
 	.leave_timeout = 1,

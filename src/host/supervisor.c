@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "base/log.h"
+#include "free/free.h"
 #include "host/ask.h"
 #include "host/host_state.h"
 #include "host/restart.h"
@@ -43,7 +44,10 @@ static void request_restart(ob_host *h, const ob_worker_end *end, const char *wo
 	else
 		snprintf(d.text, sizeof d.text, "%s left with exit code %d after step %llu, before the run was over",
 			 worker, end->code, step);
-	ob_restart_request(h, &d);
+	if (ob_free_settings_of(h->u))
+		ob_restart_worker(h, &d);
+	else
+		ob_restart_request(h, &d);
 }
 
 static void on_end(ob_host *h, const ob_worker_end *end)

@@ -7,6 +7,7 @@
 #include "base/allocate.h"
 #include "base/cpu.h"
 #include "base/log.h"
+#include "free/free.h"
 #include "host/confine.h"
 #include "ode/ode_body.h"
 #include "ranks/ranks.h"
@@ -67,7 +68,9 @@ static int live(ob_universe *u, uint32_t worker)
 	if (s)
 		ob_worker_announce(u, worker, getpid(), gettid(), cpu); // from now on it is ready for the gate
 	bool ready = s && ob_confine(u, worker, &e) && (!arranges || join(s, u, &wire, &e));
-	if (ready)
+	if (ready && ob_free_settings_of(u))
+		ready = ob_free_work(u, worker, &e);
+	else if (ready)
 		ob_sim_run(s);
 	else if (s)
 		ob_log_warn("worker %u: %s", worker, e.text);

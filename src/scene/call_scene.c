@@ -12,6 +12,8 @@ typedef struct scene_fields {
 	uint64_t seed;
 	uint32_t room;
 	ob_vec3 gravity;
+	uint32_t sync, coupling; // 1 = free; ob_coupling
+	double update_rate, max_lag; // Hz, s; 0 = not set
 	ob_run_settings run; // settings that the scene does not set are unset
 } scene_fields;
 
@@ -22,6 +24,10 @@ static const ob_field own_fields[] = {
 	F(duration, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9),
 	F(room, .kind = OB_FIELD_COUNT, .low = 0, .high = OB_SCENE_ROOM_MAX),
 	F(seed, .kind = OB_FIELD_WHOLE, .low = 0, .high = 0x1p53),
+	F(sync, .kind = OB_FIELD_CHOICE, .choices = OB_SYNC_NAMES),
+	F(coupling, .kind = OB_FIELD_CHOICE, .choices = OB_COUPLING_NAMES),
+	F(update_rate, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e5),
+	F(max_lag, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e3),
 };
 #undef F
 
@@ -77,6 +83,9 @@ static void check_settings(lua_State *L, const scene_fields *f, const ob_scene *
 				f->duration / s->run.step_length);
 	if (ob_setting_is_set(&f->run, OB_SETTING_TOLERANCE) && ob_setting_is_set(&f->run, OB_SETTING_SUBSTEPS))
 		ob_sandbox_fail(L, "scene.substeps: expected either tolerance or substeps, got both");
+	if (!f->sync && (f->update_rate > 0 || f->max_lag > 0))
+		ob_sandbox_fail(L, "scene.%s: expected with sync = \"free\" only",
+				f->update_rate > 0 ? "update_rate" : "max_lag");
 	if (ob_setting_is_set(&f->run, OB_SETTING_LAG) && s->run.solver != OB_SOLVER_LAGGED)
 		ob_sandbox_fail(L, "scene.lag: expected with solver = \"lagged\" only, got \"%s\"",
 				ob_setting_print(&s->run, OB_SETTING_SOLVER).text);
@@ -91,7 +100,12 @@ int ob_scene_call_scene(lua_State *L)
 	b->has_scene = true;
 	ob_field fields[OWN_FIELDS + SETTINGS];
 	list_fields(fields);
-	scene_fields f = { s->title, s->duration, s->seed, s->room, s->run.gravity, ob_run_settings_unset() };
+	scene_fields f = { .title = s->title,
+			   .duration = s->duration,
+			   .seed = s->seed,
+			   .room = s->room,
+			   .gravity = s->run.gravity,
+			   .run = ob_run_settings_unset() };
 	ob_fields_read(L, 1, "scene", fields, OWN_FIELDS + SETTINGS, &f);
 	if (f.title != s->title)
 		snprintf(s->title, sizeof s->title, "%s", f.title);
@@ -99,6 +113,11 @@ int ob_scene_call_scene(lua_State *L)
 	s->room = f.room;
 	s->run.gravity = f.gravity;
 	ob_run_settings_overlay(&s->run, &f.run);
+	s->free = (ob_free_settings){ .update_rate = !f.sync             ? 0
+						     : f.update_rate > 0 ? f.update_rate
+									 : -1,
+				      .coupling = f.coupling,
+				      .max_lag = f.max_lag };
 	check_settings(L, &f, s);
 	set_seed(L, b, f.seed);
 	return 0;

@@ -8,6 +8,7 @@
 #include "mesh/mesh.h"
 #include "motion/force.h"
 #include "motion/path.h"
+#include "settings/free.h"
 #include "settings/settings.h"
 
 enum { OB_SCENE_HULLS_MAX = 4096 }; // different ones, including those added during the run
@@ -53,6 +54,7 @@ enum { OB_SCENE_MESHES_MAX = 255 }; // limit of passports
 typedef struct ob_scene {
 	char title[128];
 	ob_run_settings run; // before the command line's settings (ob_run_settings_resolve)
+	ob_free_settings free; // update_rate: Hz; 0 = in lockstep, below 0 = free at the step's. The rest: 0 = not set
 	double duration; // s
 	uint64_t seed;
 	uint32_t objects;

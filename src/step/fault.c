@@ -146,17 +146,24 @@ static void fail(const ob_universe *u, ob_fault_kind kind, const ob_fault_plan *
 
 // Draws a chance to fail. Lives take part in the draw: otherwise a simulator restarted from a checkpoint would fail at
 // the same place for ever.
-void ob_fault_chance(ob_sim *s)
+void ob_fault_chance_of(ob_universe *u, uint32_t worker, uint64_t *chances)
 {
 	enum { SIMULATORS = ~(1 << OB_FAULT_NOSPACE | 1 << OB_FAULT_NOPAGES) };
-	const ob_fault_plan *plan = &s->settings->fault;
+	const ob_fault_plan *plan = &ob_universe_settings(u)->fault;
 	uint64_t random = 0;
-	if (!(plan->probability > 0) || s->committer) // the arranger is no simulator
+	if (!(plan->probability > 0))
 		return;
-	const uint64_t chance = (uint64_t)ob_universe_lives(s->u) << 40 | s->fault_chances++;
-	ob_fault_kind kind = ob_fault_draw(plan, SIMULATORS, s->worker, chance, &random);
+	const uint64_t chance = (uint64_t)ob_universe_lives(u) << 40 | (*chances)++;
+	ob_fault_kind kind = ob_fault_draw(plan, SIMULATORS, worker, chance, &random);
 	if (kind == OB_FAULT_KINDS)
 		return;
-	ob_fault_note(s->u, s->worker, kind);
-	fail(s->u, kind, plan, random);
+	ob_fault_note(u, worker, kind);
+	fail(u, kind, plan, random);
+}
+
+void ob_fault_chance(ob_sim *s)
+{
+	if (!(s->settings->fault.probability > 0) || s->committer) // the arranger is no simulator
+		return;
+	ob_fault_chance_of(s->u, s->worker, &s->fault_chances);
 }

@@ -34,7 +34,7 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 	clock_gettime(CLOCK_REALTIME, &now);
 	ob_layout_plan(h, &(ob_layout_plan_of){ setup->capacity, setup->workers, setup->hulls, setup->traced,
 						setup->harden & 1 << OB_HARDEN_OUTBOX, setup->script_cells,
-						setup->script_bytes });
+						setup->script_bytes, setup->history, setup->ledgers });
 	h->version = OB_LAYOUT_VERSION;
 	h->host_pid = getpid();
 	h->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
@@ -58,6 +58,8 @@ static bool fill(ob_universe *u, const ob_universe_setup *setup, ob_error *e)
 		return ob_fail(e, "/dev/shm is full: no room for the scene's scripts");
 	if (setup->script_bytes)
 		memcpy(u->base + u->header.area[OB_AREA_SCRIPT_TEXT], setup->script_text, setup->script_bytes);
+	if (setup->history)
+		u->free.control->settings = *setup->free;
 	memcpy(u->base, &u->header, sizeof u->header);
 	return true;
 }

@@ -2,7 +2,13 @@
 
 #include <string.h>
 
-enum { CAPACITY_LIMIT = 1 << 24, WORKERS_LIMIT = 1 << 20, HULLS_LIMIT = UINT16_MAX, SCRIPT_BYTES_LIMIT = 1 << 28 };
+enum {
+	CAPACITY_LIMIT = 1 << 24,
+	WORKERS_LIMIT = 1 << 20,
+	HULLS_LIMIT = UINT16_MAX,
+	SCRIPT_BYTES_LIMIT = 1 << 28,
+	VERSIONS_LIMIT = 1 << 16
+};
 
 static uint32_t power_of_two_from(uint32_t least)
 {
@@ -37,6 +43,11 @@ typedef struct area_rule {
 		PER_SCRIPTED_OBJECT,
 		PER_SCRIPT_CELL,
 		PER_SCRIPT_BYTE,
+		PER_FREE_UNIVERSE,
+		PER_FREE_OBJECT,
+		PER_FREE_GROUP,
+		PER_VERSION,
+		PER_LEDGER,
 	} per;
 	unsigned times, more;
 } area_rule;
@@ -95,6 +106,11 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_TASK_NS] = { ELEMENT(task_ns), PER_OBJECT, 1, 0 },
 	[OB_AREA_SCRIPT_TEXT] = { 1, PER_SCRIPT_BYTE, 1, 0 },
 	[OB_AREA_OUTBOX] = { 1, PER_OUTBOX_BYTE, 1, 0 },
+	[OB_AREA_FREE_CONTROL] = { sizeof(ob_free_control), PER_FREE_UNIVERSE, 1, 0 },
+	[OB_AREA_FREE_CELL] = { sizeof(ob_free_cell), PER_FREE_OBJECT, 1, 0 },
+	[OB_AREA_FREE_GROUP] = { sizeof(uint32_t), PER_FREE_GROUP, 1, 0 },
+	[OB_AREA_FREE_RING] = { sizeof(ob_motion), PER_VERSION, 1, 0 },
+	[OB_AREA_FREE_LEDGER] = { sizeof(ob_ledger), PER_LEDGER, 1, 0 },
 	[OB_AREA_TRACE_RING] = { sizeof(ob_trace_ring), PER_RING, 1, 0 },
 	[OB_AREA_TRACE_EVENT] = { sizeof(ob_trace_event), PER_TRACE_EVENT, 1, 0 },
 	[OB_AREA_TRACE_SINCE] = { sizeof(uint64_t), PER_TRACED_OBJECT, 1, 0 },
@@ -102,7 +118,7 @@ static const area_rule rules[OB_AREAS] = {
 
 static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 {
-	bool traced = s->trace_events > 0;
+	const bool traced = s->trace_events > 0, free = s->history > 0;
 	const uint64_t count[] = {
 		[FIXED] = 0,
 		[PER_OBJECT] = s->capacity,
@@ -127,6 +143,11 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 		[PER_SCRIPTED_OBJECT] = s->script_cells > 0 ? s->capacity : 0,
 		[PER_SCRIPT_CELL] = s->script_cells,
 		[PER_SCRIPT_BYTE] = s->script_bytes,
+		[PER_FREE_UNIVERSE] = free,
+		[PER_FREE_OBJECT] = free ? s->capacity : 0,
+		[PER_FREE_GROUP] = free ? ((uint64_t)s->capacity + OB_FREE_GROUP - 1) / OB_FREE_GROUP : 0,
+		[PER_VERSION] = (uint64_t)s->capacity * s->history,
+		[PER_LEDGER] = (uint64_t)s->capacity * s->ledgers,
 	};
 	const area_rule *r = &rules[area];
 	return r->element * (count[r->per] * r->times + r->more);
@@ -179,7 +200,9 @@ void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p)
 				      .workers = workers,
 				      .hulls = p->hulls,
 				      .script_cells = p->script_cells,
-				      .script_bytes = p->script_bytes };
+				      .script_bytes = p->script_bytes,
+				      .history = p->history,
+				      .ledgers = p->ledgers };
 	h->sizes.pairs_max = most_pairs(capacity);
 	h->sizes.buckets = power_of_two_from(2 * capacity);
 	h->sizes.neighbours_max = 2 * h->sizes.pairs_max + capacity; // either object of a pair may find the other
@@ -217,9 +240,12 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	if (s->script_cells > s->capacity || s->script_bytes > SCRIPT_BYTES_LIMIT ||
 	    (s->script_cells > 0) != (s->script_bytes >= sizeof(ob_script_directory)))
 		return false;
+	if (s->history == 1 || s->history > VERSIONS_LIMIT || s->ledgers == 1 || s->ledgers > s->history)
+		return false;
 	ob_header expected;
 	ob_layout_plan(&expected, &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
-							s->outbox_bytes > 0, s->script_cells, s->script_bytes });
+							s->outbox_bytes > 0, s->script_cells, s->script_bytes,
+							s->history, s->ledgers });
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       (h->harden & 1 << OB_HARDEN_OUTBOX) == (s->outbox_bytes ? 1 << OB_HARDEN_OUTBOX : 0) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&
@@ -295,6 +321,11 @@ void ob_layout_bind(ob_universe *u, void *base)
 	u->hull = (void *)(u->base + area[OB_AREA_HULL]);
 	u->requery = (void *)(u->base + area[OB_AREA_REQUERY]);
 	u->requery_bit = (void *)(u->base + area[OB_AREA_REQUERY_BIT]);
+	u->free.control = (void *)(u->base + area[OB_AREA_FREE_CONTROL]);
+	u->free.cell = (void *)(u->base + area[OB_AREA_FREE_CELL]);
+	u->free.group = (void *)(u->base + area[OB_AREA_FREE_GROUP]);
+	u->free.ring = (void *)(u->base + area[OB_AREA_FREE_RING]);
+	u->free.ledger = (void *)(u->base + area[OB_AREA_FREE_LEDGER]);
 	u->outbox_area = u->base + area[OB_AREA_OUTBOX];
 	u->trace_ring = (void *)(u->base + area[OB_AREA_TRACE_RING]);
 	u->trace_event = (void *)(u->base + area[OB_AREA_TRACE_EVENT]);

@@ -8,13 +8,14 @@
 #ifndef OB_TABLE_LAYOUT_H
 #define OB_TABLE_LAYOUT_H
 
+#include "table/free.h"
 #include "table/gate.h"
 #include "table/slot.h"
 #include "table/table.h"
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 31, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
+enum { OB_LAYOUT_VERSION = 32, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -69,6 +70,11 @@ typedef enum ob_area {
 	OB_AREA_TASK_NS,
 	OB_AREA_SCRIPT_TEXT,
 	OB_AREA_OUTBOX, // per worker; empty unless simulators are contained
+	OB_AREA_FREE_CONTROL, // these five empty unless the run is free (free.h)
+	OB_AREA_FREE_CELL, // [capacity]
+	OB_AREA_FREE_GROUP, // [capacity / OB_FREE_GROUP]
+	OB_AREA_FREE_RING, // [capacity][history]
+	OB_AREA_FREE_LEDGER, // [capacity][ledgers]
 	OB_AREA_TRACE_RING, // from here on empty unless traced
 	OB_AREA_TRACE_EVENT, // rings of the workers, then of the host
 	OB_AREA_TRACE_SINCE, // [capacity] ns
@@ -82,6 +88,8 @@ typedef struct ob_layout_sizes {
 	uint32_t hulls;
 	uint32_t script_cells; // objects that can have a script at the same time; 0 = the scene has none
 	uint32_t script_bytes; // size of their texts, with the directory
+	uint32_t history; // versions of each motion that a free run keeps; 0 = the run is in lockstep
+	uint32_t ledgers; // same of each object's mail; 0 = it has none
 } ob_layout_sizes;
 
 // The first two fields have the same place in all versions. A file with the same magic is owned through its lock
@@ -157,7 +165,7 @@ enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
 static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT_PAGE, "trace");
 static_assert(sizeof(ob_run_settings) == 128, "run settings");
-static_assert(sizeof(ob_header) == 72 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 128 + 8, "header");
+static_assert(sizeof(ob_header) == 80 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 128 + 8, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 576, "control");
 static_assert(sizeof(ob_worker_cell) == 960, "worker cell");
@@ -187,6 +195,13 @@ struct ob_universe {
 	uint32_t *requery;
 	uint64_t *requery_bit;
 	ob_step_data step_data;
+	struct {
+		ob_free_control *control;
+		ob_free_cell *cell;
+		uint32_t *group;
+		ob_motion *ring;
+		ob_ledger *ledger;
+	} free; // only if the run is free
 	char *outbox_area;
 	struct ob_outbox *outbox; // if this process is a contained simulator; NULL: it writes in place
 	ob_trace_ring *trace_ring; // these three only if traced
@@ -199,6 +214,7 @@ typedef struct ob_layout_plan_of {
 	uint32_t capacity, workers, hulls;
 	bool traced, contained;
 	uint32_t script_cells, script_bytes;
+	uint32_t history, ledgers;
 } ob_layout_plan_of;
 
 // Fills sizes (from the input), offsets and bytes.

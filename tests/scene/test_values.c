@@ -55,6 +55,19 @@ static void check_settings(void)
 	ob_scene_free(s);
 }
 
+static void check_free(void)
+{
+	ob_scene *s = load_good("scene { sync = 'free', update_rate = 500, max_lag = .01 }\nground {}");
+	CHECK(s && s->free.update_rate == 500 && s->free.max_lag == .01 && s->free.coupling == OB_COUPLING_OWN);
+	ob_scene_free(s);
+	s = load_good("scene { sync = 'free' }\nground {}");
+	CHECK(s && s->free.update_rate < 0 && s->free.max_lag == 0);
+	ob_scene_free(s);
+	s = load_good("scene { sync = 'lockstep' }\nground {}");
+	CHECK(s && s->free.update_rate == 0);
+	ob_scene_free(s);
+}
+
 static void check_exactness(void)
 {
 	ob_scene *s = load_good("scene { tolerance = .0005, solver = 'lagged', lag = 0 }\nground {}");
@@ -171,6 +184,7 @@ int main(void)
 {
 	check_defaults();
 	check_settings();
+	check_free();
 	check_exactness();
 	check_former_names();
 	check_shapes();

@@ -29,6 +29,12 @@ _obsim()
 	--on-death) mapfile -t COMPREPLY < <(compgen -W 'restart freeze abort keep' -- "$word") ;;
 	--restarts) mapfile -t COMPREPLY < <(compgen -W '5/10' -- "$word") ;;
 	--pace) mapfile -t COMPREPLY < <(compgen -W 'realtime max .1 10' -- "$word") ;;
+	--sync) mapfile -t COMPREPLY < <(compgen -W 'lockstep free' -- "$word") ;;
+	--update-rate) mapfile -t COMPREPLY < <(compgen -W '60 240 960' -- "$word") ;;
+	--coupling) mapfile -t COMPREPLY < <(compgen -W 'own' -- "$word") ;;
+	--max-lag) mapfile -t COMPREPLY < <(compgen -W 'none .001 .01' -- "$word") ;;
+	--jitter) mapfile -t COMPREPLY < <(compgen -W '.1 .3' -- "$word") ;;
+	--delay) mapfile -t COMPREPLY < <(compgen -W '.001 .01' -- "$word") ;;
 	--quality) mapfile -t COMPREPLY < <(compgen -W 'draft fine' -- "$word") ;;
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts caption aabb,contacts' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;

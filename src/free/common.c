@@ -1,0 +1,149 @@
+// The host's part: objects that come and go, and the common time.
+//
+//   own times       a ──────────────────●        slots hold the states at the newest boundary that all have passed;
+//                   b ───────────●               readers of the universe see those, as in lockstep
+//                   c ──────────────●
+//   boundaries      |     |     |     |     |
+//                             common
+#include <math.h>
+
+#include "free/free.h"
+#include "free/view.h"
+#include "motion/flight.h"
+
+static const double window_seconds = 2; // simulators may be ahead of the common time by so much, unless memory is short
+static const double instant = 1e-9; // s: times closer than this are the same
+static const uint64_t history_bytes = 512 << 20; // B, all versions together
+
+void ob_free_plan_depths(const ob_free_settings *f, double step, uint32_t capacity, uint32_t *history,
+			 uint32_t *ledgers)
+{
+	enum { LEAST = 8, MOST = 1 << 15 };
+	const double rate = f->update_rate * (1 + f->jitter) + 1 / step, lag = isinf(f->max_lag) ? 0 : f->max_lag,
+		     fits = (double)history_bytes / ((double)capacity * sizeof(ob_motion)),
+		     least = LEAST + ceil(rate * (f->delay + lag + 2 * step)),
+		     depth = ob_max(least, ob_min(fits, ceil(rate * (window_seconds + f->delay + lag))));
+	*history = (uint32_t)ob_min(MOST, depth);
+	*ledgers = f->coupling == OB_COUPLING_LEDGER ? (uint32_t)ob_min(MOST, 2 + ceil(rate * f->delay)) : 0;
+}
+
+uint64_t ob_free_window(const ob_universe *u)
+{
+	enum { SLACK = 4 };
+	const ob_free_settings *f = ob_free_settings_of(u);
+	const double step = ob_universe_settings(u)->step_length, rate = f->update_rate * (1 + f->jitter) + 1 / step,
+		     steps = floor((ob_free_depth(u) - SLACK) / (rate * step)) - 1;
+	return steps < 1 ? 1 : (uint64_t)steps;
+}
+
+static ob_free_kind kind_of(const ob_passport *p)
+{
+	return !(p->flags & OB_OBJECT_PRESENT)   ? OB_FREE_ABSENT
+	       : p->flags & OB_OBJECT_PRESCRIBED ? OB_FREE_PRESCRIBED
+						 : OB_FREE_SIMULATED;
+}
+
+void ob_free_enter_objects(ob_universe *u)
+{
+	const double now = (double)ob_step_count(u) * ob_universe_settings(u)->step_length;
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		ob_passport p;
+		ob_motion m;
+		uint32_t generation;
+		const ob_free_kind known = ob_free_kind_of(u, id, &generation);
+		if (!ob_universe_get_passport_version(u, id) || !ob_universe_get_passport(u, id, &p))
+			p = (ob_passport){ 0 };
+		const ob_free_kind kind = kind_of(&p);
+		if (kind == known && (kind == OB_FREE_ABSENT || generation == p.generation) &&
+		    !(p.flags & OB_OBJECT_KINEMATIC))
+			continue;
+		if (kind == OB_FREE_SIMULATED) {
+			if (!ob_universe_get_motion(u, id, &m))
+				continue;
+			const ob_state state = ob_motion_at(&m, p.inertia, now);
+			m = (ob_motion){ .t0 = now,
+					 .valid_until = INFINITY,
+					 .p = state.pose.p,
+					 .q = state.pose.q,
+					 .v = state.v,
+					 .w = state.w,
+					 .a = m.a,
+					 .path = m.path,
+					 .flags = OB_MOTION_FREE };
+		}
+		ob_free_enter(u, id, kind, p.generation, &m);
+	}
+}
+
+// ---- the common time
+
+// True if all simulators have passed a time.
+static bool all_passed(const ob_universe *u, double t)
+{
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
+		if (ob_free_kind_of(u, id, NULL) == OB_FREE_SIMULATED && ob_free_time(u, id) < t - instant)
+			return false;
+	return true;
+}
+
+// Shows an object's state at a boundary in its slot. Returns true if it moves.
+static void show(ob_universe *u, uint32_t id, uint64_t step, double t)
+{
+	ob_motion m, next;
+	ob_passport p;
+	if (!ob_free_read(u, id, t + instant, &m, &next) || !ob_universe_get_passport(u, id, &p))
+		return;
+	const ob_state state = fabs(m.t0 - t) <= instant ? (ob_state){ { m.p, m.q }, m.v, m.w }
+							 : ob_free_state_at(&m, &next, p.inertia, t);
+	const ob_motion shown = { .t0 = t,
+				  .valid_until = INFINITY,
+				  .p = state.pose.p,
+				  .q = state.pose.q,
+				  .v = state.v,
+				  .w = state.w,
+				  .a = m.a,
+				  .path = m.path,
+				  .step = (uint32_t)step,
+				  .island = id,
+				  .flags = m.flags & OB_MOTION_FREE };
+	ob_publish_motion(u, id, &shown);
+}
+
+uint64_t ob_free_complete(ob_universe *u, uint64_t until)
+{
+	const double length = ob_universe_settings(u)->step_length;
+	for (uint64_t step = ob_step_count(u) + 1; step <= until; step++) {
+		const double t = (double)step * length;
+		uint32_t simulated = 0;
+		if (!all_passed(u, t))
+			break;
+		for (uint32_t id = 0; id < ob_universe_ids(u); id++)
+			if (ob_free_kind_of(u, id, NULL) == OB_FREE_SIMULATED)
+				show(u, id, step, t), simulated++;
+		ob_step_complete(u, simulated, 0, 0);
+	}
+	return ob_step_count(u);
+}
+
+void ob_free_sum(const ob_universe *u, ob_free_sums *out)
+{
+	*out = (ob_free_sums){ .least_time = INFINITY };
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		ob_free_counts c;
+		if (ob_free_kind_of(u, id, NULL) != OB_FREE_SIMULATED)
+			continue;
+		ob_free_get_counts(u, id, &c);
+		out->objects++;
+		out->counts.updates += c.updates;
+		out->counts.solved += c.solved;
+		out->counts.waits += c.waits;
+		out->counts.wait_ns += c.wait_ns;
+		out->counts.late += c.late;
+		out->counts.readings += c.readings;
+		out->counts.lag_ns += c.lag_ns;
+		out->counts.lag_most_ns =
+			c.lag_most_ns > out->counts.lag_most_ns ? c.lag_most_ns : out->counts.lag_most_ns;
+		out->least_time = ob_min(out->least_time, ob_free_time(u, id));
+		out->most_time = ob_max(out->most_time, ob_free_time(u, id));
+	}
+}

@@ -1,0 +1,34 @@
+// Free running: simulators that wait for nobody. docs/design/free.md has a drawing. Simulators have times of their own
+// (simulator.h); the host shows everybody else the common time, which all have passed.
+#ifndef OB_FREE_FREE_H
+#define OB_FREE_FREE_H
+
+#include "table/free.h"
+
+// Runs a worker: the simulators of its objects, each at its own time, until the run stops. false and e: no memory.
+bool ob_free_work(ob_universe *u, uint32_t worker, ob_error *e);
+
+// Worker of an object's simulator: blocks of ids, so that neighbours in a scene are often one worker's.
+uint32_t ob_free_worker_of(const ob_universe *u, uint32_t id);
+
+// Depths of the rings that a run needs: versions of motions, and mail. step: s; capacity: objects.
+void ob_free_plan_depths(const ob_free_settings *f, double step, uint32_t capacity, uint32_t *history,
+			 uint32_t *ledgers);
+// Number of steps by which simulators may be ahead of the common time.
+uint64_t ob_free_window(const ob_universe *u);
+
+// Host, while all simulators wait or none runs: enters objects that were placed, changed or removed.
+void ob_free_enter_objects(ob_universe *u);
+// Host: completes the steps that all simulators have passed, up to `step`: shows their states at that time in the slots.
+// Returns the number of complete steps.
+uint64_t ob_free_complete(ob_universe *u, uint64_t step);
+
+// Sums over all objects for the report.
+typedef struct ob_free_sums {
+	ob_free_counts counts;
+	uint32_t objects;
+	double least_time, most_time; // s, own times now
+} ob_free_sums;
+void ob_free_sum(const ob_universe *u, ob_free_sums *out);
+
+#endif

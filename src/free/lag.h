@@ -1,0 +1,22 @@
+// The bound of the lag (Lubachevsky 1989): a simulator may begin a step when its time is at most every neighbour's plus
+// the bound.
+//
+//   time  a ────────────●            a may step: b + bound is ahead
+//         b ─────────●───────┤       b may step: it is the earliest
+//         c ──────────────────●      c waits for b alone, at its futex word
+//
+// The earliest of all never waits, so nobody waits in a circle. Static, kinematic and removed objects never block. Near
+// contact the bound is half of the time in which the gap can close, at least 1 ms.
+#ifndef OB_FREE_LAG_H
+#define OB_FREE_LAG_H
+
+#include "free/simulator.h"
+
+// True if the simulator may begin a step. Else it notes its blocker.
+bool ob_free_lag_allows(ob_free_sim *s, const ob_free_scratch *x);
+// True if the noted blocker blocks no more.
+bool ob_free_lag_is_over(const ob_free_sim *s, const ob_universe *u);
+// Bound (s) for a neighbour that is apart in the coming step, by gap and closing speed.
+double ob_free_lag_apart(const ob_free_sim *s, const ob_free_neighbour *n, const ob_state *other);
+
+#endif

@@ -1,0 +1,131 @@
+#include "free/neighbours.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/allocate.h"
+
+static const double cover_steps = 8, cover_least = .02; // steps, and s, for which a fat AABB is meant to last
+static const double margin_share = .1, margin_most = .05; // of the radius; m: margin of a fat AABB
+
+static void swept_box(const ob_free_sim *s, double seconds, double margin, double box[6])
+{
+	ob_motion_swept_bounds(&s->motion, (ob_shape)s->passport.shape, s->passport.size, seconds, box);
+	for (int c = 0; c < 3; c++)
+		box[c] -= margin, box[3 + c] += margin;
+}
+
+// Publishes a new fat AABB if the coming step may leave the present one. true: it did.
+static bool renew_bounds(ob_free_sim *s, ob_free_scratch *x, double h)
+{
+	const double radius = ob_shape_radius((ob_shape)s->passport.shape, s->passport.size),
+		     margin = ob_min(margin_most, margin_share * radius);
+	double box[6];
+	bool fits = s->bounded;
+	swept_box(s, h, margin / 2, box);
+	for (int c = 0; c < 3; c++)
+		fits &= box[c] >= (double)s->bounds[c] && box[3 + c] <= (double)s->bounds[3 + c];
+	if (fits)
+		return false;
+	swept_box(s, ob_max(cover_steps * h, cover_least), margin, box);
+	for (int c = 0; c < 3; c++) {
+		s->bounds[c] = nextafterf((float)box[c], -FLT_MAX);
+		s->bounds[3 + c] = nextafterf((float)box[3 + c], FLT_MAX);
+	}
+	s->bounded = true;
+	ob_free_publish_bounds(x->u, s->id, s->bounds);
+	return true;
+}
+
+static bool overlaps(const ob_free_sim *s, const float box[6])
+{
+	bool found = true;
+	for (int c = 0; c < 3; c++)
+		found &= box[c] <= s->bounds[3 + c] && box[3 + c] >= s->bounds[c];
+	return found;
+}
+
+static uint32_t find(const ob_free_sim *s, uint32_t id)
+{
+	uint32_t i = 0;
+	while (i < s->neighbours && s->neighbour[i].id != id)
+		i++;
+	return i;
+}
+
+static bool has_account(const ob_free_sim *s, uint32_t id)
+{
+	for (uint32_t i = 0; i < s->ledger.accounts; i++)
+		if (s->ledger.account[i].partner == id)
+			return true;
+	return false;
+}
+
+static void add(ob_free_sim *s, ob_free_scratch *x, uint32_t id, ob_free_kind kind, uint32_t generation)
+{
+	if (s->neighbours == s->neighbours_max) {
+		s->neighbours_max = 2 * s->neighbours_max + 8;
+		s->neighbour = ob_reallocate(s->neighbour, s->neighbours_max * sizeof *s->neighbour);
+	}
+	ob_free_neighbour *n = &s->neighbour[s->neighbours++];
+	*n = (ob_free_neighbour){ .id = id, .generation = generation, .kind = kind };
+	n->passport_version = ob_universe_get_passport_version(x->u, id);
+	ob_universe_get_passport(x->u, id, &n->passport);
+	n->hull = ob_hull_of(x->u, &n->passport);
+}
+
+// Drops neighbours that are gone or far. One that has mail is kept until the account is settled.
+static void drop_far(ob_free_sim *s, const ob_free_scratch *x)
+{
+	float box[6];
+	uint32_t generation;
+	for (uint32_t i = s->neighbours; i-- > 0;) {
+		const ob_free_neighbour *n = &s->neighbour[i];
+		ob_free_read_bounds(x->u, n->id, box);
+		const bool there =
+			ob_free_kind_of(x->u, n->id, &generation) != OB_FREE_ABSENT && generation == n->generation;
+		if (!there || !(overlaps(s, box) || has_account(s, n->id)))
+			s->neighbour[i] = s->neighbour[--s->neighbours];
+	}
+}
+
+static void add_near(ob_free_sim *s, ob_free_scratch *x, uint32_t first, uint32_t end)
+{
+	float box[6];
+	uint32_t generation;
+	for (uint32_t id = first; id < end; id++) {
+		ob_free_read_bounds(x->u, id, box);
+		if (!overlaps(s, box) || id == s->id || find(s, id) < s->neighbours)
+			continue;
+		const ob_free_kind kind = ob_free_kind_of(x->u, id, &generation);
+		if (kind != OB_FREE_ABSENT)
+			add(s, x, id, kind, generation);
+	}
+}
+
+static int by_id(const void *a, const void *b)
+{
+	const uint32_t x = ((const ob_free_neighbour *)a)->id, y = ((const ob_free_neighbour *)b)->id;
+	return x < y ? -1 : x > y;
+}
+
+void ob_free_neighbours_update(ob_free_sim *s, ob_free_scratch *x, double h)
+{
+	const bool all = renew_bounds(s, x, h);
+	const uint32_t ids = ob_universe_ids(x->u), groups = (ids + OB_FREE_GROUP - 1) / OB_FREE_GROUP;
+	bool any = all;
+	for (uint32_t g = 0; g < groups; g++) {
+		const uint32_t moved = ob_free_group(x->u, g), first = g * OB_FREE_GROUP;
+		if (!all && moved == s->group[g])
+			continue;
+		s->group[g] = moved;
+		any = true;
+		add_near(s, x, first, first + OB_FREE_GROUP < ids ? first + OB_FREE_GROUP : ids);
+	}
+	if (!any)
+		return;
+	drop_far(s, x);
+	qsort(s->neighbour, s->neighbours, sizeof *s->neighbour, by_id);
+}

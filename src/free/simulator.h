@@ -1,0 +1,93 @@
+// A simulator of a free run: it has a time of its own, and moves its object by one step of its own at a time.
+//
+//   due (worker.c)      its time has come by the clock, the host, and the bound of the lag (lag.c)
+//      │
+//   neighbours.c        finds who is near, by its own AABB query
+//      │
+//   view.c              reads their motions at its own time; has the island solver move its object among them
+//      │                (ledger.c: with a ledger, reads and writes mail)
+//   table/free.h        publishes a version
+//
+// All that it needs to go on lies in the universe: a successor in another process begins at the newest version. Thread-
+// safety: a simulator belongs to its worker.
+#ifndef OB_FREE_SIMULATOR_H
+#define OB_FREE_SIMULATOR_H
+
+#include "solver/solver.h"
+#include "table/free.h"
+
+// An object near, and the warm start of the contact with it.
+typedef struct ob_free_neighbour {
+	uint32_t id, generation;
+	ob_free_kind kind;
+	uint64_t passport_version;
+	ob_passport passport;
+	const ob_hull *hull;
+	ob_found_contact contact; // in the last step; kept == 0: none
+	double bound; // s that the simulator may be ahead of it, as far as contact is concerned
+} ob_free_neighbour;
+
+// A neighbour as it is seen at the simulator's time.
+typedef struct ob_free_seen {
+	uint32_t neighbour; // index
+	uint64_t version; // 0: prescribed
+	ob_motion motion;
+	ob_state now;
+} ob_free_seen;
+
+typedef struct ob_free_sim {
+	uint32_t id, generation;
+	bool present, failed;
+	double time; // s, own
+	double base; // s: steps are counted from here, so that their lengths do not add up rounding
+	uint64_t since_base;
+	uint64_t random; // of the jitter
+	ob_motion motion; // as published
+	uint64_t passport_version;
+	ob_passport passport;
+	const ob_hull *hull;
+	float bounds[6]; // as published
+	bool bounded; // they are
+	uint32_t *group; // [ob_free_groups] counters at the last look
+	ob_free_neighbour *neighbour;
+	uint32_t neighbours, neighbours_max;
+	uint32_t blocker; // neighbour that is too far behind; OB_NO_OBJECT = none
+	double needed; // s: its time from which on it blocks no more
+	ob_free_counts counts;
+	ob_ledger ledger; // as published
+} ob_free_sim;
+
+// Memory that a worker's simulators share: the solver and its scratch memory.
+typedef struct ob_free_scratch {
+	ob_universe *u;
+	const ob_free_settings *free;
+	ob_run_settings run; // the island solver's: its step is the running simulator's
+	double boundary; // s, between boundaries of the host
+	ob_solver solver;
+	ob_free_sim *sim; // running
+	ob_island_object *object;
+	ob_passport *passport;
+	ob_motion *motion;
+	ob_island_pair *pair;
+	ob_free_seen *seen; // [near]: ascending by id
+	uint32_t near, max; // max: elements of each
+	ob_motion end; // result of the solver for the running simulator's object
+	ob_motion *partner_end; // [object]: results for the others
+	bool flew; // it touched nothing
+	bool failed;
+} ob_free_scratch;
+
+static inline uint32_t ob_free_groups(const ob_universe *u)
+{
+	return (ob_universe_capacity(u) + OB_FREE_GROUP - 1) / OB_FREE_GROUP;
+}
+
+// Begins a simulator, or begins it anew, at the newest version of its object.
+bool ob_free_sim_begin(ob_free_sim *s, const ob_universe *u, uint32_t id);
+void ob_free_sim_finish(ob_free_sim *s);
+// End of the next step, s, if it were made now.
+double ob_free_sim_next(const ob_free_sim *s, const ob_free_scratch *x);
+// Moves the object through its next step and publishes it. false: it diverged, and steps no more.
+bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x);
+
+#endif

@@ -1,0 +1,284 @@
+#include "free/view.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/allocate.h"
+#include "free/lag.h"
+#include "motion/flight.h"
+#include "shape/shape.h"
+
+static const double heavy = 1e8; // times its mass, of a neighbour that counts as infinitely heavy
+
+// ---- reports of the solver
+
+static bool spend(void *with, uint64_t work)
+{
+	return ob_gate_stopped(((ob_free_scratch *)with)->u);
+}
+
+static void begin_attempt(void *with) {}
+
+static void touch(void *with, uint32_t a, uint32_t b, double impulse, ob_vec3 point) {}
+
+static void fail(void *with, uint32_t object)
+{
+	((ob_free_scratch *)with)->failed = true;
+}
+
+static void keep_contact(void *with, const ob_found_contact *c)
+{
+	ob_free_scratch *x = with;
+	x->sim->neighbour[c->pair].contact = *c;
+}
+
+static void keep_motion(void *with, const ob_island_object *object, ob_motion *m, bool free)
+{
+	ob_free_scratch *x = with;
+	if (object->id != x->sim->id) {
+		x->partner_end[object - x->object] = *m;
+		return;
+	}
+	x->end = *m;
+	x->flew = free;
+}
+
+bool ob_free_scratch_begin(ob_free_scratch *x, ob_universe *u)
+{
+	enum { ODE_BODIES = 64 };
+	x->u = u;
+	x->free = ob_free_settings_of(u);
+	x->run = *ob_universe_settings(u);
+	x->boundary = x->run.step_length;
+	x->run.sleeping = 0;
+	x->run.solver = OB_SOLVER_COLOURED;
+	const ob_island_calls calls = { .with = x,
+					.spend = spend,
+					.attempt = begin_attempt,
+					.touch = touch,
+					.fail = fail,
+					.contact = keep_contact,
+					.motion = keep_motion };
+	return ob_solver_create(&x->solver, &x->run, &calls, ODE_BODIES);
+}
+
+void ob_free_scratch_finish(ob_free_scratch *x)
+{
+	ob_solver_finish(&x->solver);
+	free(x->object);
+	free(x->passport);
+	free(x->motion);
+	free(x->pair);
+	free(x->seen);
+	free(x->partner_end);
+}
+
+static void reserve(ob_free_scratch *x, uint32_t objects)
+{
+	if (objects <= x->max)
+		return;
+	x->max = 2 * objects;
+	x->object = ob_reallocate(x->object, x->max * sizeof *x->object);
+	x->passport = ob_reallocate(x->passport, x->max * sizeof *x->passport);
+	x->motion = ob_reallocate(x->motion, x->max * sizeof *x->motion);
+	x->pair = ob_reallocate(x->pair, x->max * sizeof *x->pair);
+	x->seen = ob_reallocate(x->seen, x->max * sizeof *x->seen);
+	x->partner_end = ob_reallocate(x->partner_end, x->max * sizeof *x->partner_end);
+}
+
+// ---- reading
+
+ob_state ob_free_state_at(const ob_motion *m, const ob_motion *next, ob_vec3 inertia, double t)
+{
+	if (isnan(next->t0) || next->t0 <= m->t0 || t <= m->t0 || next->flags & OB_MOTION_FREE)
+		return ob_motion_at(m, inertia, t);
+	const double share = ob_min(1, (t - m->t0) / (next->t0 - m->t0));
+	return (ob_state){ ob_motion_between(m, next, inertia, t), ob_madd(m->v, share, ob_sub(next->v, m->v)),
+			   ob_madd(m->w, share, ob_sub(next->w, m->w)) };
+}
+
+static bool read_neighbour(ob_free_sim *s, ob_free_scratch *x, const ob_free_neighbour *n, ob_free_seen *out)
+{
+	ob_motion next = { .t0 = NAN };
+	if (n->kind == OB_FREE_PRESCRIBED) {
+		out->version = 0;
+		if (!ob_universe_get_motion(x->u, n->id, &out->motion))
+			return false;
+		out->now = ob_motion_at(&out->motion, n->passport.inertia, s->time);
+		return true;
+	}
+	const double seen_until = s->time - x->free->delay;
+	out->version = ob_free_read(x->u, n->id, seen_until, &out->motion, x->free->delay > 0 ? NULL : &next);
+	if (!out->version)
+		return false;
+	const double behind = s->time - out->motion.t0;
+	const uint64_t lag_ns = behind > 0 ? (uint64_t)(1e9 * behind) : 0;
+	s->counts.readings++;
+	s->counts.late += out->motion.t0 > seen_until;
+	s->counts.lag_ns += lag_ns;
+	s->counts.lag_most_ns = lag_ns > s->counts.lag_most_ns ? lag_ns : s->counts.lag_most_ns;
+	out->now = ob_free_state_at(&out->motion, &next, n->passport.inertia, s->time);
+	return true;
+}
+
+static void box_of(const ob_passport *p, const ob_state *now, double reach, double box[6])
+{
+	ob_shape_bounds((ob_shape)p->shape, p->size, now->pose, box);
+	for (int c = 0; c < 3; c++)
+		box[c] -= reach, box[3 + c] += reach;
+}
+
+// Bounds the way, m, of a body's points in a step: contacts within it are the solver's.
+static double reach_of(const ob_free_scratch *x, const ob_passport *p, const ob_state *now, double h)
+{
+	const double turning = ob_shape_is(p->shape, OB_UNBOUNDED)
+				       ? 0
+				       : ob_norm(now->w) * ob_shape_radius((ob_shape)p->shape, p->size);
+	return 2 * h * (ob_norm(now->v) + turning + ob_norm(x->run.gravity) * h) + x->solver.island.tolerance;
+}
+
+static bool may_touch(const ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n, const ob_state *own,
+		      const ob_state *other, double h)
+{
+	const double reach = reach_of(x, &s->passport, own, h) + reach_of(x, &n->passport, other, h);
+	double a[6], b[6];
+	bool near = true;
+	if (ob_shape_is(n->passport.shape, OB_UNBOUNDED)) {
+		const ob_mat3 r = ob_quat_matrix(other->pose.q);
+		return ob_dot(ob_column(&r, 2), ob_sub(own->pose.p, other->pose.p)) <=
+		       reach + ob_shape_radius((ob_shape)s->passport.shape, s->passport.size);
+	}
+	box_of(&s->passport, own, reach, a);
+	box_of(&n->passport, other, 0, b);
+	for (int c = 0; c < 3; c++)
+		near &= a[c] <= b[3 + c] && b[c] <= a[3 + c];
+	return near;
+}
+
+// ---- the island
+
+// Puts an object at a place of the island. Its motion begins at time 0 there.
+static void put_object(ob_free_scratch *x, uint32_t at, uint32_t id, const ob_passport *p, const ob_hull *hull,
+		       const ob_motion *m, const ob_state *now)
+{
+	x->passport[at] = *p;
+	x->motion[at] = *m;
+	x->motion[at].flags &= OB_MOTION_SWINGS;
+	x->motion[at].rest_time = 0;
+	x->motion[at].substeps = 0;
+	x->object[at] = (ob_island_object){
+		.id = id, .passport = &x->passport[at], .hull = hull, .motion = &x->motion[at], .now = *now
+	};
+}
+
+// Makes a neighbour go on as published, unless the contact changes that: by its mass, or hardly.
+static void make_partner(ob_free_scratch *x, uint32_t at)
+{
+	ob_passport *p = &x->passport[at];
+	if (x->free->heavy)
+		p->mass *= heavy, p->inertia = ob_scale(p->inertia, heavy);
+	p->force = ob_scale(ob_sub(x->motion[at].a, x->run.gravity), p->mass);
+}
+
+static void put_pair(ob_free_scratch *x, uint32_t pair, uint32_t neighbour, uint32_t own, uint32_t other, bool fixed)
+{
+	const ob_free_neighbour *n = &x->sim->neighbour[neighbour];
+	const bool first = x->sim->id < n->id;
+	x->pair[pair] = (ob_island_pair){ .pair = neighbour,
+					  .a = first ? own : other,
+					  .b = first ? other : own,
+					  .fixed = fixed ? other : OB_NO_FIXED,
+					  .limit = -INFINITY,
+					  .kept = n->contact.kept,
+					  .newest = n->contact.kept,
+					  .before = n->contact.kept ? &n->contact.state : NULL };
+}
+
+// True if a neighbour is solved together with the object, with its mass.
+static bool is_partner(const ob_free_scratch *x, const ob_free_neighbour *n)
+{
+	return n->kind == OB_FREE_SIMULATED;
+}
+
+// Builds the island of the object and its near neighbours.
+static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state *own)
+{
+	uint32_t members = 0, own_at = 0;
+	bool placed = false;
+	for (uint32_t i = 0; i <= x->near; i++) {
+		const ob_free_neighbour *n = i < x->near ? &s->neighbour[x->seen[i].neighbour] : NULL;
+		if (!placed && (!n || n->id > s->id)) {
+			put_object(x, members, s->id, &s->passport, s->hull, &s->motion, own);
+			own_at = members++;
+			placed = true;
+		}
+		if (n && is_partner(x, n)) {
+			put_object(x, members, n->id, &n->passport, n->hull, &x->seen[i].motion, &x->seen[i].now);
+			make_partner(x, members++);
+		}
+	}
+	uint32_t objects = members;
+	for (uint32_t i = 0; i < x->near; i++) {
+		const ob_free_seen *seen = &x->seen[i];
+		const ob_free_neighbour *n = &s->neighbour[seen->neighbour];
+		const bool partner = is_partner(x, n);
+		uint32_t other = partner ? 0 : objects++;
+		while (partner && x->object[other].id != n->id)
+			other++;
+		if (!partner) {
+			put_object(x, other, n->id, &n->passport, n->hull, &seen->motion, &seen->now);
+			x->motion[other].t0 -= s->time;
+		}
+		put_pair(x, i, seen->neighbour, own_at, other, !partner);
+	}
+	return (ob_island_input){
+		.members = members, .objects = objects, .pairs = x->near, .object = x->object, .pair = x->pair
+	};
+}
+
+static void fly(const ob_free_sim *s, const ob_free_scratch *x, double h, ob_motion *out)
+{
+	ob_motion flight = s->motion;
+	flight.a = ob_external_acceleration(&x->run, &s->passport);
+	const ob_state end = ob_motion_at(&flight, s->passport.inertia, flight.t0 + h);
+	*out = flight;
+	out->p = end.pose.p, out->q = end.pose.q, out->v = end.v, out->w = end.w;
+	out->flags = OB_MOTION_FREE;
+	out->path += ob_norm(end.v) * h;
+}
+
+// Reads all neighbours, and lists those that the object may touch in a step of length h (s).
+static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double h)
+{
+	x->near = 0;
+	for (uint32_t i = 0; i < s->neighbours; i++) {
+		ob_free_neighbour *n = &s->neighbour[i];
+		ob_free_seen *seen = &x->seen[x->near];
+		seen->neighbour = i;
+		n->bound = 0;
+		if (read_neighbour(s, x, n, seen) && may_touch(s, x, n, own, &seen->now, h)) {
+			x->near++;
+			continue;
+		}
+		n->contact.kept = 0;
+		n->bound = ob_free_lag_apart(s, n, &seen->now);
+	}
+}
+
+void ob_free_view_step(ob_free_sim *s, ob_free_scratch *x, double h, ob_motion *out)
+{
+	const ob_state own = { { s->motion.p, s->motion.q }, s->motion.v, s->motion.w };
+	reserve(x, s->neighbours + 2);
+	look(s, x, &own, h);
+	x->flew = true;
+	if (x->near > 0) {
+		const ob_island_input in = build(s, x, &own);
+		s->counts.solved++;
+		ob_island_solve(&x->solver, &in);
+	}
+	if (x->flew)
+		fly(s, x, h, out);
+	else
+		*out = x->end;
+}

@@ -1,0 +1,136 @@
+// A worker of a free run: makes the steps of its simulators, the earliest first.
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "free/free.h"
+#include "free/lag.h"
+#include "free/view.h"
+#include "step/fault.h"
+
+typedef struct worker {
+	ob_universe *u;
+	uint32_t worker, sims;
+	ob_free_sim *sim;
+	ob_free_scratch scratch;
+	uint32_t until; // as of the last look
+	uint64_t fault_chances;
+} worker;
+
+uint32_t ob_free_worker_of(const ob_universe *u, uint32_t id)
+{
+	const uint32_t workers = ob_universe_workers(u), capacity = ob_universe_capacity(u);
+	const uint32_t most = ob_free_settings_of(u)->objects;
+	if (ob_universe_settings(u)->one_per_object || workers >= capacity)
+		return id;
+	return id < most ? (uint32_t)((uint64_t)id * workers / most) : id % workers;
+}
+
+// Begins simulators of objects that are new to this worker. Objects come and go while all wait for the host. Chances of
+// faults are counted by updates, so that a successor does not fail at the same place for ever.
+static bool adopt(worker *w)
+{
+	uint32_t n = 0, generation;
+	const bool first = w->fault_chances == 0;
+	for (uint32_t id = 0; id < ob_universe_capacity(w->u); id++) {
+		if (ob_free_worker_of(w->u, id) != w->worker)
+			continue;
+		ob_free_sim *s = &w->sim[n++];
+		const bool present = ob_free_kind_of(w->u, id, &generation) == OB_FREE_SIMULATED;
+		if ((present != s->present || (present && generation != s->generation)) &&
+		    !ob_free_sim_begin(s, w->u, id))
+			return false;
+		w->fault_chances += first ? s->counts.updates : 0;
+	}
+	return true;
+}
+
+static bool begin(worker *w, ob_universe *u, uint32_t number)
+{
+	*w = (worker){ .u = u, .worker = number };
+	for (uint32_t id = 0; id < ob_universe_capacity(u); id++)
+		w->sims += ob_free_worker_of(u, id) == number;
+	w->sim = calloc(w->sims + 1, sizeof *w->sim);
+	return w->sim && ob_free_scratch_begin(&w->scratch, u);
+}
+
+static void finish(worker *w)
+{
+	for (uint32_t i = 0; w->sim && i < w->sims; i++)
+		ob_free_sim_finish(&w->sim[i]);
+	free(w->sim);
+	ob_free_scratch_finish(&w->scratch);
+}
+
+// Returns the earliest simulator that may step, as far as is known; NULL: none. blocked: the earliest that a neighbour
+// blocks.
+static ob_free_sim *earliest(worker *w, ob_free_sim **blocked)
+{
+	const double until = w->until * w->scratch.boundary;
+	ob_free_sim *first = NULL;
+	*blocked = NULL;
+	for (uint32_t i = 0; i < w->sims; i++) {
+		ob_free_sim *s = &w->sim[i];
+		if (!s->present || s->failed || s->time >= until)
+			continue;
+		if (s->blocker != OB_NO_OBJECT && !ob_free_lag_is_over(s, w->u)) {
+			if (!*blocked || s->time < (*blocked)->time)
+				*blocked = s;
+			continue;
+		}
+		s->blocker = OB_NO_OBJECT;
+		if (!first || s->time < first->time)
+			first = s;
+	}
+	return first;
+}
+
+// Sleeps until a simulator is due by the clock. false: it is due.
+static bool wait_for_clock(const worker *w, const ob_free_sim *s)
+{
+	const double pace = w->scratch.free->pace, most = .02;
+	if (isinf(pace))
+		return false;
+	const uint64_t due = ob_free_begun_ns(w->u) + (uint64_t)(1e9 * s->time / pace), now = ob_clock_ns();
+	if (now >= due)
+		return false;
+	const double left = ob_min(most, 1e-9 * (double)(due - now));
+	nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * left) }, NULL);
+	return true;
+}
+
+static void work(worker *w)
+{
+	ob_free_sim *blocked, *s = earliest(w, &blocked);
+	if (!s && blocked) {
+		blocked->counts.waits++;
+		blocked->counts.wait_ns += ob_free_wait_for(w->u, blocked->id, blocked->blocker, blocked->needed);
+		ob_free_put_counts(w->u, blocked->id, &blocked->counts);
+	} else if (!s) {
+		ob_free_wait_for_host(w->u, w->until);
+	} else if (!wait_for_clock(w, s) && ob_free_lag_allows(s, &w->scratch)) {
+		ob_worker_set_object(w->u, w->worker, s->id);
+		ob_free_sim_step(s, &w->scratch);
+		ob_fault_chance_of(w->u, w->worker, &w->fault_chances);
+	}
+}
+
+bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
+{
+	worker w;
+	bool fine = begin(&w, u, number);
+	while (fine && !ob_gate_stopped(u)) {
+		const uint32_t until = ob_free_until(u);
+		if (until != w.until) {
+			w.until = until;
+			fine = adopt(&w);
+		}
+		if (fine)
+			work(&w);
+	}
+	*ob_worker_counters(u, number) = w.scratch.solver.counters;
+	finish(&w);
+	return fine || ob_fail(e, "worker %u: no memory", number);
+}

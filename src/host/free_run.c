@@ -1,0 +1,62 @@
+#include "host/free_run.h"
+
+#include <time.h>
+
+#include "base/clock.h"
+#include "free/free.h"
+
+static const double look_interval = 5e-4; // s
+
+bool ob_host_free_is_ahead(const ob_host *h)
+{
+	return ob_free_settings_of(h->u) && ob_free_until(h->u) > ob_step_count(h->u);
+}
+
+// Moves `until` ahead of the common time.
+static void extend(ob_host *h)
+{
+	const uint64_t events = ob_population_next_step(h->population),
+		       ahead = ob_step_count(h->u) + ob_free_window(h->u);
+	uint64_t until = ahead < events ? ahead : events;
+	until = until < h->free_end ? until : h->free_end;
+	if (!h->free_hold && until > ob_free_until(h->u))
+		ob_free_run_until(h->u, until);
+}
+
+void ob_host_free_resume(ob_host *h)
+{
+	ob_step_begin(h->u);
+	if (!ob_host_free_is_ahead(h)) {
+		ob_free_enter_objects(h->u);
+		h->free_hold = false;
+	}
+	extend(h);
+}
+
+// Step at which the interval ends; any thread may pull it in.
+static uint64_t interval_end(ob_host *h)
+{
+	pthread_mutex_lock(&h->interval.lock);
+	const uint64_t end = h->interval.end;
+	pthread_mutex_unlock(&h->interval.lock);
+	return end;
+}
+
+bool ob_host_free_wait(ob_host *h, double timeout)
+{
+	const double end = ob_clock_wall() + timeout;
+	for (;;) {
+		const uint64_t goal = interval_end(h);
+		const bool reached = ob_free_complete(h->u, goal) >= goal;
+		if (!ob_host_free_is_ahead(h) && !reached) { // all wait, as they were to
+			ob_population_update(h->population, ob_step_count(h->u), h->requests);
+			ob_host_free_resume(h);
+		}
+		extend(h);
+		if (reached || ob_step_failed(h->u, NULL) != OB_STEP_OK)
+			return true;
+		if (ob_clock_wall() >= end)
+			return false;
+		nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * look_interval) }, NULL);
+	}
+}

@@ -1,0 +1,287 @@
+#include "table/free.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "table/futex.h"
+#include "table/layout.h"
+
+enum { NEIGHBOUR_WAIT_MS = 20, HOST_WAIT_MS = 50 };
+
+const ob_free_settings *ob_free_settings_of(const ob_universe *u)
+{
+	return u->header.sizes.history ? &u->free.control->settings : NULL;
+}
+
+uint32_t ob_free_depth(const ob_universe *u)
+{
+	return u->header.sizes.history;
+}
+
+// ---- versions
+
+static ob_free_cell *cell_of(const ob_universe *u, uint32_t id)
+{
+	return &u->free.cell[id];
+}
+
+static ob_motion *place(const ob_universe *u, uint32_t id, uint64_t version)
+{
+	const uint32_t depth = u->header.sizes.history;
+	return &u->free.ring[(uint64_t)id * depth + version % depth];
+}
+
+static ob_ledger *ledger_place(const ob_universe *u, uint32_t id, uint64_t version)
+{
+	const uint32_t depth = u->header.sizes.ledgers;
+	return &u->free.ledger[(uint64_t)id * depth + version % depth];
+}
+
+static void put_words(void *to, const void *from, size_t bytes)
+{
+	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
+		__atomic_store_n((ob_word *)to + i, ((const ob_word *)from)[i], __ATOMIC_RELEASE);
+}
+
+static void get_words(void *to, const void *from, size_t bytes)
+{
+	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
+		((ob_word *)to)[i] = __atomic_load_n((const ob_word *)from + i, __ATOMIC_ACQUIRE);
+}
+
+uint64_t ob_free_version(const ob_universe *u, uint32_t id)
+{
+	return __atomic_load_n(&cell_of(u, id)->version, __ATOMIC_ACQUIRE);
+}
+
+// True if a place of a ring was not written meanwhile: see the proof in free.h.
+static bool is_whole(const ob_universe *u, uint32_t id, uint64_t version, uint32_t depth)
+{
+	return __atomic_load_n(&cell_of(u, id)->version, __ATOMIC_RELAXED) + 2 <= version + depth;
+}
+
+static double time_at(const ob_universe *u, uint32_t id, uint64_t version)
+{
+	double t;
+	get_words(&t, &place(u, id, version)->t0, sizeof t);
+	return t;
+}
+
+// Returns the newest of versions low .. high that is not after t, or low. Times of versions ascend.
+static uint64_t find_version(const ob_universe *u, uint32_t id, uint64_t low, uint64_t high, double t)
+{
+	if (time_at(u, id, high) <= t)
+		return high;
+	while (low < high) {
+		const uint64_t middle = (low + high + 1) / 2;
+		if (time_at(u, id, middle) <= t)
+			low = middle;
+		else
+			high = middle - 1;
+	}
+	return low;
+}
+
+uint64_t ob_free_read(const ob_universe *u, uint32_t id, double t, ob_motion *out, ob_motion *next)
+{
+	const uint32_t depth = u->header.sizes.history;
+	for (int i = 0; i < OB_RING_TRIES; i++) {
+		const uint64_t newest = ob_free_version(u, id), kept = newest < depth - 1 ? newest : depth - 1;
+		if (newest == 0)
+			return 0;
+		const uint64_t v = find_version(u, id, newest - kept + 1, newest, t);
+		get_words(out, place(u, id, v), sizeof *out);
+		if (next && v < newest)
+			get_words(next, place(u, id, v + 1), sizeof *next);
+		else if (next)
+			next->t0 = NAN;
+		if (is_whole(u, id, v, depth))
+			return v;
+	}
+	return 0;
+}
+
+void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_ledger *ledger)
+{
+	ob_free_cell *c = cell_of(u, id);
+	const uint64_t next = __atomic_load_n(&c->version, __ATOMIC_ACQUIRE) + 1;
+	uint64_t time;
+	memcpy(&time, &m->t0, sizeof time);
+	put_words(place(u, id, next), m, sizeof *m);
+	if (ledger)
+		put_words(ledger_place(u, id, next), ledger,
+			  offsetof(ob_ledger, account) + ledger->accounts * sizeof *ledger->account);
+	__atomic_store_n(&c->version, next, __ATOMIC_RELEASE);
+	// In one order with the waiter's store of `awaited` and its load of `time`: one of the two sees the other's.
+	__atomic_store_n(&c->time, time, __ATOMIC_SEQ_CST);
+	if (__atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST)) {
+		__atomic_store_n(&c->awaited, 0, __ATOMIC_RELAXED);
+		__atomic_fetch_add(&c->moved, 1, __ATOMIC_RELEASE);
+		ob_futex_wake(&c->moved, ~0u);
+	}
+}
+
+double ob_free_time(const ob_universe *u, uint32_t id)
+{
+	const uint64_t bits = __atomic_load_n(&cell_of(u, id)->time, __ATOMIC_SEQ_CST);
+	double t;
+	memcpy(&t, &bits, sizeof t);
+	return t;
+}
+
+ob_free_kind ob_free_kind_of(const ob_universe *u, uint32_t id, uint32_t *generation)
+{
+	const ob_free_cell *c = cell_of(u, id);
+	const uint32_t kind = __atomic_load_n(&c->kind, __ATOMIC_ACQUIRE);
+	if (generation)
+		*generation = __atomic_load_n(&c->generation, __ATOMIC_RELAXED);
+	return (ob_free_kind)kind;
+}
+
+// ---- mail
+
+static bool find_entry(const ob_ledger *at, uint32_t partner, ob_account *out)
+{
+	uint64_t head;
+	get_words(&head, at, sizeof head);
+	const uint32_t accounts = (uint32_t)head < OB_LEDGER_ACCOUNTS ? (uint32_t)head : OB_LEDGER_ACCOUNTS;
+	for (uint32_t i = 0; i < accounts; i++) {
+		get_words(out, &at->account[i], sizeof(ob_word));
+		if (out->partner != partner)
+			continue;
+		get_words(out, &at->account[i], sizeof *out);
+		return true;
+	}
+	return false;
+}
+
+bool ob_free_read_account(const ob_universe *u, uint32_t id, uint64_t version, uint32_t partner, ob_account *out,
+			  double *time)
+{
+	const uint32_t depth = u->header.sizes.ledgers;
+	for (int i = 0; i < OB_RING_TRIES; i++) {
+		const uint64_t newest = ob_free_version(u, id),
+			       v = version && version <= newest && newest + 2 <= version + depth ? version : newest;
+		if (newest == 0)
+			return false;
+		const bool found = find_entry(ledger_place(u, id, v), partner, out);
+		*time = time_at(u, id, v);
+		if (is_whole(u, id, v, depth))
+			return found;
+	}
+	return false;
+}
+
+bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_ledger *out)
+{
+	for (int i = 0; i < OB_RING_TRIES; i++) {
+		const uint64_t v = ob_free_version(u, id);
+		if (v == 0)
+			return false;
+		get_words(m, place(u, id, v), sizeof *m);
+		get_words(out, ledger_place(u, id, v), sizeof *out);
+		if (is_whole(u, id, v, u->header.sizes.ledgers) && is_whole(u, id, v, u->header.sizes.history))
+			return true;
+	}
+	return false;
+}
+
+// ---- bounds
+
+void ob_free_publish_bounds(ob_universe *u, uint32_t id, const float box[6])
+{
+	ob_word words[3];
+	memcpy(words, box, sizeof words);
+	put_words(u->step_data.bounds[id], words, sizeof words);
+	__atomic_fetch_add(&u->free.group[id / OB_FREE_GROUP], 1, __ATOMIC_RELEASE);
+}
+
+uint32_t ob_free_group(const ob_universe *u, uint32_t group)
+{
+	return __atomic_load_n(&u->free.group[group], __ATOMIC_ACQUIRE);
+}
+
+void ob_free_read_bounds(const ob_universe *u, uint32_t id, float box[6])
+{
+	ob_word words[3];
+	get_words(words, u->step_data.bounds[id], sizeof words);
+	memcpy(box, words, sizeof words);
+}
+
+// ---- counters
+
+void ob_free_put_counts(ob_universe *u, uint32_t id, const ob_free_counts *counts)
+{
+	ob_free_counts *to = &cell_of(u, id)->counts;
+	for (size_t i = 0; i < sizeof *to / sizeof(uint64_t); i++)
+		__atomic_store_n((uint64_t *)to + i, ((const uint64_t *)counts)[i], __ATOMIC_RELAXED);
+}
+
+void ob_free_get_counts(const ob_universe *u, uint32_t id, ob_free_counts *out)
+{
+	const ob_free_counts *from = &cell_of(u, id)->counts;
+	for (size_t i = 0; i < sizeof *from / sizeof(uint64_t); i++)
+		((uint64_t *)out)[i] = __atomic_load_n((const uint64_t *)from + i, __ATOMIC_RELAXED);
+}
+
+// ---- waiting
+
+uint64_t ob_free_wait_for(ob_universe *u, uint32_t id, uint32_t neighbour, double time)
+{
+	ob_free_cell *c = cell_of(u, neighbour);
+	const uint64_t began = ob_clock_ns();
+	__atomic_store_n(&cell_of(u, id)->blocker, 1 + neighbour, __ATOMIC_RELAXED);
+	__atomic_store_n(&c->awaited, 1, __ATOMIC_SEQ_CST);
+	const uint32_t seen = __atomic_load_n(&c->moved, __ATOMIC_ACQUIRE);
+	if (ob_free_time(u, neighbour) < time && __atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST))
+		ob_futex_wait_ms(&c->moved, seen, NEIGHBOUR_WAIT_MS);
+	__atomic_store_n(&cell_of(u, id)->blocker, 0, __ATOMIC_RELAXED);
+	return ob_clock_ns() - began;
+}
+
+bool ob_free_blocker(const ob_universe *u, uint32_t id, uint32_t *blocker)
+{
+	const uint32_t found = __atomic_load_n(&cell_of(u, id)->blocker, __ATOMIC_RELAXED);
+	*blocker = found - 1;
+	return found;
+}
+
+void ob_free_wait_for_host(const ob_universe *u, uint32_t step)
+{
+	ob_futex_wait_ms(&u->free.control->until, step, HOST_WAIT_MS);
+}
+
+// ---- host
+
+void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t generation, const ob_motion *m)
+{
+	const ob_ledger none = { 0 };
+	ob_free_cell *c = cell_of(u, id);
+	if (kind == OB_FREE_SIMULATED)
+		ob_free_publish(u, id, m, u->header.sizes.ledgers ? &none : NULL);
+	__atomic_store_n(&c->generation, generation, __ATOMIC_RELAXED);
+	__atomic_store_n(&c->kind, kind, __ATOMIC_RELEASE);
+	__atomic_fetch_add(&u->free.group[id / OB_FREE_GROUP], 1, __ATOMIC_RELEASE);
+}
+
+void ob_free_run_until(ob_universe *u, uint64_t step)
+{
+	ob_free_control *c = u->free.control;
+	if (c->begun_ns == 0 && step > 0)
+		__atomic_store_n(&c->begun_ns, ob_clock_ns(), __ATOMIC_RELEASE);
+	if (__atomic_load_n(&c->until, __ATOMIC_RELAXED) == (uint32_t)step)
+		return;
+	__atomic_store_n(&c->until, (uint32_t)step, __ATOMIC_RELEASE);
+	ob_futex_wake(&c->until, ~0u);
+}
+
+uint32_t ob_free_until(const ob_universe *u)
+{
+	return __atomic_load_n(&u->free.control->until, __ATOMIC_ACQUIRE);
+}
+
+uint64_t ob_free_begun_ns(const ob_universe *u)
+{
+	return __atomic_load_n(&u->free.control->begun_ns, __ATOMIC_ACQUIRE);
+}

@@ -1,0 +1,143 @@
+// Publications of a free run: each simulator publishes versions of its object's motion at its own times, and others read
+// the version that they need, without a lock. The slots (slot.h) then hold the motions of the common time, which the
+// host writes.
+//
+//               version = 9                    a version's place is its number modulo the depth, here 4
+//                   |
+//       +-----+-----+-----+-----+
+//  ring |  8  |  9  | (10)|  7  |   the writer fills the place of version 10, which was that of 6, and only then
+//       +-----+-----+-----+-----+   sets version = 10: versions 7, 8, 9 stay readable all the while
+//
+//   writer   next = version + 1;  store-release each word into ring[next];  store-release version = next
+//   reader   v = version;  load-acquire each word of ring[k], k <= v;  take it if now version <= k + depth - 2
+//
+// A copy of version k is never torn: its place is written again for version k + depth, which begins after version
+// k + depth - 1 was stored. A reader that saw one word of k + depth has, by acquire and release on that word, also seen
+// that store, so its second load of the version finds at least k + depth - 1, and it rejects the copy. With depth 2 this
+// is the proof of slot.h. A writer that is killed anywhere leaves all versions readable, and its successor fills the same
+// place anew. A reader that needs an older version than those kept takes the oldest.
+//
+// Mail: with a ledger, a version has a block of mail as well, in a ring of its own that the same word commits. So an
+// object's motion, the impulses that it has consumed and those that it has deposited change together, or not at all.
+//
+// Waiting: a simulator that is too far ahead of a neighbour sets the neighbour's `awaited`, and sleeps on its futex word.
+// The neighbour's next publication wakes it. The flag, not a count, so that a waiter's death leaves nothing behind.
+//
+// Neighbours: bounds are published as three words of two numbers. A counter for 64 objects moves afterwards, so a reader
+// compares counters, and looks at the boxes of groups that have changed.
+//
+// One writer per object at a time; readers in any thread or process.
+#ifndef OB_TABLE_FREE_H
+#define OB_TABLE_FREE_H
+
+#include <assert.h>
+
+#include <ob/motion.h>
+
+#include "settings/free.h"
+#include "table/table.h"
+
+enum { OB_LEDGER_ACCOUNTS = 32, OB_FREE_GROUP = 64 };
+
+// An account of an object with one partner. Of a pair the lower id deposits, the higher one consumes.
+typedef struct ob_account {
+	uint32_t partner, generation; // of the partner
+	uint32_t epoch; // number of the contact between the two: sums begin anew with each
+	uint32_t closed; // of a deposit: 1 = nothing follows; of a consumption: 1 = all of a closed deposit is consumed
+	double sum[12]; // N s impulse, N m s about the partner's centre, m shift, rad turn: on the higher id, so far
+	double rate[6]; // N, N m: goes on after the version's time
+} ob_account;
+
+typedef struct ob_ledger {
+	uint32_t accounts, zero;
+	ob_account account[OB_LEDGER_ACCOUNTS];
+} ob_ledger;
+
+typedef enum ob_free_kind {
+	OB_FREE_ABSENT,
+	OB_FREE_SIMULATED, // a simulator publishes its versions
+	OB_FREE_PRESCRIBED, // static or kinematic: its motion stands in its slot
+} ob_free_kind;
+
+// Counters of an object's simulator, for the report. Its own.
+typedef struct ob_free_counts {
+	uint64_t updates, solved; // steps; those with a neighbour near
+	uint64_t waits, wait_ns; // for a neighbour, by the bound of the lag
+	uint64_t late; // readings of a neighbour whose needed version was not kept any more
+	uint64_t lag_ns,
+		lag_most_ns; // sum and maximum over readings: own time less the time of the version that was read
+	uint64_t readings;
+} ob_free_counts;
+
+typedef struct ob_free_cell {
+	_Alignas(64) uint64_t version; // 0 = never published
+	uint64_t time; // bits of a double: own time, s, of the newest version
+	uint32_t kind; // ob_free_kind
+	uint32_t generation; // as in the passport
+	_Alignas(64) uint32_t moved; // futex word: publications that were awaited
+	uint32_t awaited; // 1 = a simulator sleeps on it, or is about to
+	uint32_t blocker; // 1 + the object that it waits for; 0 = none
+	uint32_t zero;
+	ob_free_counts counts;
+} ob_free_cell;
+
+typedef struct ob_free_control {
+	ob_free_settings settings;
+	_Alignas(64) uint32_t until; // futex word: step (from 0) at which simulators stop and wait; the host's
+	uint32_t zero;
+	uint64_t begun_ns; // clock at which own time 0 was due; 0 = not yet
+} ob_free_control;
+
+static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 192, "free run");
+static_assert(sizeof(ob_account) == 160 && sizeof(ob_ledger) == 8 + OB_LEDGER_ACCOUNTS * 160, "mail");
+
+// NULL: the run is in lockstep.
+const ob_free_settings *ob_free_settings_of(const ob_universe *u);
+// Depths of the rings of versions and of mail.
+uint32_t ob_free_depth(const ob_universe *u);
+
+// ---- host
+
+// Enters an object that the host has placed or removed. m: first motion of a simulated one, with its own time. Before
+// simulators run, or while all wait.
+void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t generation, const ob_motion *m);
+// Lets simulators run until so many steps are complete. The first call starts their clock.
+void ob_free_run_until(ob_universe *u, uint64_t step);
+
+// ---- all
+
+ob_free_kind ob_free_kind_of(const ob_universe *u, uint32_t id, uint32_t *generation); // generation may be NULL
+double ob_free_time(const ob_universe *u, uint32_t id); // own time, s
+uint64_t ob_free_version(const ob_universe *u, uint32_t id);
+// Copies the newest version that is not after t (s), or the oldest kept, and returns its number; 0: none. next, if not
+// NULL: the version after it; next->t0 is NaN if there is none.
+uint64_t ob_free_read(const ob_universe *u, uint32_t id, double t, ob_motion *out, ob_motion *next);
+// Copies an object's account with a partner as of a version, or as of the newest if that is not kept. time: s, of the
+// version whose account it is. False: it has none.
+bool ob_free_read_account(const ob_universe *u, uint32_t id, uint64_t version, uint32_t partner, ob_account *out,
+			  double *time);
+// Copies all of the newest mail, with the motion of its version. False: none.
+bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_ledger *out);
+// Step at which simulators stop and wait.
+uint32_t ob_free_until(const ob_universe *u);
+uint64_t ob_free_begun_ns(const ob_universe *u);
+void ob_free_get_counts(const ob_universe *u, uint32_t id, ob_free_counts *out);
+// Object that the simulator of an object waits for. False: none.
+bool ob_free_blocker(const ob_universe *u, uint32_t id, uint32_t *blocker);
+
+// ---- the object's simulator
+
+// Publishes a version; ledger: NULL without a ledger. Wakes those who wait for it.
+void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_ledger *ledger);
+void ob_free_put_counts(ob_universe *u, uint32_t id, const ob_free_counts *c);
+void ob_free_publish_bounds(ob_universe *u, uint32_t id, const float box[6]);
+// Counter of a group of OB_FREE_GROUP objects; and a box.
+uint32_t ob_free_group(const ob_universe *u, uint32_t group);
+void ob_free_read_bounds(const ob_universe *u, uint32_t id, float box[6]);
+// Sleeps until the neighbour publishes, or some time has passed, unless the neighbour has reached `time`. id: the object
+// whose simulator waits. Returns the time slept, ns.
+uint64_t ob_free_wait_for(ob_universe *u, uint32_t id, uint32_t neighbour, double time);
+// Sleeps until the host moves `until` away from this step, or some time has passed.
+void ob_free_wait_for_host(const ob_universe *u, uint32_t step);
+
+#endif

@@ -1,0 +1,105 @@
+#include "hand.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "ode/ode_body.h"
+#include "step/sim.h"
+
+hand *hand_create(ob_free_settings f, ob_vec3 gravity)
+{
+	ob_error e;
+	hand *h = calloc(1, sizeof *h);
+	f.objects = HAND_OBJECTS;
+	f.pace = INFINITY;
+	ob_universe_setup setup = { .capacity = HAND_OBJECTS, .workers = 1, .isolation = "thread", .free = &f };
+	setup.run = ob_run_settings_default();
+	setup.run.gravity = gravity;
+	setup.run.tolerance = 0;
+	setup.run.substeps = 1;
+	ob_free_plan_depths(&f, setup.run.step_length, HAND_OBJECTS, &setup.history, &setup.ledgers);
+	ob_ode_init();
+	h->u = ob_universe_create(&setup, &e);
+	if (!h->u || !ob_universe_reserve(h->u, HAND_OBJECTS, &e) || !ob_free_scratch_begin(&h->scratch, h->u)) {
+		fprintf(stderr, "%s\n", e.text);
+		exit(1);
+	}
+	return h;
+}
+
+void hand_destroy(hand *h)
+{
+	for (uint32_t i = 0; i < h->objects; i++)
+		ob_free_sim_finish(&h->sim[i]);
+	ob_free_scratch_finish(&h->scratch);
+	ob_universe_destroy(h->u, true);
+	free(h);
+}
+
+static ob_vec3 inertia_of(ob_shape shape, ob_vec3 s, double mass)
+{
+	if (shape == OB_SHAPE_SPHERE)
+		return ob_v3(.4 * mass * s.x * s.x, .4 * mass * s.x * s.x, .4 * mass * s.x * s.x);
+	return ob_scale(ob_v3(s.y * s.y + s.z * s.z, s.x * s.x + s.z * s.z, s.x * s.x + s.y * s.y), mass / 3);
+}
+
+uint32_t hand_add(hand *h, ob_shape shape, ob_vec3 size, double mass, ob_vec3 at, ob_vec3 velocity, double restitution)
+{
+	const uint32_t id = h->objects++;
+	ob_passport p = { .id = id,
+			  .generation = 1,
+			  .flags = OB_OBJECT_PRESENT | (mass > 0 ? 0 : OB_OBJECT_STATIC),
+			  .shape = (uint8_t)shape,
+			  .size = size,
+			  .mass = mass,
+			  .inertia = mass > 0 ? inertia_of(shape, size, mass) : ob_v3(0, 0, 0),
+			  .friction = .5,
+			  .restitution = restitution };
+	ob_write_passport(h->u, id, &p);
+	ob_sim_place(h->u, id, &(ob_state){ { at, ob_quat_identity() }, velocity, { 0, 0, 0 } });
+	return id;
+}
+
+void hand_until(hand *h, uint64_t step)
+{
+	ob_free_enter_objects(h->u);
+	for (uint32_t id = 0; id < h->objects; id++)
+		if (!h->sim[id].present && !ob_free_sim_begin(&h->sim[id], h->u, id))
+			exit(1);
+	ob_free_run_until(h->u, step);
+}
+
+static bool at_boundary(const hand *h, uint32_t id)
+{
+	return !h->sim[id].present || h->sim[id].failed || h->sim[id].time >= ob_free_until(h->u) * h->scratch.boundary;
+}
+
+bool hand_is_there(const hand *h)
+{
+	for (uint32_t id = 0; id < h->objects; id++)
+		if (!at_boundary(h, id))
+			return false;
+	return true;
+}
+
+bool hand_step(hand *h, uint32_t id)
+{
+	return !at_boundary(h, id) && ob_free_lag_allows(&h->sim[id], &h->scratch) &&
+	       ob_free_sim_step(&h->sim[id], &h->scratch);
+}
+
+bool hand_run(hand *h, uint64_t *random, double kills)
+{
+	while (!hand_is_there(h)) {
+		uint32_t tried = 0, id = (uint32_t)(ob_splitmix(random) % h->objects);
+		while (tried++ < h->objects && !hand_step(h, id))
+			id = (id + 1) % h->objects;
+		if (tried > h->objects)
+			return false;
+		if (ob_splitmix_real(random) < kills && !ob_free_sim_begin(&h->sim[id], h->u, id))
+			exit(1);
+	}
+	return true;
+}

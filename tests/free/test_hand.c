@@ -1,0 +1,129 @@
+// Free simulators in orders chosen at random: nobody waits in a circle, the bound of the lag is kept, and a simulator that
+// begins anew goes on where it had published.
+#include "hand.h"
+
+#include "../check.h"
+
+#include "base/random.h"
+
+static const ob_vec3 down = { 0, 0, -9.81 }, none = { 0, 0, 0 };
+
+static ob_free_settings settings(double rate, double lag)
+{
+	return (ob_free_settings){ .update_rate = rate, .max_lag = lag, .end = INFINITY, .seed = 1 };
+}
+
+static ob_motion motion_of(const hand *h, uint32_t id)
+{
+	ob_motion m;
+	ob_universe_get_motion(h->u, id, &m);
+	return m;
+}
+
+// A lone body flies as it must, whatever lengths its steps have; the common time is exact between two of its versions.
+static void test_flight(void)
+{
+	ob_free_settings f = settings(77, INFINITY);
+	f.jitter = .5;
+	hand *h = hand_create(f, down);
+	const uint32_t id = hand_add(h, OB_SHAPE_BOX, ob_v3(.1, .2, .3), 2, ob_v3(0, 0, 50), ob_v3(1, 0, 2), 0);
+	uint64_t random = 3;
+	hand_until(h, 60);
+	CHECK(hand_run(h, &random, .1));
+	for (uint64_t step = 1; step <= 60; step++) {
+		CHECK(ob_free_complete(h->u, step) == step);
+		const double t = (double)step / 60;
+		const ob_motion m = motion_of(h, id);
+		CHECK_NEAR(m.p.x, t, 1e-9);
+		CHECK_NEAR(m.p.z, 50 + 2 * t - .5 * 9.81 * t * t, 1e-9);
+		CHECK_NEAR(m.v.z, 2 - 9.81 * t, 1e-9);
+	}
+	hand_destroy(h);
+}
+
+// The common time is that of the last: nobody's later motion shows.
+static void test_common_time(void)
+{
+	hand *h = hand_create(settings(60, INFINITY), none);
+	const uint32_t a = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(0, 0, 0), ob_v3(1, 0, 0), 0),
+		       b = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(0, 9, 0), ob_v3(1, 0, 0), 0);
+	hand_until(h, 20);
+	for (int i = 0; i < 10; i++)
+		CHECK(hand_step(h, a));
+	CHECK(ob_free_complete(h->u, 20) == 0);
+	for (int i = 0; i < 4; i++)
+		CHECK(hand_step(h, b));
+	CHECK(ob_free_complete(h->u, 20) == 4);
+	CHECK_NEAR(motion_of(h, a).p.x, 4. / 60, 1e-12);
+	CHECK_NEAR(motion_of(h, b).p.x, 4. / 60, 1e-12);
+	hand_destroy(h);
+}
+
+// Two that touch: the one ahead waits for the other alone, at the bound.
+static void test_bound(void)
+{
+	const double bound = 1e-3;
+	hand *h = hand_create(settings(1000, bound), none);
+	const uint32_t a = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 1, ob_v3(0, 0, 0), none, 0),
+		       b = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 1, ob_v3(0, 1, 0), none, 0);
+	hand_until(h, 6);
+	int ahead = 0;
+	while (hand_step(h, a))
+		ahead++;
+	CHECK(ahead == 2); // it may begin at 0 and at the bound
+	CHECK(h->sim[a].blocker == b);
+	CHECK(hand_step(h, b));
+	CHECK(ob_free_lag_is_over(&h->sim[a], h->u));
+	CHECK(hand_step(h, a));
+	CHECK(!hand_step(h, a));
+	hand_destroy(h);
+}
+
+// 100 small worlds, some of whose simulators begin anew at random: all come to the end.
+static void test_no_deadlock(void)
+{
+	for (uint64_t seed = 1; seed <= 100; seed++) {
+		uint64_t random = seed;
+		ob_free_settings f = settings(100 + 400 * ob_splitmix_real(&random), .004 * ob_splitmix_real(&random));
+		f.jitter = .4 * ob_splitmix_real(&random);
+		f.delay = seed % 3 ? 0 : .005;
+		hand *h = hand_create(f, down);
+		hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+		const uint32_t n = 2 + (uint32_t)(ob_splitmix(&random) % 6);
+		for (uint32_t i = 0; i < n; i++)
+			hand_add(h, i % 2 ? OB_SHAPE_BOX : OB_SHAPE_SPHERE, ob_v3(.2, .2, .2), 1,
+				 ob_add(ob_v3(0, 0, .25 + .45 * i), ob_splitmix_vector(&random, .05)),
+				 ob_splitmix_vector(&random, .5), seed % 2 ? 0 : .5);
+		for (uint64_t step = 5; step <= 15; step += 5) {
+			hand_until(h, step);
+			CHECK(hand_run(h, &random, .1));
+			CHECK(ob_free_complete(h->u, step) == step);
+		}
+		hand_destroy(h);
+	}
+}
+
+// A ball that lands on the ground stays there.
+static void test_ground(void)
+{
+	hand *h = hand_create(settings(480, .01), down);
+	hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+	const uint32_t ball = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 1, ob_v3(0, 0, .6), none, 0);
+	uint64_t random = 1;
+	hand_until(h, 60);
+	CHECK(hand_run(h, &random, 0));
+	CHECK(ob_free_complete(h->u, 60) == 60);
+	CHECK_NEAR(motion_of(h, ball).p.z, .5, 1e-4);
+	CHECK_NEAR(motion_of(h, ball).v.z, 0, 1e-6);
+	hand_destroy(h);
+}
+
+int main(void)
+{
+	test_flight();
+	test_common_time();
+	test_bound();
+	test_no_deadlock();
+	test_ground();
+	return check_end();
+}

@@ -1,0 +1,109 @@
+"""obsim run --sync free: simulators at times of their own."""
+
+import json
+import os
+import re
+import unittest
+
+import program
+
+STACK = """
+local n = param('n', 4)
+scene { duration = .5, sync = 'free', update_rate = 500 }
+ground {}
+for i = 1, n do box { size = {1, 1, 1}, at = {0, 0, i - .5 + .01 * i} } end
+"""
+FLIGHT = """
+scene { duration = 1 }
+sphere { radius = .1, at = {0, 0, 20}, velocity = {1, 2, 3} }
+box { size = {1, 2, 3}, at = {5, 0, 20}, velocity = {0, 0, 1}, spin = {1, 2, 3} }
+"""
+
+
+class Free(program.Case):
+	def scene(self, text):
+		path = self.path("scene.lua")
+		with open(path, "w") as f:
+			f.write(text)
+		return path
+
+	def run_free(self, scene, *words):
+		done = program.call("run", scene, "--sync", "free", "--json", self.path("r.json"), *words)
+		self.assertEqual(done.returncode, 0, done.stderr)
+		with open(self.path("r.json")) as f:
+			return json.load(f), done
+
+	def test_flight_is_exact(self):
+		"""Bodies that touch nothing end where they do in lockstep, whatever their rates."""
+		scene = self.scene(FLIGHT)
+		expected = program.report(scene)
+		for more in (), ("--update-rate", 37), ("--isolation", "process", "--workers", "objects"), ("--jitter", .3):
+			r, _ = self.run_free(scene, *more)
+			self.assertAlmostEqual(r["energy_end"] / expected["energy_end"], 1, delta=1e-9)
+			self.assertEqual(r["steps"], 60)
+			self.assertEqual(r["sync"], "free")
+
+	def test_scene_key_and_report(self):
+		done = program.call("run", self.scene(STACK), "--json", self.path("r.json"))
+		self.assertEqual(done.returncode, 0, done.stderr)
+		self.assertRegex(done.stdout, r"free +500 Hz, coupling own")
+		with open(self.path("r.json")) as f:
+			r = json.load(f)
+		self.assertEqual((r["sync"], r["coupling"], r["update_rate"]), ("free", "own", 500))
+		self.assertGreaterEqual(r["updates"], 4 * 250)
+		again = program.call("run", self.scene(STACK), "--sync", "lockstep")
+		self.assertNotIn("free ", again.stdout)
+
+	def test_killed_simulators_go_on(self):
+		"""A simulator that is killed goes on where it had published: the common time reaches the end."""
+		r, done = self.run_free(self.scene(STACK), "--isolation", "process", "--workers", "objects",
+			"--fault", "kill:p=.002,seed=3")
+		self.assertGreater(r["deaths"], 0)
+		self.assertEqual(r["steps"], 30)
+		self.assertIn("goes on where it had published", done.stderr)
+
+	def test_births_and_deaths(self):
+		scene = self.scene("""
+scene { duration = 1 }
+ground {}
+for i = 1, 5 do sphere { radius = .1, at = {i, 0, 1}, born = i * .1, dies = i * .1 + .35 } end
+sphere { radius = .1, at = {9, 0, 1} }
+""")
+		for more in (), ("--workers", "objects"), ("--isolation", "process"):
+			r, _ = self.run_free(scene, "--update-rate", 240, *more)
+			self.assertEqual((r["steps"], r["objects"]), (60, 2))
+
+	def test_frames_of_the_common_time(self):
+		series = self.path("series.csv")
+		self.run_free(self.scene(FLIGHT), "--update-rate", 111, "--series", series)
+		with open(series) as f:
+			self.assertEqual(len(f.readlines()), 62)
+
+	def test_paced(self):
+		r, _ = self.run_free(self.scene(FLIGHT), "--pace", 4, "--update-rate", 100)
+		self.assertEqual(r["max_lag"], None)
+		self.assertGreater(r["elapsed_s"], .2)
+
+	def test_refusals(self):
+		scene = self.scene(FLIGHT)
+		for words, named in [
+			(["--tolerance", "1mm"], "tolerance"), (["--harden", "--isolation", "process"], "harden"),
+			(["--arch", "monolith"], "arch"), (["--lag", "1", "--solver", "lagged"], "lag"),
+			(["--checkpoint", self.path("c")], "checkpoint"), (["--sleeping", "on"], "sleeping"),
+			(["--explain"], "explain"), (["--check"], "check"), (["--trace", self.path("t")], "trace"),
+			(["--on-death", "freeze"], "on-death"), (["--solver", "jacobi"], "solver"),
+			(["--measure", "profile"], "profile"),
+		]:
+			done = program.call("run", scene, "--sync", "free", *words)
+			self.assertEqual(done.returncode, 2, words)
+			self.assertIn(named, done.stderr)
+		for option in "update-rate", "max-lag", "jitter", "delay", "coupling":
+			done = program.call("run", scene, "--" + option, "own" if option == "coupling" else ".5")
+			self.assertEqual((done.returncode, "is for --sync free" in done.stderr), (2, True), done.stderr)
+		scripted = self.scene("ground {}\nbox { size = {1, 1, 1}, at = {0, 0, 1}, script = [[function on_step(self) end]] }")
+		done = program.call("run", scripted, "--sync", "free")
+		self.assertEqual((done.returncode, "scripts" in done.stderr), (2, True), done.stderr)
+
+
+if __name__ == "__main__":
+	unittest.main()

@@ -1,0 +1,2 @@
+-- expect: :2: scene.coupling: expected
+scene { sync = "free", coupling = "none" }

@@ -1,0 +1,2 @@
+-- expect: :2: scene.sync: expected
+scene { sync = "loose" }
