@@ -83,7 +83,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_UPDATE_RATE] = { NULL, "update-rate", "HZ", "free: steps of a simulator a second (the scene's)", RUN,
 				    0 },
 	[OB_OPTION_COUPLING] = { NULL, "coupling", OB_COUPLING_NAMES,
-				 "free: who computes a contact: each its own response (own)", RUN, 0 },
+				 "free: who computes an impulse: each its own, or one that mails it (own)", RUN, 0 },
 	[OB_OPTION_MAX_LAG] = { NULL, "max-lag", "S|none",
 				"free: seconds ahead of a neighbour (pace max: two steps; else none)", RUN, 0 },
 	[OB_OPTION_JITTER] = { NULL, "jitter", "P", "free: share by which lengths of steps vary (0)", RUN, 0 },

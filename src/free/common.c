@@ -24,15 +24,18 @@ void ob_free_plan_depths(const ob_free_settings *f, double step, uint32_t capaci
 		     least = LEAST + ceil(rate * (f->delay + lag + 2 * step)),
 		     depth = ob_max(least, ob_min(fits, ceil(rate * (window_seconds + f->delay + lag))));
 	*history = (uint32_t)ob_min(MOST, depth);
-	*ledgers = f->coupling == OB_COUPLING_LEDGER ? (uint32_t)ob_min(MOST, 2 + ceil(rate * f->delay)) : 0;
+	// a ledger is read as of the newest version, unless publications are delayed
+	*ledgers = f->coupling == OB_COUPLING_LEDGER ? 2 + (uint32_t)ob_min(*history - 2, ceil(rate * f->delay)) : 0;
 }
 
 uint64_t ob_free_window(const ob_universe *u)
 {
-	enum { SLACK = 4 };
+	enum { SLACK = 4, BOUNDED = 2 };
 	const ob_free_settings *f = ob_free_settings_of(u);
 	const double step = ob_universe_settings(u)->step_length, rate = f->update_rate * (1 + f->jitter) + 1 / step,
 		     steps = floor((ob_free_depth(u) - SLACK) / (rate * step)) - 1;
+	if (ob_free_lead(f, step) > 0 && steps > BOUNDED)
+		return BOUNDED;
 	return steps < 1 ? 1 : (uint64_t)steps;
 }
 

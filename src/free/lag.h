@@ -5,6 +5,10 @@
 //         b ─────────●───────┤       b may step: it is the earliest
 //         c ──────────────────●      c waits for b alone, at its futex word
 //
+// Two that are not near are no neighbours yet, and may be farther apart in time: without a clock up to the lead, the
+// host's window (common.c). So fat AABBs hold the objects for a lead before and after their own times, and two are
+// neighbours before either can depend on it.
+//
 // The earliest of all never waits, so nobody waits in a circle. Static, kinematic and removed objects never block. Near
 // contact the bound is half of the time in which the gap can close, at least 1 ms.
 #ifndef OB_FREE_LAG_H

@@ -10,26 +10,30 @@
 static const double cover_steps = 8, cover_least = .02; // steps, and s, for which a fat AABB is meant to last
 static const double margin_share = .1, margin_most = .05; // of the radius; m: margin of a fat AABB
 
-static void swept_box(const ob_free_sim *s, double seconds, double margin, double box[6])
+// Box that holds the object from some seconds before its own time, as it flies now, until some seconds afterwards.
+static void swept_box(const ob_free_sim *s, double before, double after, double margin, double box[6])
 {
-	ob_motion_swept_bounds(&s->motion, (ob_shape)s->passport.shape, s->passport.size, seconds, box);
-	for (int c = 0; c < 3; c++)
-		box[c] -= margin, box[3 + c] += margin;
+	const double back[3] = { -s->motion.v.x * before, -s->motion.v.y * before, -s->motion.v.z * before };
+	ob_motion_swept_bounds(&s->motion, (ob_shape)s->passport.shape, s->passport.size, after, box);
+	for (int c = 0; c < 3; c++) {
+		box[c] += ob_min(0, back[c]) - margin;
+		box[3 + c] += ob_max(0, back[c]) + margin;
+	}
 }
 
 // Publishes a new fat AABB if the coming step may leave the present one. true: it did.
 static bool renew_bounds(ob_free_sim *s, ob_free_scratch *x, double h)
 {
 	const double radius = ob_shape_radius((ob_shape)s->passport.shape, s->passport.size),
-		     margin = ob_min(margin_most, margin_share * radius);
+		     margin = ob_min(margin_most, margin_share * radius), lead = ob_free_lead(x->free, x->boundary);
 	double box[6];
 	bool fits = s->bounded;
-	swept_box(s, h, margin / 2, box);
+	swept_box(s, lead, lead + h, margin / 2, box);
 	for (int c = 0; c < 3; c++)
 		fits &= box[c] >= (double)s->bounds[c] && box[3 + c] <= (double)s->bounds[3 + c];
 	if (fits)
 		return false;
-	swept_box(s, ob_max(cover_steps * h, cover_least), margin, box);
+	swept_box(s, lead, lead + ob_max(cover_steps * h, cover_least), margin, box);
 	for (int c = 0; c < 3; c++) {
 		s->bounds[c] = nextafterf((float)box[c], -FLT_MAX);
 		s->bounds[3 + c] = nextafterf((float)box[3 + c], FLT_MAX);
@@ -97,7 +101,7 @@ static void add_near(ob_free_sim *s, ob_free_scratch *x, uint32_t first, uint32_
 	uint32_t generation;
 	for (uint32_t id = first; id < end; id++) {
 		ob_free_read_bounds(x->u, id, box);
-		if (!overlaps(s, box) || id == s->id || find(s, id) < s->neighbours)
+		if (!(overlaps(s, box) || has_account(s, id)) || id == s->id || find(s, id) < s->neighbours)
 			continue;
 		const ob_free_kind kind = ob_free_kind_of(x->u, id, &generation);
 		if (kind != OB_FREE_ABSENT)

@@ -13,6 +13,8 @@
 #ifndef OB_FREE_SIMULATOR_H
 #define OB_FREE_SIMULATOR_H
 
+#include <math.h>
+
 #include "solver/solver.h"
 #include "table/free.h"
 
@@ -24,6 +26,7 @@ typedef struct ob_free_neighbour {
 	ob_passport passport;
 	const ob_hull *hull;
 	ob_found_contact contact; // in the last step; kept == 0: none
+	ob_vec3 load, twist; // N, N m: the contact's in the last step; with a ledger
 	double bound; // s that the simulator may be ahead of it, as far as contact is concerned
 } ob_free_neighbour;
 
@@ -33,6 +36,10 @@ typedef struct ob_free_seen {
 	uint64_t version; // 0: prescribed
 	ob_motion motion;
 	ob_state now;
+	// With a ledger, of a partner with a higher id: its account, if known, and the torque on it by others (N m).
+	ob_account account;
+	bool known;
+	ob_vec3 torque;
 } ob_free_seen;
 
 typedef struct ob_free_sim {
@@ -55,6 +62,8 @@ typedef struct ob_free_sim {
 	double needed; // s: its time from which on it blocks no more
 	ob_free_counts counts;
 	ob_ledger ledger; // as published
+	double mailed[12]; // consumed in this step, as ob_account.sum
+	ob_vec3 load, twist; // N, N m: the island's in the last step
 } ob_free_sim;
 
 // Memory that a worker's simulators share: the solver and its scratch memory.
@@ -76,6 +85,12 @@ typedef struct ob_free_scratch {
 	bool flew; // it touched nothing
 	bool failed;
 } ob_free_scratch;
+
+// Longest time, s, by which a simulator may be ahead of any other where the lag is bounded and there is no clock; else 0.
+static inline double ob_free_lead(const ob_free_settings *f, double step)
+{
+	return isinf(f->pace) && !isinf(f->max_lag) ? 2 * step : 0;
+}
 
 static inline uint32_t ob_free_groups(const ob_universe *u)
 {

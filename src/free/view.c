@@ -6,8 +6,14 @@
 
 #include "base/allocate.h"
 #include "free/lag.h"
+#include "free/ledger.h"
 #include "motion/flight.h"
 #include "shape/shape.h"
+
+static ob_vec3 mailed(const ob_free_sim *s, int first)
+{
+	return ob_v3(s->mailed[first], s->mailed[first + 1], s->mailed[first + 2]);
+}
 
 static const double heavy = 1e8; // times its mass, of a neighbour that counts as infinitely heavy
 
@@ -98,6 +104,21 @@ ob_state ob_free_state_at(const ob_motion *m, const ob_motion *next, ob_vec3 ine
 			   ob_madd(m->w, share, ob_sub(next->w, m->w)) };
 }
 
+static bool has_ledger(const ob_free_scratch *x)
+{
+	return x->free->coupling == OB_COUPLING_LEDGER;
+}
+
+// Counts a reading of a version, for the report.
+static void count_reading(ob_free_sim *s, double asked, double read)
+{
+	const uint64_t lag_ns = s->time > read ? (uint64_t)(1e9 * (s->time - read)) : 0;
+	s->counts.readings++;
+	s->counts.late += read > asked;
+	s->counts.lag_ns += lag_ns;
+	s->counts.lag_most_ns = lag_ns > s->counts.lag_most_ns ? lag_ns : s->counts.lag_most_ns;
+}
+
 static bool read_neighbour(ob_free_sim *s, ob_free_scratch *x, const ob_free_neighbour *n, ob_free_seen *out)
 {
 	ob_motion next = { .t0 = NAN };
@@ -108,17 +129,15 @@ static bool read_neighbour(ob_free_sim *s, ob_free_scratch *x, const ob_free_nei
 		out->now = ob_motion_at(&out->motion, n->passport.inertia, s->time);
 		return true;
 	}
-	const double seen_until = s->time - x->free->delay;
-	out->version = ob_free_read(x->u, n->id, seen_until, &out->motion, x->free->delay > 0 ? NULL : &next);
+	const double asked = s->time - x->free->delay;
+	out->version = has_ledger(x)
+			       ? ob_ledger_look(s, x, n, out)
+			       : ob_free_read(x->u, n->id, asked, &out->motion, x->free->delay > 0 ? NULL : &next);
 	if (!out->version)
 		return false;
-	const double behind = s->time - out->motion.t0;
-	const uint64_t lag_ns = behind > 0 ? (uint64_t)(1e9 * behind) : 0;
-	s->counts.readings++;
-	s->counts.late += out->motion.t0 > seen_until;
-	s->counts.lag_ns += lag_ns;
-	s->counts.lag_most_ns = lag_ns > s->counts.lag_most_ns ? lag_ns : s->counts.lag_most_ns;
-	out->now = ob_free_state_at(&out->motion, &next, n->passport.inertia, s->time);
+	count_reading(s, asked, out->motion.t0);
+	if (!has_ledger(x))
+		out->now = ob_free_state_at(&out->motion, &next, n->passport.inertia, s->time);
 	return true;
 }
 
@@ -173,12 +192,17 @@ static void put_object(ob_free_scratch *x, uint32_t at, uint32_t id, const ob_pa
 }
 
 // Makes a neighbour go on as published, unless the contact changes that: by its mass, or hardly.
-static void make_partner(ob_free_scratch *x, uint32_t at)
+static void make_partner(ob_free_scratch *x, uint32_t at, const ob_free_seen *seen)
 {
 	ob_passport *p = &x->passport[at];
 	if (x->free->heavy)
 		p->mass *= heavy, p->inertia = ob_scale(p->inertia, heavy);
 	p->force = ob_scale(ob_sub(x->motion[at].a, x->run.gravity), p->mass);
+	if (has_ledger(x)) {
+		const double *rate = seen->account.rate;
+		p->force = ob_sub(p->force, ob_v3(rate[0], rate[1], rate[2]));
+		x->object[at].torque = seen->torque;
+	}
 }
 
 static void put_pair(ob_free_scratch *x, uint32_t pair, uint32_t neighbour, uint32_t own, uint32_t other, bool fixed)
@@ -202,7 +226,7 @@ static bool is_partner(const ob_free_scratch *x, const ob_free_neighbour *n)
 }
 
 // Builds the island of the object and its near neighbours.
-static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state *own)
+static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double h)
 {
 	uint32_t members = 0, own_at = 0;
 	bool placed = false;
@@ -210,12 +234,14 @@ static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state 
 		const ob_free_neighbour *n = i < x->near ? &s->neighbour[x->seen[i].neighbour] : NULL;
 		if (!placed && (!n || n->id > s->id)) {
 			put_object(x, members, s->id, &s->passport, s->hull, &s->motion, own);
+			x->passport[members].force = ob_madd(s->passport.force, 1 / h, mailed(s, 0));
+			x->object[members].torque = ob_scale(mailed(s, 3), 1 / h);
 			own_at = members++;
 			placed = true;
 		}
 		if (n && is_partner(x, n)) {
 			put_object(x, members, n->id, &n->passport, n->hull, &x->seen[i].motion, &x->seen[i].now);
-			make_partner(x, members++);
+			make_partner(x, members++, &x->seen[i]);
 		}
 	}
 	uint32_t objects = members;
@@ -237,14 +263,20 @@ static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state 
 	};
 }
 
-static void fly(const ob_free_sim *s, const ob_free_scratch *x, double h, ob_motion *out)
+// Flies freely, under the mail as under a force; its twist acts at the begin.
+static void fly(const ob_free_sim *s, const ob_free_scratch *x, double h, const ob_state *own, ob_motion *out)
 {
+	const ob_vec3 outer = ob_external_acceleration(&x->run, &s->passport), twist = mailed(s, 3);
 	ob_motion flight = s->motion;
-	flight.a = ob_external_acceleration(&x->run, &s->passport);
+	flight.p = own->pose.p, flight.q = own->pose.q, flight.w = own->w;
+	flight.a = ob_madd(outer, 1 / (h * s->passport.mass), mailed(s, 0));
+	if (ob_norm2(twist) > 0)
+		flight.w = ob_add(flight.w, ob_ledger_rate(&s->passport, flight.q, twist));
 	const ob_state end = ob_motion_at(&flight, s->passport.inertia, flight.t0 + h);
 	*out = flight;
 	out->p = end.pose.p, out->q = end.pose.q, out->v = end.v, out->w = end.w;
-	out->flags = OB_MOTION_FREE;
+	out->a = outer;
+	out->flags = x->free->coupling == OB_COUPLING_OWN || !s->ledger.accounts ? OB_MOTION_FREE : 0;
 	out->path += ob_norm(end.v) * h;
 }
 
@@ -257,6 +289,8 @@ static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double
 		ob_free_seen *seen = &x->seen[x->near];
 		seen->neighbour = i;
 		n->bound = 0;
+		if (has_ledger(x) && n->kind == OB_FREE_SIMULATED && n->id < s->id)
+			continue; // it solves their contact
 		if (read_neighbour(s, x, n, seen) && may_touch(s, x, n, own, &seen->now, h)) {
 			x->near++;
 			continue;
@@ -266,19 +300,52 @@ static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double
 	}
 }
 
+// Receives the mail of all neighbours with lower ids, and moves the object by its displacements.
+static void receive(ob_free_sim *s, const ob_free_scratch *x, double h, ob_state *own)
+{
+	ob_ledger_begin(s);
+	for (uint32_t i = 0; i < s->neighbours && s->neighbour[i].id < s->id; i++)
+		if (s->neighbour[i].kind == OB_FREE_SIMULATED)
+			ob_ledger_receive(s, x, &s->neighbour[i], h);
+	ob_ledger_shift(s, own);
+}
+
+// Deposits the step's impulses on neighbours with higher ids, near or not.
+static void deposit(ob_free_sim *s, ob_free_scratch *x, double h)
+{
+	uint32_t at = 0, near = 0;
+	for (uint32_t i = 0; i < s->neighbours; i++) {
+		ob_free_neighbour *n = &s->neighbour[i];
+		const bool is_near = near < x->near && x->seen[near].neighbour == i;
+		ob_free_seen far, *seen = is_near ? &x->seen[near++] : &far;
+		if (n->kind != OB_FREE_SIMULATED || n->id < s->id || (!is_near && !ob_ledger_look(s, x, n, &far)))
+			continue;
+		while (is_near && x->object[at].id != n->id)
+			at++;
+		if (!ob_ledger_deposit(s, x, n, seen, is_near && !x->flew ? &x->partner_end[at] : NULL, h))
+			x->failed = true;
+	}
+}
+
 void ob_free_view_step(ob_free_sim *s, ob_free_scratch *x, double h, ob_motion *out)
 {
-	const ob_state own = { { s->motion.p, s->motion.q }, s->motion.v, s->motion.w };
+	ob_state own = { { s->motion.p, s->motion.q }, s->motion.v, s->motion.w };
 	reserve(x, s->neighbours + 2);
+	if (has_ledger(x))
+		receive(s, x, h, &own);
 	look(s, x, &own, h);
 	x->flew = true;
 	if (x->near > 0) {
-		const ob_island_input in = build(s, x, &own);
+		const ob_island_input in = build(s, x, &own, h);
 		s->counts.solved++;
 		ob_island_solve(&x->solver, &in);
 	}
 	if (x->flew)
-		fly(s, x, h, out);
+		fly(s, x, h, &own, out);
 	else
 		*out = x->end;
+	if (has_ledger(x)) {
+		deposit(s, x, h);
+		ob_ledger_end(s, x, &own, h, out);
+	}
 }

@@ -9,7 +9,7 @@ typedef enum ob_coupling {
 	OB_COUPLING_LEDGER, // the lower id computes a pair's impulse, and mails it
 } ob_coupling;
 
-#define OB_COUPLING_NAMES "own"
+#define OB_COUPLING_NAMES "own|ledger"
 #define OB_SYNC_NAMES "lockstep|free"
 
 // They lie in the table: a fixed size, no pointers.

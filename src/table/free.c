@@ -141,7 +141,7 @@ ob_free_kind ob_free_kind_of(const ob_universe *u, uint32_t id, uint32_t *genera
 
 // ---- mail
 
-static bool find_entry(const ob_ledger *at, uint32_t partner, ob_account *out)
+static bool find_account(const ob_ledger *at, uint32_t partner, ob_account *out)
 {
 	uint64_t head;
 	get_words(&head, at, sizeof head);
@@ -156,21 +156,23 @@ static bool find_entry(const ob_ledger *at, uint32_t partner, ob_account *out)
 	return false;
 }
 
-bool ob_free_read_account(const ob_universe *u, uint32_t id, uint64_t version, uint32_t partner, ob_account *out,
-			  double *time)
+uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint32_t partner, ob_motion *m,
+			      ob_account *out, double torque[3], bool *found)
 {
 	const uint32_t depth = u->header.sizes.ledgers;
 	for (int i = 0; i < OB_RING_TRIES; i++) {
-		const uint64_t newest = ob_free_version(u, id),
-			       v = version && version <= newest && newest + 2 <= version + depth ? version : newest;
+		const uint64_t newest = ob_free_version(u, id), kept = newest < depth - 1 ? newest : depth - 1;
 		if (newest == 0)
-			return false;
-		const bool found = find_entry(ledger_place(u, id, v), partner, out);
-		*time = time_at(u, id, v);
+			return 0;
+		const uint64_t v = find_version(u, id, newest - kept + 1, newest, t);
+		const ob_ledger *at = ledger_place(u, id, v);
+		get_words(m, place(u, id, v), sizeof *m);
+		get_words(torque, at->torque, sizeof at->torque);
+		*found = find_account(at, partner, out);
 		if (is_whole(u, id, v, depth))
-			return found;
+			return v;
 	}
-	return false;
+	return 0;
 }
 
 bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_ledger *out)

@@ -42,7 +42,8 @@ enum { OB_LEDGER_ACCOUNTS = 32, OB_FREE_GROUP = 64 };
 // An account of an object with one partner. Of a pair the lower id deposits, the higher one consumes.
 typedef struct ob_account {
 	uint32_t partner, generation; // of the partner
-	uint32_t epoch; // number of the contact between the two: sums begin anew with each
+	uint32_t
+		epoch; // of the contact between the two, the depositor's version in which it began: sums begin anew with each
 	uint32_t closed; // of a deposit: 1 = nothing follows; of a consumption: 1 = all of a closed deposit is consumed
 	double sum[12]; // N s impulse, N m s about the partner's centre, m shift, rad turn: on the higher id, so far
 	double rate[6]; // N, N m: goes on after the version's time
@@ -50,6 +51,7 @@ typedef struct ob_account {
 
 typedef struct ob_ledger {
 	uint32_t accounts, zero;
+	double torque[3]; // N m, on the object: goes on after the version's time, as its motion's acceleration does
 	ob_account account[OB_LEDGER_ACCOUNTS];
 } ob_ledger;
 
@@ -89,7 +91,7 @@ typedef struct ob_free_control {
 } ob_free_control;
 
 static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 192, "free run");
-static_assert(sizeof(ob_account) == 160 && sizeof(ob_ledger) == 8 + OB_LEDGER_ACCOUNTS * 160, "mail");
+static_assert(sizeof(ob_account) == 160 && sizeof(ob_ledger) == 32 + OB_LEDGER_ACCOUNTS * 160, "mail");
 
 // NULL: the run is in lockstep.
 const ob_free_settings *ob_free_settings_of(const ob_universe *u);
@@ -112,10 +114,10 @@ uint64_t ob_free_version(const ob_universe *u, uint32_t id);
 // Copies the newest version that is not after t (s), or the oldest kept, and returns its number; 0: none. next, if not
 // NULL: the version after it; next->t0 is NaN if there is none.
 uint64_t ob_free_read(const ob_universe *u, uint32_t id, double t, ob_motion *out, ob_motion *next);
-// Copies an object's account with a partner as of a version, or as of the newest if that is not kept. time: s, of the
-// version whose account it is. False: it has none.
-bool ob_free_read_account(const ob_universe *u, uint32_t id, uint64_t version, uint32_t partner, ob_account *out,
-			  double *time);
+// Copies the motion of the newest version not after t (s) whose ledger is kept, else of the oldest with one; its torque;
+// and its account with a partner, if found. Returns the version's number; 0: none.
+uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint32_t partner, ob_motion *m,
+			      ob_account *out, double torque[3], bool *found);
 // Copies all of the newest mail, with the motion of its version. False: none.
 bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_ledger *out);
 // Step at which simulators stop and wait.

@@ -56,11 +56,17 @@ class Free(program.Case):
 
 	def test_killed_simulators_go_on(self):
 		"""A simulator that is killed goes on where it had published: the common time reaches the end."""
-		r, done = self.run_free(self.scene(STACK), "--isolation", "process", "--workers", "objects",
-			"--fault", "kill:p=.002,seed=3")
-		self.assertGreater(r["deaths"], 0)
-		self.assertEqual(r["steps"], 30)
-		self.assertIn("goes on where it had published", done.stderr)
+		for coupling in "own", "ledger":
+			r, done = self.run_free(self.scene(STACK), "--isolation", "process", "--workers", "objects",
+				"--fault", "kill:p=.002,seed=3", "--coupling", coupling)
+			self.assertGreater(r["deaths"], 0)
+			self.assertEqual((r["steps"], r["coupling"]), (30, coupling))
+			self.assertIn("goes on where it had published", done.stderr)
+
+	def test_ledger_has_one_impulse(self):
+		for more in ["--solver", "ghost"], ["--integrator", "ode"]:
+			done = program.call("run", self.scene(FLIGHT), "--sync", "free", "--coupling", "ledger", *more)
+			self.assertEqual(done.returncode, 2, done.stderr)
 
 	def test_births_and_deaths(self):
 		scene = self.scene("""

@@ -31,7 +31,7 @@ _obsim()
 	--pace) mapfile -t COMPREPLY < <(compgen -W 'realtime max .1 10' -- "$word") ;;
 	--sync) mapfile -t COMPREPLY < <(compgen -W 'lockstep free' -- "$word") ;;
 	--update-rate) mapfile -t COMPREPLY < <(compgen -W '60 240 960' -- "$word") ;;
-	--coupling) mapfile -t COMPREPLY < <(compgen -W 'own' -- "$word") ;;
+	--coupling) mapfile -t COMPREPLY < <(compgen -W 'own ledger' -- "$word") ;;
 	--max-lag) mapfile -t COMPREPLY < <(compgen -W 'none .001 .01' -- "$word") ;;
 	--jitter) mapfile -t COMPREPLY < <(compgen -W '.1 .3' -- "$word") ;;
 	--delay) mapfile -t COMPREPLY < <(compgen -W '.001 .01' -- "$word") ;;

@@ -1,0 +1,158 @@
+// Momentum of a ledger: it stays to rounding, with the mail that is under way, for any lags, jitter, orders and kills. And a
+// pair's hit is computed once, however late the other is.
+#include "hand.h"
+
+#include "../check.h"
+
+#include "base/random.h"
+
+static const ob_vec3 none = { 0, 0, 0 };
+
+static ob_free_settings settings(double rate, double lag)
+{
+	return (ob_free_settings){
+		.update_rate = rate, .max_lag = lag, .end = INFINITY, .seed = 1, .coupling = OB_COUPLING_LEDGER
+	};
+}
+
+// Impulse, N s, that an account has deposited and its partner has not consumed.
+static ob_vec3 under_way(const hand *h, uint32_t id, const ob_account *a)
+{
+	ob_motion m;
+	ob_ledger theirs;
+	ob_vec3 sum = ob_v3(a->sum[0], a->sum[1], a->sum[2]);
+	ob_free_read_ledger(h->u, a->partner, &m, &theirs);
+	for (uint32_t i = 0; i < theirs.accounts; i++) {
+		const ob_account *c = &theirs.account[i];
+		if (c->partner == id && c->epoch == a->epoch)
+			sum = ob_sub(sum, ob_v3(c->sum[0], c->sum[1], c->sum[2]));
+	}
+	return sum;
+}
+
+// Momentum, N s, of all, with the mail under way. size: sum of magnitudes. Bodies may be at different times, as no force
+// acts from outside.
+static ob_vec3 momentum(const hand *h, double *size)
+{
+	ob_vec3 sum = none;
+	*size = 0;
+	for (uint32_t id = 0; id < h->objects; id++) {
+		ob_motion m;
+		ob_ledger l;
+		ob_passport p;
+		ob_universe_get_passport(h->u, id, &p);
+		if (!ob_free_read_ledger(h->u, id, &m, &l))
+			continue;
+		sum = ob_madd(sum, p.mass, m.v);
+		*size += p.mass * ob_norm(m.v);
+		for (uint32_t i = 0; i < l.accounts; i++) {
+			if (l.account[i].partner < id)
+				continue;
+			const ob_vec3 way = under_way(h, id, &l.account[i]);
+			sum = ob_add(sum, way);
+			*size += ob_norm(way);
+		}
+	}
+	return sum;
+}
+
+// Random bodies that fly into each other and stay in touch for a while.
+static hand *cloud(uint64_t *random, ob_free_settings f)
+{
+	hand *h = hand_create(f, none);
+	const uint32_t n = 3 + (uint32_t)(ob_splitmix(random) % 6);
+	for (uint32_t i = 0; i < n; i++) {
+		const ob_vec3 at = ob_v3(.45 * (i % 2), .45 * (i / 2 % 2), .45 * (i / 4));
+		hand_add(h, i % 3 ? OB_SHAPE_BOX : OB_SHAPE_SPHERE, ob_v3(.2, .2, .2), .5 + ob_splitmix_real(random),
+			 ob_add(at, ob_splitmix_vector(random, .02)),
+			 ob_add(ob_scale(at, -2), ob_splitmix_vector(random, 1)), i % 4 ? 0 : .6);
+	}
+	return h;
+}
+
+static double worst;
+
+static void check_momentum(const hand *h, ob_vec3 begin)
+{
+	double size;
+	const double error = ob_norm(ob_sub(momentum(h, &size), begin)) / (size + 1e-3);
+	worst = ob_max(worst, error);
+	CHECK(error < 1e-12);
+}
+
+static void test_momentum(void)
+{
+	uint64_t solved = 0;
+	for (uint64_t seed = 1; seed <= 60; seed++) {
+		uint64_t random = seed;
+		ob_free_settings f = settings(200 + 800 * ob_splitmix_real(&random),
+					      seed % 4 ? .02 * ob_splitmix_real(&random) : INFINITY);
+		f.jitter = .5 * ob_splitmix_real(&random);
+		f.delay = seed % 5 ? 0 : .01 * ob_splitmix_real(&random);
+		hand *h = cloud(&random, f);
+		double size;
+		for (uint64_t step = 3; step <= 30; step += 3) {
+			hand_until(h, step);
+			static ob_vec3 begin;
+			if (step == 3)
+				begin = momentum(h, &size);
+			CHECK(hand_run(h, &random, .1));
+			check_momentum(h, begin);
+		}
+		for (uint32_t id = 0; id < h->objects; id++)
+			solved += h->sim[id].counts.solved;
+		hand_destroy(h);
+	}
+	CHECK(solved > 1000);
+	printf("worst error of momentum: %.2g\n", worst);
+}
+
+// An elastic hit of equal balls: they exchange their velocities, though the second is stepped long afterwards.
+static void test_hit_once(void)
+{
+	hand *h = hand_create(settings(1000, INFINITY), none);
+	const uint32_t a = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 1, ob_v3(0, 0, 0), ob_v3(1, 0, 0), 1),
+		       b = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 1, ob_v3(1.05, 0, 0), none, 1);
+	hand_until(h, 12);
+	while (hand_step(h, a))
+		;
+	CHECK_NEAR(h->sim[a].motion.v.x, 0, 1e-9);
+	CHECK_NEAR(h->sim[b].motion.v.x, 0, 1e-9);
+	while (hand_step(h, b))
+		;
+	CHECK_NEAR(h->sim[b].motion.v.x, 1, 1e-9);
+	CHECK_NEAR(h->sim[a].motion.v.x, 0, 1e-9);
+	hand_until(h, 18);
+	uint64_t random = 1;
+	CHECK(hand_run(h, &random, 0));
+	CHECK(h->sim[a].ledger.accounts == 0 && h->sim[b].ledger.accounts == 0); // settled, and dropped by both
+	hand_destroy(h);
+}
+
+// A stack stands, its load mailed from box to box, while simulators begin anew at random.
+static void test_stack(void)
+{
+	enum { BOXES = 5 };
+	ob_free_settings f = settings(1000, .002);
+	f.jitter = .3;
+	hand *h = hand_create(f, ob_v3(0, 0, -9.81));
+	hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+	for (int i = 0; i < BOXES; i++)
+		hand_add(h, OB_SHAPE_BOX, ob_v3(.5, .5, .5), 1000, ob_v3(0, 0, i + .5), none, 0);
+	uint64_t random = 5;
+	for (uint64_t step = 10; step <= 60; step += 10) {
+		hand_until(h, step);
+		CHECK(hand_run(h, &random, .001));
+		for (uint32_t id = 1; id <= BOXES; id++)
+			CHECK_NEAR(h->sim[id].motion.p.z, id - .5, 2e-3);
+	}
+	hand_destroy(h);
+}
+
+int main(void)
+{
+	test_momentum();
+	test_hit_once();
+	test_stack();
+	return check_end();
+}
