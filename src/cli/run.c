@@ -150,7 +150,7 @@ static bool is_checkpoint_due(const run *r)
 static uint64_t keep_pace(run *r, uint64_t next)
 {
 	uint64_t due = next;
-	if (isinf(r->request.pace))
+	if (isinf(r->request.pace) || r->request.is_free) // free simulators follow the clock themselves
 		return next;
 	do
 		due = ob_pace_wait(&r->pace, r->now.step, r->request.run.step_length, .05);

@@ -50,7 +50,7 @@ static ob_vec3 common(ob_vec3 a, ob_vec3 b)
 
 static ob_account *find(ob_free_sim *s, uint32_t partner)
 {
-	for (uint32_t i = 0; i < s->ledger.accounts; i++)
+	for (uint32_t i = 0; i < s->ledger.head.accounts; i++)
 		if (s->ledger.account[i].partner == partner)
 			return &s->ledger.account[i];
 	return NULL;
@@ -58,22 +58,22 @@ static ob_account *find(ob_free_sim *s, uint32_t partner)
 
 static ob_account *open(ob_free_sim *s, const ob_free_neighbour *n, uint32_t epoch)
 {
-	if (s->ledger.accounts == OB_LEDGER_ACCOUNTS)
+	if (s->ledger.head.accounts == OB_LEDGER_ACCOUNTS)
 		return NULL;
-	ob_account *a = &s->ledger.account[s->ledger.accounts++];
+	ob_account *a = &s->ledger.account[s->ledger.head.accounts++];
 	*a = (ob_account){ .partner = n->id, .generation = n->generation, .epoch = epoch };
 	return a;
 }
 
 static void drop(ob_free_sim *s, ob_account *a)
 {
-	*a = s->ledger.account[--s->ledger.accounts];
+	*a = s->ledger.account[--s->ledger.head.accounts];
 }
 
 void ob_ledger_begin(ob_free_sim *s)
 {
 	memset(s->mailed, 0, sizeof s->mailed);
-	for (uint32_t i = s->ledger.accounts; i-- > 0;) { // of partners that are gone
+	for (uint32_t i = s->ledger.head.accounts; i-- > 0;) { // partners that are gone
 		bool there = false;
 		for (uint32_t k = 0; k < s->neighbours; k++)
 			there |= s->neighbour[k].id == s->ledger.account[i].partner &&
@@ -102,9 +102,9 @@ bool ob_ledger_receive(ob_free_sim *s, const ob_free_scratch *x, const ob_free_n
 {
 	ob_account *own = find(s, n->id), in;
 	ob_motion m;
-	double torque[3];
+	ob_ledger_head head;
 	bool found;
-	if (!ob_free_read_account(x->u, n->id, newest_seen(s, x), s->id, &m, &in, torque, &found))
+	if (!ob_free_read_account(x->u, n->id, newest_seen(s, x), s->id, &m, &in, &head, &found))
 		return false;
 	if (!found || in.generation != s->generation) {
 		if (own && own->closed)
@@ -141,9 +141,9 @@ void ob_ledger_shift(const ob_free_sim *s, ob_state *own)
 bool ob_ledger_look(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n, ob_free_seen *seen)
 {
 	const ob_account *own = find(s, n->id);
-	double torque[3];
+	ob_ledger_head head;
 	seen->version = ob_free_read_account(x->u, n->id, newest_seen(s, x), s->id, &seen->motion, &seen->account,
-					     torque, &seen->known);
+					     &head, &seen->known);
 	if (!seen->version)
 		return false;
 	if (!seen->known || !own || seen->account.epoch != own->epoch || seen->account.generation != s->generation) {
@@ -153,7 +153,10 @@ bool ob_ledger_look(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neig
 	const ob_passport *p = &n->passport;
 	const ob_account *theirs = &seen->account;
 	const double since = s->time - seen->motion.t0;
-	seen->torque = ob_sub(ob_v3(torque[0], torque[1], torque[2]), part(theirs->rate, TWIST));
+	// several that correct the same body, each by what it saw long ago, would correct it too far
+	const uint32_t others = x->free->delay > 0 ? head.solvers - (seen->known && !theirs->closed) : 0;
+	seen->share = 1. / (1 + (others < OB_LEDGER_ACCOUNTS ? others : 0));
+	seen->torque = ob_madd(ob_scale(part(theirs->rate, TWIST), -1), seen->share, part(head.torque, 0));
 	seen->now = ob_motion_at(&seen->motion, p->inertia, s->time);
 	if (!own)
 		return true;
@@ -200,10 +203,11 @@ bool ob_ledger_deposit(ob_free_sim *s, const ob_free_scratch *x, ob_free_neighbo
 		return false;
 	const ob_passport *p = &n->passport;
 	const ob_state *begin = &seen->now;
-	const ob_vec3 outer = ob_sub(ob_scale(seen->motion.a, p->mass), part(seen->account.rate, IMPULSE)),
-		      impulse = ob_madd(ob_scale(ob_sub(end->v, begin->v), p->mass), -h, outer),
-		      twist = ob_madd(ob_sub(spin_of(p, end->q, end->w), spin_of(p, begin->pose.q, begin->w)), -h,
-				      seen->torque),
+	const ob_vec3 outer = ob_sub(ob_scale(seen->motion.a, seen->share * p->mass),
+				     part(seen->account.rate, IMPULSE)),
+		      impulse = ob_madd(ob_scale(ob_sub(end->v, begin->v), seen->share * p->mass), -h, outer),
+		      spun = ob_sub(spin_of(p, end->q, end->w), spin_of(p, begin->pose.q, begin->w)),
+		      twist = ob_madd(ob_scale(spun, seen->share), -h, seen->torque),
 		      way = ob_scale(ob_add(begin->v, end->v), h / 2), turn = ob_scale(ob_add(begin->w, end->w), h / 2);
 	const ob_vec3 load = ob_scale(impulse, 1 / h), torque = ob_scale(twist, 1 / h), rate = common(load, n->load),
 		      turning = common(torque, n->twist);
@@ -227,12 +231,14 @@ void ob_ledger_end(ob_free_sim *s, const ob_free_scratch *x, const ob_state *own
 		      turned_by = ob_sub(spin_of(p, end->q, end->w), spin_of(p, own->pose.q, own->w)),
 		      torque = ob_scale(ob_sub(turned_by, part(s->mailed, TWIST)), 1 / h);
 	ob_vec3 force = common(load, s->load), twist = common(torque, s->twist);
-	for (uint32_t i = 0; i < s->ledger.accounts; i++)
+	s->ledger.head.solvers = x->near > 0 && !x->flew;
+	for (uint32_t i = 0; i < s->ledger.head.accounts; i++)
 		if (s->ledger.account[i].partner < s->id) {
 			force = ob_add(force, part(s->ledger.account[i].rate, IMPULSE));
 			twist = ob_add(twist, part(s->ledger.account[i].rate, TWIST));
+			s->ledger.head.solvers += !s->ledger.account[i].closed;
 		}
 	s->load = load, s->twist = torque;
 	end->a = ob_madd(outer, 1 / p->mass, force);
-	memcpy(s->ledger.torque, (double[3]){ twist.x, twist.y, twist.z }, sizeof s->ledger.torque);
+	memcpy(s->ledger.head.torque, (double[3]){ twist.x, twist.y, twist.z }, sizeof s->ledger.head.torque);
 }

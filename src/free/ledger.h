@@ -1,4 +1,4 @@
-// Coupling by a ledger: of each pair of simulated objects the lower id computes the impulse, once, and mails it.
+// Coupling by a ledger: the lower id of a pair computes the impulse, once, and mails it.
 //
 //   a (lower id)                               b (higher id)
 //   solves the contact with b's mass           is moved by mail alone, as by a force
@@ -16,6 +16,9 @@
 //
 // Epochs: an account is closed when the two part, and dropped by a when b has consumed all of it, then by b. A new contact
 // has a new epoch, in which sums begin at 0.
+//
+// Shares: a body's mass is shared among all that solve its contacts if publications are delayed. Several that correct the
+// same body, each by what it saw long ago, would correct it too far.
 //
 // Shift: the positions of overlapping bodies are corrected. b's part is mailed as a displacement; it bears no momentum.
 #ifndef OB_FREE_LEDGER_H

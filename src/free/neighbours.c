@@ -61,7 +61,7 @@ static uint32_t find(const ob_free_sim *s, uint32_t id)
 
 static bool has_account(const ob_free_sim *s, uint32_t id)
 {
-	for (uint32_t i = 0; i < s->ledger.accounts; i++)
+	for (uint32_t i = 0; i < s->ledger.head.accounts; i++)
 		if (s->ledger.account[i].partner == id)
 			return true;
 	return false;

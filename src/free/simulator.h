@@ -40,6 +40,7 @@ typedef struct ob_free_seen {
 	ob_account account;
 	bool known;
 	ob_vec3 torque;
+	double share; // the island has so much of its mass: it is shared among all that solve its contacts
 } ob_free_seen;
 
 typedef struct ob_free_sim {

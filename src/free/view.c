@@ -197,6 +197,8 @@ static void make_partner(ob_free_scratch *x, uint32_t at, const ob_free_seen *se
 	ob_passport *p = &x->passport[at];
 	if (x->free->heavy)
 		p->mass *= heavy, p->inertia = ob_scale(p->inertia, heavy);
+	if (has_ledger(x))
+		p->mass *= seen->share, p->inertia = ob_scale(p->inertia, seen->share);
 	p->force = ob_scale(ob_sub(x->motion[at].a, x->run.gravity), p->mass);
 	if (has_ledger(x)) {
 		const double *rate = seen->account.rate;
@@ -276,7 +278,7 @@ static void fly(const ob_free_sim *s, const ob_free_scratch *x, double h, const 
 	*out = flight;
 	out->p = end.pose.p, out->q = end.pose.q, out->v = end.v, out->w = end.w;
 	out->a = outer;
-	out->flags = x->free->coupling == OB_COUPLING_OWN || !s->ledger.accounts ? OB_MOTION_FREE : 0;
+	out->flags = x->free->coupling == OB_COUPLING_OWN || !s->ledger.head.accounts ? OB_MOTION_FREE : 0;
 	out->path += ob_norm(end.v) * h;
 }
 

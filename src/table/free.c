@@ -111,7 +111,7 @@ void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_l
 	put_words(place(u, id, next), m, sizeof *m);
 	if (ledger)
 		put_words(ledger_place(u, id, next), ledger,
-			  offsetof(ob_ledger, account) + ledger->accounts * sizeof *ledger->account);
+			  offsetof(ob_ledger, account) + ledger->head.accounts * sizeof *ledger->account);
 	__atomic_store_n(&c->version, next, __ATOMIC_RELEASE);
 	// In one order with the waiter's store of `awaited` and its load of `time`: one of the two sees the other's.
 	__atomic_store_n(&c->time, time, __ATOMIC_SEQ_CST);
@@ -141,11 +141,9 @@ ob_free_kind ob_free_kind_of(const ob_universe *u, uint32_t id, uint32_t *genera
 
 // ---- mail
 
-static bool find_account(const ob_ledger *at, uint32_t partner, ob_account *out)
+static bool find_account(const ob_ledger *at, uint32_t accounts, uint32_t partner, ob_account *out)
 {
-	uint64_t head;
-	get_words(&head, at, sizeof head);
-	const uint32_t accounts = (uint32_t)head < OB_LEDGER_ACCOUNTS ? (uint32_t)head : OB_LEDGER_ACCOUNTS;
+	accounts = accounts < OB_LEDGER_ACCOUNTS ? accounts : OB_LEDGER_ACCOUNTS;
 	for (uint32_t i = 0; i < accounts; i++) {
 		get_words(out, &at->account[i], sizeof(ob_word));
 		if (out->partner != partner)
@@ -157,7 +155,7 @@ static bool find_account(const ob_ledger *at, uint32_t partner, ob_account *out)
 }
 
 uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint32_t partner, ob_motion *m,
-			      ob_account *out, double torque[3], bool *found)
+			      ob_account *out, ob_ledger_head *head, bool *found)
 {
 	const uint32_t depth = u->header.sizes.ledgers;
 	for (int i = 0; i < OB_RING_TRIES; i++) {
@@ -167,8 +165,8 @@ uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint3
 		const uint64_t v = find_version(u, id, newest - kept + 1, newest, t);
 		const ob_ledger *at = ledger_place(u, id, v);
 		get_words(m, place(u, id, v), sizeof *m);
-		get_words(torque, at->torque, sizeof at->torque);
-		*found = find_account(at, partner, out);
+		get_words(head, &at->head, sizeof *head);
+		*found = find_account(at, head->accounts, partner, out);
 		if (is_whole(u, id, v, depth))
 			return v;
 	}

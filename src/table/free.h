@@ -49,9 +49,14 @@ typedef struct ob_account {
 	double rate[6]; // N, N m: goes on after the version's time
 } ob_account;
 
-typedef struct ob_ledger {
-	uint32_t accounts, zero;
+typedef struct ob_ledger_head {
+	uint32_t accounts;
+	uint32_t solvers; // simulators that solve contacts of the object: itself, and lower partners
 	double torque[3]; // N m, on the object: goes on after the version's time, as its motion's acceleration does
+} ob_ledger_head;
+
+typedef struct ob_ledger {
+	ob_ledger_head head;
 	ob_account account[OB_LEDGER_ACCOUNTS];
 } ob_ledger;
 
@@ -114,10 +119,10 @@ uint64_t ob_free_version(const ob_universe *u, uint32_t id);
 // Copies the newest version that is not after t (s), or the oldest kept, and returns its number; 0: none. next, if not
 // NULL: the version after it; next->t0 is NaN if there is none.
 uint64_t ob_free_read(const ob_universe *u, uint32_t id, double t, ob_motion *out, ob_motion *next);
-// Copies the motion of the newest version not after t (s) whose ledger is kept, else of the oldest with one; its torque;
-// and its account with a partner, if found. Returns the version's number; 0: none.
+// Copies the motion of the newest version not after t (s) whose ledger is kept, else of the oldest with one; the head of its
+// ledger; and its account with a partner, if found. Returns the version's number; 0: none.
 uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint32_t partner, ob_motion *m,
-			      ob_account *out, double torque[3], bool *found);
+			      ob_account *out, ob_ledger_head *head, bool *found);
 // Copies all of the newest mail, with the motion of its version. False: none.
 bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_ledger *out);
 // Step at which simulators stop and wait.

@@ -22,7 +22,7 @@ static ob_vec3 under_way(const hand *h, uint32_t id, const ob_account *a)
 	ob_ledger theirs;
 	ob_vec3 sum = ob_v3(a->sum[0], a->sum[1], a->sum[2]);
 	ob_free_read_ledger(h->u, a->partner, &m, &theirs);
-	for (uint32_t i = 0; i < theirs.accounts; i++) {
+	for (uint32_t i = 0; i < theirs.head.accounts; i++) {
 		const ob_account *c = &theirs.account[i];
 		if (c->partner == id && c->epoch == a->epoch)
 			sum = ob_sub(sum, ob_v3(c->sum[0], c->sum[1], c->sum[2]));
@@ -45,7 +45,7 @@ static ob_vec3 momentum(const hand *h, double *size)
 			continue;
 		sum = ob_madd(sum, p.mass, m.v);
 		*size += p.mass * ob_norm(m.v);
-		for (uint32_t i = 0; i < l.accounts; i++) {
+		for (uint32_t i = 0; i < l.head.accounts; i++) {
 			if (l.account[i].partner < id)
 				continue;
 			const ob_vec3 way = under_way(h, id, &l.account[i]);
@@ -125,7 +125,8 @@ static void test_hit_once(void)
 	hand_until(h, 18);
 	uint64_t random = 1;
 	CHECK(hand_run(h, &random, 0));
-	CHECK(h->sim[a].ledger.accounts == 0 && h->sim[b].ledger.accounts == 0); // settled, and dropped by both
+	CHECK(h->sim[a].ledger.head.accounts == 0 &&
+	      h->sim[b].ledger.head.accounts == 0); // settled, and dropped by both
 	hand_destroy(h);
 }
 

@@ -41,7 +41,7 @@ static void make(uint64_t n, ob_motion *m, ob_ledger *l)
 {
 	const double x = (double)n;
 	*m = (ob_motion){ .t0 = x, .p = { x, x + 1, x + 2 }, .q = { 1, 0, 0, 0 }, .v = { x, -x, x }, .path = 3 * x };
-	*l = (ob_ledger){ .accounts = ACCOUNTS, .torque = { x, x, x } };
+	*l = (ob_ledger){ .head = { .accounts = ACCOUNTS, .torque = { x, x, x } } };
 	for (uint32_t i = 0; i < ACCOUNTS; i++)
 		l->account[i] =
 			(ob_account){ .partner = i, .epoch = (uint32_t)n, .sum = { x, x }, .rate = { x, [5] = x } };
@@ -69,7 +69,7 @@ static void read_once(uint64_t *random)
 	ob_motion m, next;
 	ob_account a;
 	ob_ledger l;
-	double torque[3];
+	ob_ledger_head head;
 	bool found;
 	const double newest = ob_free_time(u, OBJECT), asked = newest - (double)(ob_splitmix(random) % DEPTH);
 	const uint64_t v = ob_free_read(u, OBJECT, asked, &m, &next);
@@ -79,10 +79,10 @@ static void read_once(uint64_t *random)
 	// a version is its number and its time at once; it is the one asked for, or that is not kept any more
 	wrong += v &&
 		 (m.t0 != (double)v || (m.t0 < asked && m.t0 != newest) || (!isnan(next.t0) && next.t0 != m.t0 + 1));
-	torn += !ob_free_read_account(u, OBJECT, asked, partner, &m, &a, torque, &found) || !found || !is_motion(&m);
+	torn += !ob_free_read_account(u, OBJECT, asked, partner, &m, &a, &head, &found) || !found || !is_motion(&m);
 	torn += a.partner != partner || a.sum[0] != m.t0 || a.sum[1] != m.t0 || a.rate[5] != m.t0 ||
-		a.epoch != (uint32_t)m.t0 || torque[2] != m.t0;
-	torn += !ob_free_read_ledger(u, OBJECT, &m, &l) || !is_motion(&m) || l.accounts != ACCOUNTS ||
+		a.epoch != (uint32_t)m.t0 || head.torque[2] != m.t0;
+	torn += !ob_free_read_ledger(u, OBJECT, &m, &l) || !is_motion(&m) || l.head.accounts != ACCOUNTS ||
 		l.account[2].sum[0] != m.t0 || l.account[0].sum[0] != m.t0;
 }
 
