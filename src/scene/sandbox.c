@@ -1,3 +1,4 @@
+#undef _FORTIFY_SOURCE // snprintf is defined below
 #include "scene/sandbox.h"
 
 #include <math.h>
