@@ -22,6 +22,8 @@ typedef struct ob_top_object {
 	bool moving; // has a motion that makes sense
 	bool housed; // in a worker, "home"
 	uint32_t home;
+	bool waits; // in a free run: its simulator waits for that of object "blocker"
+	uint32_t blocker;
 	ob_passport passport;
 	ob_motion motion;
 	ob_vec3 position; // m, at the universe's time

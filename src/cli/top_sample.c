@@ -7,6 +7,7 @@
 #include <ob/motion.h>
 
 #include "base/clock.h"
+#include "table/free.h"
 
 // Makes room for n records of the given size, the new ones zeroed.
 static bool grow(void **records, uint32_t *room, uint32_t n, size_t size)
@@ -59,6 +60,7 @@ static void look_at_object(ob_top_object *o, const ob_universe *u, uint32_t id, 
 {
 	o->id = id;
 	o->housed = ob_universe_get_home(u, id, &o->home);
+	o->waits = ob_free_settings_of(u) && ob_free_blocker(u, id, &o->blocker);
 	o->moving = ob_universe_get_motion(u, id, &o->motion);
 	if (!o->moving)
 		return;

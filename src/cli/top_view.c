@@ -147,6 +147,9 @@ static void put_object(ob_top_view *view, const ob_top_object *o, FILE *f)
 	if (o->moving)
 		snprintf(line + n, sizeof line - (size_t)n, " %8.4g %8.4g %8.4g %8.3g %8.3g", tidy(o->position.x),
 			 tidy(o->position.y), tidy(o->position.z), tidy(o->speed), tidy(o->spin));
+	n = (int)strlen(line);
+	if (o->waits)
+		snprintf(line + n, sizeof line - (size_t)n, "  waits for %" PRIu32, o->blocker);
 	put_line(view, f, line);
 }
 

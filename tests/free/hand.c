@@ -62,6 +62,16 @@ uint32_t hand_add(hand *h, ob_shape shape, ob_vec3 size, double mass, ob_vec3 at
 	return id;
 }
 
+void hand_remove(hand *h, uint32_t id)
+{
+	ob_passport p;
+	if (!ob_universe_get_passport(h->u, id, &p))
+		return;
+	p.flags = 0;
+	ob_write_passport(h->u, id, &p);
+	h->sim[id].present = false;
+}
+
 void hand_until(hand *h, uint64_t step)
 {
 	ob_free_enter_objects(h->u);

@@ -20,6 +20,8 @@ hand *hand_create(ob_free_settings f, ob_vec3 gravity);
 void hand_destroy(hand *h);
 // Adds an object; returns its id. mass 0: static.
 uint32_t hand_add(hand *h, ob_shape shape, ob_vec3 size, double mass, ob_vec3 at, ob_vec3 velocity, double restitution);
+// Removes an object, while all wait.
+void hand_remove(hand *h, uint32_t id);
 // Lets the simulators run until so many steps (1/60 s) of the host.
 void hand_until(hand *h, uint64_t step);
 // Makes one step of an object. false: it is blocked, or at the host's boundary.

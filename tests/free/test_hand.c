@@ -4,6 +4,8 @@
 
 #include "../check.h"
 
+#include <stdlib.h>
+
 #include "base/random.h"
 
 static const ob_vec3 down = { 0, 0, -9.81 }, none = { 0, 0, 0 };
@@ -79,14 +81,15 @@ static void test_bound(void)
 	hand_destroy(h);
 }
 
-// 100 small worlds, some of whose simulators begin anew at random: all come to the end.
-static void test_no_deadlock(void)
+// Small worlds, some of whose simulators begin anew at random, and some of whose objects go: all come to the end.
+static void test_no_deadlock(uint64_t worlds)
 {
-	for (uint64_t seed = 1; seed <= 100; seed++) {
+	for (uint64_t seed = 1; seed <= worlds; seed++) {
 		uint64_t random = seed;
 		ob_free_settings f = settings(100 + 400 * ob_splitmix_real(&random), .004 * ob_splitmix_real(&random));
 		f.jitter = .4 * ob_splitmix_real(&random);
 		f.delay = seed % 3 ? 0 : .005;
+		f.coupling = seed % 2 ? OB_COUPLING_LEDGER : OB_COUPLING_OWN;
 		hand *h = hand_create(f, down);
 		hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
 		const uint32_t n = 2 + (uint32_t)(ob_splitmix(&random) % 6);
@@ -98,6 +101,10 @@ static void test_no_deadlock(void)
 			hand_until(h, step);
 			CHECK(hand_run(h, &random, .1));
 			CHECK(ob_free_complete(h->u, step) == step);
+			if (ob_splitmix(&random) % 2)
+				hand_remove(h, 1 + (uint32_t)(ob_splitmix(&random) % n));
+			if (ob_splitmix(&random) % 2)
+				hand_add(h, OB_SHAPE_SPHERE, ob_v3(.2, 0, 0), 1, ob_v3(.1, .1, 3), none, 0);
 		}
 		hand_destroy(h);
 	}
@@ -118,12 +125,13 @@ static void test_ground(void)
 	hand_destroy(h);
 }
 
-int main(void)
+// Argument: number of worlds; 100 without one.
+int main(int argc, char **argv)
 {
 	test_flight();
 	test_common_time();
 	test_bound();
-	test_no_deadlock();
+	test_no_deadlock(argc > 1 ? strtoull(argv[1], NULL, 10) : 100);
 	test_ground();
 	return check_end();
 }

@@ -3,6 +3,8 @@
 import json
 import os
 import re
+import signal
+import time
 import unittest
 
 import program
@@ -67,6 +69,32 @@ class Free(program.Case):
 		for more in ["--solver", "ghost"], ["--integrator", "ode"]:
 			done = program.call("run", self.scene(FLIGHT), "--sync", "free", "--coupling", "ledger", *more)
 			self.assertEqual(done.returncode, 2, done.stderr)
+
+	def test_stopped_simulator(self):
+		"""Only those that touch a stopped simulator wait, at the bound, and obsim top says so; it goes on later."""
+		name = f"free-stop-{os.getpid()}"
+		run = program.start("run", self.scene(STACK + "sphere { radius = .1, at = {9, 0, 1} }"), "--isolation", "process",
+			"--workers", "objects", "--pace", 1, "--max-lag", .02, "--duration", 3600, "--name", name, "--measure", "end",
+			"--coupling", "ledger")
+		self.addCleanup(run.wait)
+		self.addCleanup(run.kill)
+
+		def top():
+			return program.call("top", name, "--once", "--interval", ".01").stdout
+		self.wait_until(lambda: "box#2" in top())
+		pid = int(re.search(r"^ +2 +(\d+) ", top(), re.M).group(1))
+		os.kill(pid, signal.SIGSTOP)
+		self.wait_until(lambda: re.search(r"^ +[13] .* waits for 2$", top(), re.M))
+		self.assertFalse(re.search(r"^ +5 .* waits for", top(), re.M))
+		os.kill(pid, signal.SIGCONT)
+		self.wait_until(lambda: not re.search(r" waits for 2$", top(), re.M))
+		self.assertIsNone(run.poll())
+
+	def wait_until(self, condition):
+		end = time.monotonic() + program.PATIENCE
+		while not condition():
+			self.assertLess(time.monotonic(), end)
+			time.sleep(.05)
 
 	def test_births_and_deaths(self):
 		scene = self.scene("""
