@@ -77,6 +77,10 @@ enum { // ob_motion.flags
 	OB_MOTION_RESTS = OB_MOTION_ASLEEP | OB_MOTION_EQUILIBRIUM, // either: it stays where it is
 	// the centre moves along an ellipse, or to and fro, with a frequency; kinematic objects alone
 	OB_MOTION_SWINGS = 1 << 4,
+	OB_MOTION_DOUBTED = 1 << 5, // alone, with contacts that go on: its errors exceed the tolerance, by estimate,
+	OB_MOTION_REFINED = 1 << 6, // so its substeps were refined,
+	OB_MOTION_UNREFINED = 1 << 7, // or that does not help
+	OB_MOTION_REFINEMENT = OB_MOTION_DOUBTED | OB_MOTION_REFINED | OB_MOTION_UNREFINED,
 };
 
 // Motion of an object from t0 on, unless a contact changes it. 176 bytes: the payload of one slot version.

@@ -466,7 +466,7 @@ void ob_bodies_report(ob_solver *s, uint32_t rest)
 				 .island = w->body[1].id,
 				 .substeps = (uint16_t)body->next_substeps,
 				 .deviation = body->deviation,
-				 .flags = (body->moved_freely ? OB_MOTION_FREE : 0) | rest |
+				 .flags = (body->moved_freely ? OB_MOTION_FREE : 0) | rest | body->refinement |
 					  (expected && ob_equilibrium_body_steady(w, i) ? OB_MOTION_STEADY : 0) };
 		if (!body->contacts)
 			mo.a = body->acceleration;

@@ -16,7 +16,8 @@ uint32_t ob_error_control_substeps(const ob_solver *s, const ob_island_input *in
 	if (!(run->tolerance > 0))
 		return most;
 	for (uint32_t i = 0; i < in->members; i++) {
-		uint32_t asked = in->object[i].motion->substeps;
+		const bool of_lone_body = in->members > 1 && ob_is_refined(&in->object[i]);
+		uint32_t asked = of_lone_body ? 0 : in->object[i].motion->substeps;
 		most = asked > most && asked <= max_substeps ? asked : most;
 	}
 	return most;

@@ -2,33 +2,26 @@
 
 #include "motion/deviation.h"
 #include "solver/probe.h"
+#include "solver/refinement.h"
 
-// PERIOD: steps from one estimate to the next. WATCHED_BODIES: islands of up to so many have one at each change, too.
-enum { PERIOD = 16, WATCHED_BODIES = 2 };
-static const uint64_t no_limit = UINT64_MAX;
+// PERIOD: steps from one estimate to the next; SOON: of a lone body, after one above the tolerance. WATCHED_BODIES:
+// islands of up to so many have one at each change, too.
+enum { PERIOD = 16, SOON = 4, WATCHED_BODIES = 2 };
 
 bool ob_estimate_create(ob_solver *s)
 {
 	if (!(s->settings->tolerance > 0) || s->methods.sides > 1)
 		return true;
 	s->estimate.bound = ob_deviation_code(s->settings->tolerance);
-	return (s->estimate.probe = ob_probe_create(s->settings, s->settings->substeps));
+	s->estimate.probe = ob_probe_create(s->settings, s->settings->substeps);
+	s->estimate.finer = ob_probe_create(s->settings, s->settings->substeps);
+	return s->estimate.probe && s->estimate.finer;
 }
 
 void ob_estimate_finish(ob_solver *s)
 {
 	ob_probe_destroy(s->estimate.probe);
-}
-
-// True if a contact has begun, ended, or was hit in the step.
-static bool contacts_changed(const ob_island_work *w)
-{
-	for (uint32_t i = 0; i < w->contacts; i++) {
-		const ob_contact *c = &w->contact[i];
-		if ((c->lane == OB_NO_LANE) != c->began || c->rebounds)
-			return true;
-	}
-	return false;
+	ob_probe_destroy(s->estimate.finer);
 }
 
 static bool is_free(const ob_island_work *w)
@@ -43,11 +36,15 @@ static bool is_free(const ob_island_work *w)
 static uint32_t weight_of(const ob_solver *s)
 {
 	const ob_island_work *w = &s->island;
+	// Estimates of lone bodies choose substeps, so they do not depend on ids: a scene in another order ends alike.
+	const uint64_t phase = s->in->step + (w->bodies > 1 ? w->body[1].id : 0);
 	if (!s->estimate.probe || w->balanced || is_free(w))
 		return 0;
-	if ((s->in->step + w->body[1].id) % PERIOD == 0)
+	if (phase % PERIOD == 0)
 		return PERIOD;
-	return w->bodies <= WATCHED_BODIES && contacts_changed(w);
+	if (phase % SOON == 0 && ob_refinement_is_doubted(s))
+		return 1;
+	return w->bodies <= WATCHED_BODIES && ob_contacts_changed(w);
 }
 
 // Counts the steps of a second of which more is not bounded now: the last one, or all when the bound is exceeded.
@@ -63,27 +60,36 @@ static void count(ob_solver *s, uint16_t before, uint16_t now)
 	}
 }
 
+// Updates the deviation of a body; an estimate counts for `weight` steps. Returns the body's error of a second.
+static double update_deviation(ob_solver *s, uint32_t row, uint32_t weight, double factor)
+{
+	ob_island_work *w = &s->island;
+	const ob_motion *last = s->in->object[row - 1].motion;
+	const double h = s->settings->step_length;
+	const uint16_t before = ob_deviation_at(last->deviation, last->step, s->in->step + 1, h);
+	double speed = 0, error = weight ? factor * ob_probe_distance(s->estimate.probe, w, row, &speed) : 0;
+	speed *= factor;
+	w->body[row].deviation = before;
+	if (weight)
+		w->body[row].deviation =
+			ob_deviation_code(ob_deviation(before) + weight * h * ob_error_of_time(error, speed, h, 1));
+	count(s, before, w->body[row].deviation);
+	return ob_error_of_run(s, error, speed);
+}
+
 void ob_estimate_update(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
-	const double h = s->settings->step_length;
-	const uint32_t weight = weight_of(s);
-	double speed;
+	const bool refined = w->bodies == 1 && ob_is_refined(&s->in->object[0]);
+	const uint32_t weight = weight_of(s), n = w->substeps;
+	double error = 0;
 	if (weight) {
 		ob_solver_enter(s, OB_PROFILE_ESTIMATE);
-		(void)ob_probe_solve(s->estimate.probe, s->in, w->substeps > 1 ? w->substeps / 2 : 2, no_limit);
+		ob_probe_solve(s->estimate.probe, s->in, refined || n < 2 ? 2 * n : n / 2);
 		s->counters.estimates += w->bodies;
 	}
-	for (uint32_t row = 1; row <= w->bodies; row++) {
-		const ob_motion *last = s->in->object[row - 1].motion;
-		const uint16_t before = ob_deviation_at(last->deviation, last->step, s->in->step + 1, h);
-		uint16_t *now = &w->body[row].deviation;
-		*now = before;
-		if (weight) {
-			const double error = ob_probe_distance(s->estimate.probe, w, row, &speed);
-			*now = ob_deviation_code(ob_deviation(before) +
-						 weight * h * ob_error_of_second(error, speed, h));
-		}
-		count(s, before, *now);
-	}
+	for (uint32_t row = 1; row <= w->bodies; row++)
+		error = ob_max(error, update_deviation(s, row, weight, refined ? 2 : 1));
+	if (s->estimate.probe && !w->balanced)
+		ob_refinement_update(s, weight, error);
 }

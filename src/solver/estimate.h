@@ -1,28 +1,22 @@
 // Estimate of a step's error that knows no law: the island is solved again with half as many substeps (solver/probe.h),
 // and the distance of surface points between both solutions counts. It bounds the error of the finer solution, as that of
-// either falls with the substeps.
+// either falls with the substeps. Where substeps were refined (solver/refinement.h), twice the distance from a solution
+// with twice as many counts, as half as many may be of another order.
 //
 // It is made in one of 16 steps of an island, where it stands for them all; and in each step in which contacts of one or
-// two bodies change. Each body's motion carries the sum since the second began (motion/deviation.h). Ids and steps decide, so
-// it is the same for any worker, rank, kill and resume.
+// two bodies change. Each body's motion carries the sum since the second began (motion/deviation.h). Ids and steps decide,
+// so it is the same for any worker, rank, kill and resume.
 #ifndef OB_SOLVER_ESTIMATE_H
 #define OB_SOLVER_ESTIMATE_H
 
 #include "solver/solver.h"
 
-// Error (m) of a second whose steps (s long) all have these errors of place (m) and speed (m/s): each error of speed
-// lasts for half a second in the mean.
-static inline double ob_error_of_second(double error, double speed, double step)
-{
-	return (error + .5 * speed) / step;
-}
-
 // Creates what a run with a tolerance needs for it. Returns false if there is no memory.
 bool ob_estimate_create(ob_solver *s);
 void ob_estimate_finish(ob_solver *s);
 
-// Estimates the error of the island's solution if that is due, updates its bodies' deviations, and counts those within
-// the tolerance.
+// Estimates the error of the island's solution if that is due, updates its bodies' deviations and refinement, and counts
+// what is within the tolerance.
 void ob_estimate_update(ob_solver *s);
 
 #endif

@@ -46,6 +46,7 @@ typedef struct ob_body {
 	uint64_t colours; // bit per colour in use
 	uint32_t next_substeps; // its request for the next step (solver/error_control.h)
 	uint16_t deviation; // as ob_motion.deviation (solver/estimate.h)
+	uint32_t refinement; // one of OB_MOTION_REFINEMENT, or none (solver/refinement.h)
 	uint32_t active_iteration; // last iteration that changed its velocity by more than the wake threshold
 	uint32_t first_adjacent, adjacent; // range in adjacency
 	uint32_t next_ghost; // chain of its ghosts' rows (solver/ghost.h); 0 ends
@@ -264,6 +265,17 @@ static inline ob_vec3 ob_body_turned_by(const ob_body *body, ob_vec3 torque)
 	return ob_v3(i[0] * torque.x + i[1] * torque.y + i[2] * torque.z,
 		     i[1] * torque.x + i[3] * torque.y + i[4] * torque.z,
 		     i[2] * torque.x + i[4] * torque.y + i[5] * torque.z);
+}
+
+// True if a contact has begun or ended in the step, or rebounded.
+static inline bool ob_contacts_changed(const ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *c = &w->contact[i];
+		if ((c->lane == OB_NO_LANE) != c->began || c->rebounds)
+			return true;
+	}
+	return false;
 }
 
 // True if a body of the contact was hit in the running partial substep.

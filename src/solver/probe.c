@@ -47,7 +47,7 @@ void ob_probe_destroy(ob_probe *p)
 	free(p);
 }
 
-bool ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most)
+bool ob_probe_try(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most)
 {
 	p->work = 0;
 	p->most = most;
@@ -67,6 +67,16 @@ static double turned_by(ob_quat a, ob_quat b, double radius)
 		for (int i = 0; i < 4; i++)
 			square[k] += c[k][i] * c[k][i];
 	return 2 * radius * sqrt(ob_min(square[0], square[1]));
+}
+
+void ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps)
+{
+	(void)ob_probe_try(p, in, substeps, UINT64_MAX);
+}
+
+const ob_island_work *ob_probe_island(const ob_probe *p)
+{
+	return &p->solver.island;
 }
 
 double ob_probe_distance(const ob_probe *p, const ob_island_work *w, uint32_t row, double *speed)

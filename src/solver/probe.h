@@ -12,12 +12,28 @@
 
 typedef struct ob_probe ob_probe;
 
+// Error (m) of a time (s) whose steps (s long) all have these errors of place (m) and speed (m/s): each error of speed
+// lasts for half of it in the mean.
+static inline double ob_error_of_time(double error, double speed, double step, double time)
+{
+	return (error + .5 * time * speed) * time / step;
+}
+
+// The same of a second in the units of the run.
+static inline double ob_error_of_run(const ob_solver *s, double error, double speed)
+{
+	return ob_error_of_time(error, speed, s->settings->step_length, ob_coarse_time(&s->island));
+}
+
 // Creates a probe with the thresholds of a run with so many substeps. NULL if there is no memory.
 ob_probe *ob_probe_create(const ob_run_settings *run, uint32_t substeps);
 void ob_probe_destroy(ob_probe *p);
 
-// Solves the island. Returns false if that would take more work (solver/budget.h) than `most`.
-bool ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most);
+// Solves the island. ob_probe_try: returns false if that would take more work (solver/budget.h) than `most`.
+void ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps);
+bool ob_probe_try(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most);
+// Returns the probe's own solution.
+const ob_island_work *ob_probe_island(const ob_probe *p);
 // Returns the distance (m) of any surface point of the body in this row of w from where the probe has it, at most; 0 if
 // both solutions are its flight. speed: m/s, the same of the point's velocity.
 double ob_probe_distance(const ob_probe *p, const ob_island_work *w, uint32_t row, double *speed);

@@ -114,7 +114,7 @@ typedef struct ob_solver {
 	ob_methods methods;
 	ob_ode_bodies ode_bodies;
 	struct { // solver/estimate.h
-		struct ob_probe *probe; // NULL: no estimates are made
+		struct ob_probe *probe, *finer; // NULL: no estimates are made
 		uint16_t bound, largest; // codes of deviations: of the tolerance; the largest so far
 	} estimate;
 	const ob_island_input *in; // input of the running call
@@ -132,6 +132,12 @@ static inline void ob_solver_enter(ob_solver *s, ob_profile_section section)
 {
 	if (s->timed)
 		s->calls.enter(s->calls.with, section);
+}
+
+// True if the substeps of the member were refined (solver/refinement.h) in the step before.
+static inline bool ob_is_refined(const ob_island_object *member)
+{
+	return member->motion->flags & OB_MOTION_REFINED;
 }
 
 // Gravity and the constant force of the passport (m/s^2); 0 for static objects.

@@ -26,7 +26,7 @@ static void count(ob_sim *s, uint32_t row)
 	ob_counters *c = &s->solver.counters;
 	double speed;
 	const double error = ob_probe_distance(s->verifier, &s->solver.island, row, &speed),
-		     second = ob_error_of_second(error, speed, s->settings->step_length);
+		     second = ob_error_of_time(error, speed, s->settings->step_length, 1);
 	c->verified_step[bin_of(error)]++;
 	c->verified_second[bin_of(second)]++;
 	c->verified_most[0] = ob_max(c->verified_most[0], error);
@@ -38,7 +38,7 @@ void ob_verify(ob_sim *s, const ob_island_input *in)
 	if (!s->verifier || !is_sampled(in))
 		return;
 	ob_profile_enter(s, OB_PROFILE_VERIFY);
-	if (!ob_probe_solve(s->verifier, in, OB_VERIFY_SUBSTEPS, most_work)) {
+	if (!ob_probe_try(s->verifier, in, OB_VERIFY_SUBSTEPS, most_work)) {
 		s->solver.counters.unverified += in->members;
 		return;
 	}

@@ -150,7 +150,7 @@ static bool schedule_makes_sense(const ob_schedule *s, const ob_passport *p, uin
 static bool motion_of_run_makes_sense(const ob_motion *m, uint64_t step)
 {
 	enum {
-		KNOWN = OB_MOTION_FREE | OB_MOTION_STEADY | OB_MOTION_RESTS | OB_MOTION_SWINGS,
+		KNOWN = OB_MOTION_FREE | OB_MOTION_STEADY | OB_MOTION_RESTS | OB_MOTION_SWINGS | OB_MOTION_REFINEMENT,
 		SUBSTEPS_MAX = 1 << (OB_SUBSTEP_CHOICES - 1)
 	};
 	return ob_motion_makes_sense(m) && !(m->flags & ~(uint32_t)KNOWN) && m->step <= step &&

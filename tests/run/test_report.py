@@ -101,6 +101,15 @@ class Report(program.Case):
 		self.assertNotIn("MISSED", done.stdout)
 		self.assertIn(" kept, ", done.stdout)
 
+	def test_rolling_is_refined(self):
+		"""A disk that rolls takes more substeps once its errors are seen, and keeps its energy from then on."""
+		disk = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "disk.lua")
+		for degrees in "10", "20", "30":
+			first, second = (program.report(disk, "-D", f"degrees={degrees}", "--duration", d) for d in ("1", "2"))
+			self.assertIn(second["substeps_max"], (32, 64), degrees)
+			self.assertLess(abs(second["energy_end"] / first["energy_end"] - 1), 1e-4, degrees)
+			self.assertEqual((first["bounded_share"], second["bounded_share"]), (0, .5), degrees)
+
 	def test_tolerance_by_size(self):
 		"""A share is one of the thinnest object's thickness; a length that is coarse for it is warned of."""
 		disk = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "disk.lua")
@@ -117,8 +126,8 @@ class Report(program.Case):
 	def test_motion_is_estimated(self):
 		"""A disk that rolls loses energy at the default, and no contact shows it: the estimate does."""
 		disk = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "disk.lua")
-		for words, bounded in ([], False), (["--tolerance", "1m"], True):
-			r = program.report(disk, *words)
+		for words, bounded in ([disk], False), ([program.scene("stack")], True):
+			r = program.report(*words, "--duration", "1")
 			self.assertEqual((r["islands_over"], r["deviation_reached"] <= r["tolerance"]), (0, bounded), words)
 			self.assertEqual(r["bounded_share"], 1 - r["unbounded_steps"] / 60)
 			self.assertEqual(r["unbounded_steps"] == 0, bounded)

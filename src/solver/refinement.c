@@ -1,0 +1,57 @@
+#include "solver/refinement.h"
+
+#include "solver/probe.h"
+
+bool ob_refinement_is_doubted(const ob_solver *s)
+{
+	return s->island.bodies == 1 && s->in->object[0].motion->flags & OB_MOTION_DOUBTED;
+}
+
+// Error (m) of a second of the coarse one of two solutions, at most: their distance is half of it at first order.
+static double error_of(const ob_solver *s, const ob_probe *coarse, const ob_probe *fine)
+{
+	double speed;
+	const double error = ob_probe_distance(coarse, ob_probe_island(fine), 1, &speed);
+	return 2 * ob_error_of_run(s, error, speed);
+}
+
+// Returns the number of substeps, more than now, from which on the errors of a second fall faster than with their power of
+// 1.5; 0: none. error: m, of a second, now.
+static uint32_t find_substeps(ob_solver *s, double error)
+{
+	enum { LEAST = 4, MOST = 8 }; // by the run's substeps
+	ob_probe *coarse = s->estimate.probe, *fine = s->estimate.finer;
+	const uint32_t now = s->island.substeps, usual = s->settings->substeps, most = MOST * usual;
+	const uint32_t first = 2 * now > LEAST * usual ? 2 * now : LEAST * usual;
+	if (2 * most > OB_MAX_SUBSTEPS || first > most)
+		return 0;
+	ob_probe_solve(coarse, s->in, first);
+	for (uint32_t n = first; n <= most; n *= 2) {
+		ob_probe_solve(fine, s->in, 2 * n);
+		const double ratio = (double)n / now;
+		if (error_of(s, coarse, fine) * ratio * sqrt(ratio) <= error)
+			return n;
+		ob_probe *next = fine;
+		fine = coarse, coarse = next;
+	}
+	return 0;
+}
+
+void ob_refinement_update(ob_solver *s, bool estimated, double error)
+{
+	ob_body *body = &s->island.body[1];
+	const ob_motion *last = s->in->object[0].motion;
+	const bool refined = ob_is_refined(&s->in->object[0]), exceeds = estimated && error > s->settings->tolerance;
+	uint32_t n = refined ? last->substeps : 0, stage = last->flags & OB_MOTION_REFINEMENT;
+	if (s->island.bodies > 1 || ob_contacts_changed(&s->island))
+		return;
+	if (exceeds && (stage & OB_MOTION_DOUBTED || refined)) {
+		const uint32_t found = find_substeps(s, error);
+		n = found ? found : n;
+		stage = n ? OB_MOTION_REFINED : OB_MOTION_UNREFINED;
+	} else if (exceeds && !stage) {
+		stage = OB_MOTION_DOUBTED;
+	}
+	body->next_substeps = n > body->next_substeps ? n : body->next_substeps;
+	body->refinement = stage;
+}
