@@ -419,7 +419,9 @@ static void print_cost(const ob_report *r, FILE *f)
 			r->frozen == 1 ? "" : "s");
 	else if (r->deaths > 0)
 		fprintf(f, "  deaths       %" PRIu64 "%s\n", r->deaths,
-			strcmp(r->outcome, "failed") == 0 ? "" : "; the state is as it would be without");
+			strcmp(r->outcome, "failed") == 0 ? ""
+			: strcmp(r->sync, "free") == 0    ? "; each simulator went on where it had published"
+							  : "; the state is as it would be without");
 }
 
 static void print_quality(const ob_report *r, FILE *f)

@@ -64,6 +64,7 @@ class Free(program.Case):
 			self.assertGreater(r["deaths"], 0)
 			self.assertEqual((r["steps"], r["coupling"]), (30, coupling))
 			self.assertIn("goes on where it had published", done.stderr)
+			self.assertIn("each simulator went on where it had published", done.stdout)
 
 	def test_ledger_has_one_impulse(self):
 		for more in ["--solver", "ghost"], ["--integrator", "ode"]:
