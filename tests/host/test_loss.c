@@ -178,7 +178,7 @@ static void test_interrupt(ob_isolation isolation, int signal_number, bool aslee
 	CHECK(ob_host_interrupted(h) && strstr(e.text, "interrupted"));
 	uint64_t step = steps_of(h);
 	pause_ms(20);
-	CHECK(steps_of(h) == step); // it stands still
+	CHECK(steps_of(h) <= step + 1); // it stands still; on a busy machine a step under way may end later
 	ob_host_stop(h);
 	sigaction(signal_number, NULL, &now);
 	CHECK(now.sa_handler == SIG_DFL);
