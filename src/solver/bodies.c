@@ -312,7 +312,26 @@ static void turn_body(ob_solver *s, uint32_t row, bool held)
 	drift_body(w, row, w->h, held && w->max_acceleration > 0);
 }
 
-// Turns a body on which an external torque acts. Half of its change of angular momentum in the partial substep comes
+// True if the body spins upright on its only contact: its turn changes no gap.
+static bool spins_upright(const ob_island_work *w, uint32_t row, ob_vec3 spin)
+{
+	const double leaning = 1e-6; // sine
+	const ob_body *body = &w->body[row];
+	if (body->contacts != 1 || !(ob_norm2(spin) * w->h * w->h > unnoticed_turn * unnoticed_turn))
+		return false;
+	for (uint32_t k = 0; k < body->adjacent; k++) {
+		const uint32_t lane = w->contact[w->adjacency[body->first_adjacent + k]].lane;
+		if (lane == OB_NO_LANE)
+			continue;
+		const ob_batch *b = &w->batch[lane / OB_LANES];
+		const uint32_t l = lane % OB_LANES;
+		const ob_vec3 across = ob_cross(spin, ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]));
+		return ob_norm2(across) <= leaning * leaning * ob_norm2(spin);
+	}
+	return false;
+}
+
+// Turns a body on which an external torque acts, or that spins upright on its only contact. Half of its change of angular momentum in the partial substep comes
 // before the turn, half after it, so the error is of second order (Strang 1968). A jump that contacts have made comes
 // before.
 static void turn_by_halves(ob_solver *s, uint32_t row, ob_vec3 before, double smooth)
@@ -400,7 +419,7 @@ void ob_body_move(ob_solver *s, uint32_t row, double smooth)
 	const bool held = !ob_equal(ob_row_angular(w->u[row]), before);
 	integrate_exactly(w, row, smooth);
 	memcpy(w->v[row], w->u[row], sizeof *w->v);
-	if (ob_norm2(w->body[row].torque) > 0)
+	if (ob_norm2(w->body[row].torque) > 0 || (held && spins_upright(w, row, before)))
 		turn_by_halves(s, row, before, smooth);
 	else
 		turn_body(s, row, held);
