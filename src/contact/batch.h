@@ -21,7 +21,7 @@
 #define OB_CONTACT_BATCH_H
 
 #include "elementary/lanes.h"
-#include "contact/manifold.h"
+#include "contact/area.h"
 
 enum { OB_POINTS = 4, OB_ROWS = 7 }; // contact points; rows: normals, two of friction, one of twist
 enum { OB_ROW_FRICTION = OB_POINTS, OB_ROW_TWIST = OB_ROWS - 1 }; // first row of friction; the row of twist
@@ -54,6 +54,7 @@ typedef struct ob_batch {
 	unsigned impact; // lanes whose impulses jumped in this substep: they must not be extrapolated
 	unsigned elastic; // lanes with restitution
 	unsigned isolated; // lanes whose bodies are in no other contact
+	unsigned areas; // lanes whose contact area is a polygon (contact/area.h), not the parallelogram
 	unsigned hit; // lanes with a body that was hit within the substep: the rows differ from those of its start
 	unsigned turning; // lanes whose geometry turns within the substep
 	unsigned slides; // lanes whose friction was at its limit in the last iteration
@@ -84,6 +85,7 @@ typedef struct ob_batch {
 	lanes diag[7], inv_diag[7]; // diagonal of A; the inverse is 0 for an unused row
 	// [i][j] = A_ij / A_jj: the amount of impulse j that changes row j as a unit of impulse i does
 	lanes coupling[7][7];
+	ob_contact_area area[OB_LANES]; // of the lanes in "areas"
 } ob_batch;
 
 // Row of a pair. An impulse of it acts on body a along "along" and about "about_a", on body b against "along" and

@@ -15,6 +15,7 @@ enum {
 // Friction of the contact, as contact/patch.h names it.
 typedef struct lone_patch {
 	double mu, radius, patch_e1[2], patch_e2[2];
+	const ob_contact_area *area; // NULL: a parallelogram
 	double response, friction_mass[6]; // A's block of friction: first element of its diagonal, inverse
 } lone_patch;
 
@@ -74,6 +75,26 @@ static inline double lone_sum(lanes x)
 static inline double patch_disc(const lone_patch *b)
 {
 	return 0;
+}
+
+static inline unsigned patch_areas(const lone_patch *b)
+{
+	return b->area != NULL;
+}
+
+static inline const ob_contact_area *patch_area(const lone_patch *b, int l)
+{
+	return b->area;
+}
+
+static inline double patch_get(const double *x, int l)
+{
+	return *x;
+}
+
+static inline void patch_put(double *x, int l, double y)
+{
+	*x = y;
 }
 
 static inline double patch_response(const lone_patch *b)
@@ -443,6 +464,7 @@ static inline void lone_load_pair(const ob_batch *b, int l, const lone_body *o, 
 	for (int c = 0; c < 2; c++)
 		p->patch.patch_e1[c] = lanes_get(&b->patch_e1[c], l),
 		p->patch.patch_e2[c] = lanes_get(&b->patch_e2[c], l);
+	p->patch.area = b->areas >> l & 1 ? &b->area[l] : NULL;
 	p->patch.mu = lanes_get(&b->mu, l), p->patch.radius = lanes_get(&b->radius, l);
 	p->model.known = 0;
 	p->model.stretch = lanes_get(&b->model.stretch, l);

@@ -37,6 +37,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "contact/area.h"
 #include "contact/batch.h"
 #include "contact/border.h"
 #include "contact/friction.h"
@@ -58,6 +59,8 @@ typedef struct patch_load {
 	real slope[2]; // 1/m: gradient of the relative pressure, which is 1 + slope x, with x from the centre
 	real radius; // m: radius of a loaded disc; 0: a parallelogram
 	real spread; // m^2: mean square distance from the centre of pressure
+	unsigned areas; // lanes with a polygon in place of the parallelogram
+	ob_area_load area[OB_LANES]; // of these lanes
 } patch_load;
 
 // Search for friction that slides, and its state from one sweep to the next.
@@ -87,6 +90,12 @@ typedef struct patch_sums {
 static inline real patch_disc(const friction_pair *b);
 // A's diagonal for the first tangent
 static inline real patch_response(const friction_pair *b);
+// Lanes whose patch is a polygon (contact/area.h), a bit for each; the polygon of one of them.
+static inline unsigned patch_areas(const friction_pair *b);
+static inline const ob_contact_area *patch_area(const friction_pair *b, int l);
+// Reads and writes the number of a lane.
+static inline double patch_get(const real *x, int l);
+static inline void patch_put(real *x, int l, double y);
 // Sets the slip at the substep's start.
 static void patch_begin_slip(const friction_pair *b, patch_search *f);
 // Adds the integrals along the border of the loaded part, about the centre of rotation. v, w: slip of the part's centre.
@@ -231,6 +240,33 @@ static inline void patch_load_set(const friction_pair *b, patch_load *o)
 	o->spread = l1 * (kern - ks * ks) + l2 * (kern - kt * kt) - 2 * ks * kt * skew;
 }
 
+// Finds the loaded part of polygons, in the lanes "due".
+static inline void patch_load_areas(const friction_pair *b, unsigned due, patch_load *o)
+{
+	o->areas = patch_areas(b) & due;
+	for (unsigned left = o->areas; left; left &= left - 1) {
+		const int l = __builtin_ctz(left);
+		const double centre[2] = { patch_get(&o->pressure[0], l), patch_get(&o->pressure[1], l) };
+		ob_area_load_set(patch_area(b, l), centre, &o->area[l]);
+		patch_put(&o->spread, l, o->area[l].spread);
+	}
+}
+
+// Takes the power and its bound, about the centre of pressure, from the polygons.
+static inline void patch_slip_areas(const patch_load *p, const real *d, patch_slip *o)
+{
+	for (unsigned left = p->areas; left; left &= left - 1) {
+		const int l = __builtin_ctz(left);
+		const double about[2] = { patch_get(&p->pressure[0], l), patch_get(&p->pressure[1], l) },
+			     slip[3] = { patch_get(&d[0], l), patch_get(&d[1], l), patch_get(&d[2], l) };
+		double power, bound[6];
+		ob_area_slip(&p->area[l], slip, about, &power, bound);
+		patch_put(&o->power, l, power);
+		for (int i = 0; i < 6; i++)
+			patch_put(&o->bound[i], l, bound[i]);
+	}
+}
+
 // Finds the slip that the wrench x would resist if all elements of the patch had the same weight.
 static inline void patch_first_slip(const patch_load *p, const real *x, real *d)
 {
@@ -316,6 +352,8 @@ static inline void patch_model_set(const patch_load *p, mask to, const real *sli
 	patch_slip at;
 	patch_slip_at(p, to, d, &at);
 	patch_move((real[2]){ p->centre[0] - p->pressure[0], p->centre[1] - p->pressure[1] }, at.bound);
+	if (p->areas)
+		patch_slip_areas(p, d, &at);
 	d[0] -= d[2] * p->pressure[1];
 	d[1] += d[2] * p->pressure[0];
 	for (int i = 0; i < 6; i++)
@@ -343,6 +381,7 @@ static inline void patch_renew(const friction_pair *b, patch_load *load, real bo
 	const real stay[3] = { -hold[0], -hold[1], -hold[2] };
 	real mean[3], resisted[3];
 	patch_load_set(b, load);
+	patch_load_areas(b, bits_of(due), load);
 	for (int c = 0; c < 3; c++)
 		mean[c] = slip[c] + f->slip[c];
 	const real speed = size_of(mean[0]) + size_of(mean[1]) + b->radius * size_of(mean[2]);
@@ -435,7 +474,7 @@ static inline mask patch_holds(const friction_pair *b, const patch_load *load, r
 	const real twist = hold[2] - load->pressure[0] * hold[1] + load->pressure[1] * hold[0];
 	const real f2 = hold[0] * hold[0] + hold[1] * hold[1], b2 = bound * bound, room = (b2 - f2) * spread;
 	const mask within = both_of(f2 <= b2, 4 * b2 * twist * twist * reach2 <= room * room);
-	return both_of(within, (as + at <= kern) | (l1 == 0));
+	return both_of(both_of(within, (as + at <= kern) | (l1 == 0)), not_of(mask_of(patch_areas(b))));
 }
 
 // Limits "hold" in the lanes "outside", where it exceeds the limit surface: they slip. slip: the present one.

@@ -18,6 +18,26 @@ static inline lanes patch_disc(const ob_batch *b)
 	return b->disc;
 }
 
+static inline unsigned patch_areas(const ob_batch *b)
+{
+	return b->areas;
+}
+
+static inline const ob_contact_area *patch_area(const ob_batch *b, int l)
+{
+	return &b->area[l];
+}
+
+static inline double patch_get(const lanes *x, int l)
+{
+	return lanes_get(x, l);
+}
+
+static inline void patch_put(lanes *x, int l, double y)
+{
+	lanes_put(x, l, y);
+}
+
 static inline lanes patch_response(const ob_batch *b)
 {
 	return b->diag[4];

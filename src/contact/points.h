@@ -219,6 +219,7 @@ static void set_lane(ob_batch *b, int l, const ob_batch_lane *in, ob_vec3 *frict
 	b->body_b[l] = in->body_b;
 	b->live |= 1u << l;
 	b->model.known &= ~(1u << l);
+	b->areas &= ~(1u << l);
 	b->elastic = in->e > 0 ? b->elastic | 1u << l : b->elastic & ~(1u << l);
 	b->dirty = 1;
 }

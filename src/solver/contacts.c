@@ -124,6 +124,15 @@ static void leave_lane(ob_island_work *w, ob_contact *contact)
 	w->counts_stale = true;
 }
 
+// True if the two may touch over an area that is no parallelogram, as a box on a plane may not.
+static bool may_have_area(const ob_body *a, const ob_body *b)
+{
+	const bool sides_a = ob_shape_is(a->shape, OB_SIDED), sides_b = ob_shape_is(b->shape, OB_SIDED);
+	const bool plane = ob_shape_is(a->shape, OB_UNBOUNDED) || ob_shape_is(b->shape, OB_UNBOUNDED);
+	return (sides_a || a->hull || ob_shape_is(a->shape, OB_UNBOUNDED)) &&
+	       (sides_b || b->hull || ob_shape_is(b->shape, OB_UNBOUNDED)) && (!plane || a->hull || b->hull);
+}
+
 // Writes the contact's geometry into its lane. gap: gap of each point (m).
 static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, const double *gap)
 {
@@ -150,6 +159,8 @@ static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, co
 			       .inv_inertia_b = b->inv_inertia };
 	ob_batch_set(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &lane, &contact->friction_a,
 		     &contact->friction_b);
+	contact->area_due = contact->points > 2 && contact->mu > 0 && may_have_area(a, b);
+	w->areas_due |= contact->area_due;
 }
 
 // Saves the contact's impulses before its geometry changes.
@@ -514,6 +525,26 @@ static void count_in_reach(ob_island_work *w)
 	}
 }
 
+// Finds the areas of pairs that touch nothing else.
+static void find_areas(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	w->areas_due = false;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		if (!contact->area_due || contact->lane == OB_NO_LANE)
+			continue;
+		ob_batch *b = &w->batch[contact->lane / OB_LANES];
+		const uint32_t l = contact->lane % OB_LANES;
+		if (!(b->isolated >> l & 1)) {
+			w->areas_due = true;
+			continue;
+		}
+		contact->area_due = false;
+		b->areas |= (unsigned)ob_narrowphase_area(s, contact, &b->area[l]) << l;
+	}
+}
+
 void ob_contacts_prepare(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
@@ -528,6 +559,8 @@ void ob_contacts_prepare(ob_solver *s)
 			b->dirty = 1;
 	}
 	w->counts_stale = false;
+	if (w->areas_due)
+		find_areas(s);
 }
 
 // ---- input and results

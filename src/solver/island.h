@@ -74,6 +74,7 @@ typedef struct ob_contact {
 	ob_vec3 friction_a, friction_b; // m: where friction acts
 	int8_t was[OB_PAIR_POINTS]; // for each point: its index in the previous geometry; -1: none
 	double disc_radius; // m, of the manifold
+	bool area_due; // its area is to be found if it touches alone (contact/area.h)
 	double spin_lever_a, spin_lever_b; // m, of its points (solver/relative_speed.h); 0 while separated
 	double path,
 		limit; // m: relative path in this step; bound up to which the geometry holds
@@ -203,7 +204,7 @@ typedef struct ob_island_work {
 	uint32_t *next_open_batch; // [batches]: next in the stack of its colour
 	uint32_t *batch_due; // [batches]: last iteration in which it is to be solved
 	uint32_t *batch_order; // [batches]: sorted by colour
-	bool order_stale, counts_stale;
+	bool order_stale, counts_stale, areas_due;
 	bool elastic, plastic; // hits with restitution, and without, are solved at their instants (solver/impacts.h)
 	uint32_t iteration; // number of the running iteration, ever growing
 	double mass; // kg, sum of all bodies

@@ -112,6 +112,19 @@ static void place(const ob_solver *s, uint32_t row, ob_placed *out)
 	ob_narrowphase_place(s, row, body->p, &body->r, ob_v3(v[0], v[1], v[2]), ob_v3(v[3], v[4], v[5]), out);
 }
 
+bool ob_narrowphase_area(const ob_solver *s, const ob_contact *contact, ob_contact_area *out)
+{
+	const ob_batch *b = &s->island.batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES;
+	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
+		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
+	ob_placed pa, pb;
+	place(s, contact->a, &pa);
+	place(s, contact->b, &pb);
+	return ob_area_find(&pa, &pb, n, ob_add(pa.p, contact->friction_a), ob_add(pb.p, contact->friction_b), t1, t2,
+			    out);
+}
+
 double ob_narrowphase_distance(ob_solver *s, uint32_t a, uint32_t b, double margin)
 {
 	ob_placed pa, pb;

@@ -33,4 +33,7 @@ double ob_narrowphase_time_of_impact(ob_solver *s, const ob_contact *t, double h
 // Tests two shapes, and notes the work of finding their points: ob_methods.find.
 void ob_shapes_find(ob_solver *s, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
+// Finds the area of a contact with a lane at the present poses. Returns false if it is a parallelogram, or no area.
+bool ob_narrowphase_area(const ob_solver *s, const ob_contact *contact, ob_contact_area *out);
+
 #endif
