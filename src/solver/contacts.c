@@ -124,13 +124,12 @@ static void leave_lane(ob_island_work *w, ob_contact *contact)
 	w->counts_stale = true;
 }
 
-// True if the two may touch over an area that is no parallelogram, as a box on a plane may not.
+// True if the area over which the two touch may be a polygon: one of them is a hull.
 static bool may_have_area(const ob_body *a, const ob_body *b)
 {
 	const bool sides_a = ob_shape_is(a->shape, OB_SIDED), sides_b = ob_shape_is(b->shape, OB_SIDED);
-	const bool plane = ob_shape_is(a->shape, OB_UNBOUNDED) || ob_shape_is(b->shape, OB_UNBOUNDED);
 	return (sides_a || a->hull || ob_shape_is(a->shape, OB_UNBOUNDED)) &&
-	       (sides_b || b->hull || ob_shape_is(b->shape, OB_UNBOUNDED)) && (!plane || a->hull || b->hull);
+	       (sides_b || b->hull || ob_shape_is(b->shape, OB_UNBOUNDED)) && (a->hull || b->hull);
 }
 
 // Writes the contact's geometry into its lane. gap: gap of each point (m).
