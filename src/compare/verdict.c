@@ -54,7 +54,7 @@ static void write_headline(char *to, size_t room, const ob_comparison *c, const 
 	if (isnan(r.median))
 		return;
 	if (r.n < runs_least) {
-		say(to, room, "Too few runs to decide: use --repeats 6.");
+		say(to, room, "Undecided after so few runs: use --repeats 6.");
 		return;
 	}
 	if (r.low > 1 + alike)

@@ -74,7 +74,7 @@ class Trace(program.Case):
 			self.assertGreater(end, death)
 		for e in spans:
 			if e["depth"] > 0:
-				self.assertIn(e["name"], PARTS | {"chunk", "island"})
+				self.assertIn(e["name"], PARTS | {"chunk", "island", "estimate"})
 			if e["name"] == "chunk":
 				self.assertEqual(e["depth"], 1)
 
