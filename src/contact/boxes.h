@@ -198,7 +198,8 @@ static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair
 		double time = ob_time_to_close(a, b, gap + rest, rate);
 		if (time == never && axis < FACES && fabs(gap) <= rest) {
 			*crossing |= touching >= 0 && face_cosine(f, touching, axis) < same_axis;
-			if (fabs(rate) < steadiest || (fabs(rate) == steadiest && gap > gap_along(s, touching)))
+			if (touching < 0 || fabs(rate) < steadiest ||
+			    (fabs(rate) == steadiest && gap > gap_along(s, touching)))
 				steadiest = fabs(rate), touching = axis;
 		}
 		if (time > latest || (time == latest && gap > largest))

@@ -131,5 +131,6 @@ void ob_free_neighbours_update(ob_free_sim *s, ob_free_scratch *x, double h)
 	if (!any)
 		return;
 	drop_far(s, x);
-	qsort(s->neighbour, s->neighbours, sizeof *s->neighbour, by_id);
+	if (s->neighbours)
+		qsort(s->neighbour, s->neighbours, sizeof *s->neighbour, by_id);
 }
