@@ -46,6 +46,19 @@ static ob_free_kind kind_of(const ob_passport *p)
 						 : OB_FREE_SIMULATED;
 }
 
+// The motion that goes on from this state of m, at t.
+static ob_motion motion_from(const ob_motion *m, const ob_state *state, double t)
+{
+	return (ob_motion){ .t0 = t,
+			    .valid_until = INFINITY,
+			    .p = state->pose.p,
+			    .q = state->pose.q,
+			    .v = state->v,
+			    .w = state->w,
+			    .a = m->a,
+			    .path = m->path };
+}
+
 void ob_free_enter_objects(ob_universe *u)
 {
 	const double now = (double)ob_step_count(u) * ob_universe_settings(u)->step_length;
@@ -64,15 +77,8 @@ void ob_free_enter_objects(ob_universe *u)
 			if (!ob_universe_get_motion(u, id, &m))
 				continue;
 			const ob_state state = ob_motion_at(&m, p.inertia, now);
-			m = (ob_motion){ .t0 = now,
-					 .valid_until = INFINITY,
-					 .p = state.pose.p,
-					 .q = state.pose.q,
-					 .v = state.v,
-					 .w = state.w,
-					 .a = m.a,
-					 .path = m.path,
-					 .flags = OB_MOTION_FREE };
+			m = motion_from(&m, &state, now);
+			m.flags = OB_MOTION_FREE;
 		}
 		ob_free_enter(u, id, kind, p.generation, &m);
 	}
@@ -89,7 +95,7 @@ static bool all_passed(const ob_universe *u, double t)
 	return true;
 }
 
-// Shows an object's state at a boundary in its slot. Returns true if it moves.
+// Shows an object's state at a boundary in its slot.
 static void show(ob_universe *u, uint32_t id, uint64_t step, double t)
 {
 	ob_motion m, next;
@@ -98,17 +104,10 @@ static void show(ob_universe *u, uint32_t id, uint64_t step, double t)
 		return;
 	const ob_state state = fabs(m.t0 - t) <= instant ? (ob_state){ { m.p, m.q }, m.v, m.w }
 							 : ob_free_state_at(&m, &next, p.inertia, t);
-	const ob_motion shown = { .t0 = t,
-				  .valid_until = INFINITY,
-				  .p = state.pose.p,
-				  .q = state.pose.q,
-				  .v = state.v,
-				  .w = state.w,
-				  .a = m.a,
-				  .path = m.path,
-				  .step = (uint32_t)step,
-				  .island = id,
-				  .flags = m.flags & OB_MOTION_FREE };
+	ob_motion shown = motion_from(&m, &state, t);
+	shown.step = (uint32_t)step;
+	shown.island = id;
+	shown.flags = m.flags & OB_MOTION_FREE;
 	ob_publish_motion(u, id, &shown);
 }
 

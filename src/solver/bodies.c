@@ -331,9 +331,9 @@ static bool spins_upright(const ob_island_work *w, uint32_t row, ob_vec3 spin)
 	return false;
 }
 
-// Turns a body on which an external torque acts, or that spins upright on its only contact. Half of its change of angular momentum in the partial substep comes
-// before the turn, half after it, so the error is of second order (Strang 1968). A jump that contacts have made comes
-// before.
+// Turns a body on which an external torque acts, or that spins upright on its only contact. Half of its change of angular
+// momentum in the partial substep comes before the turn, half after it, so the error is of second order (Strang 1968). A
+// jump that contacts have made comes before.
 static void turn_by_halves(ob_solver *s, uint32_t row, ob_vec3 before, double smooth)
 {
 	ob_island_work *w = &s->island;
