@@ -33,12 +33,14 @@ static uint64_t draw(scribbler *s, uint64_t below)
 	return (s->random >> 20) % below;
 }
 
-// Chooses a word among those that the process can write; 0: there is none any more.
+// Chooses a word among those that the process can write. Returns 0 if there is none any more, or if the process does not
+// simulate yet: it is announced (ob_worker_announce) just before the universe becomes read-only for it.
 static uint64_t choose_word(scribbler *s, pid_t pid)
 {
 	char path[64], line[400], rights[5];
 	uint64_t begin, end, inode, first[256], size[256], n = 0;
 	unsigned major, minor;
+	bool confined = false;
 	snprintf(path, sizeof path, "/proc/%d/maps", (int)pid);
 	FILE *f = fopen(path, "r");
 	while (f && n < 256 && fgets(line, sizeof line, f)) {
@@ -46,13 +48,14 @@ static uint64_t choose_word(scribbler *s, pid_t pid)
 			   &inode) != 6)
 			continue;
 		const bool shared = rights[3] == 's';
+		confined |= shared && rights[1] != 'w';
 		if (rights[1] != 'w' || !(shared || s->own_memory))
 			continue;
 		first[n] = begin, size[n++] = end - begin;
 	}
 	if (f)
 		fclose(f);
-	if (!n)
+	if (!n || !confined)
 		return 0;
 	const uint64_t i = draw(s, n);
 	return first[i] + 8 * draw(s, (draw(s, 2) ? size[i] : size[i] < 65536 ? size[i] : 65536) / 8);
