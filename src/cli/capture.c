@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "plot/caption.h"
+#include "table/table.h"
 
 ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uint64_t first)
 {
@@ -22,9 +23,17 @@ ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uin
 	};
 }
 
+ob_frame_clock ob_frame_clock_of_stills(const double *still, uint32_t n, double step, uint64_t first)
+{
+	ob_frame_clock c = { .step = step, .frames = n, .still = still };
+	while (c.next < n && still[c.next] < (double)first * step * (1 - 1e-12))
+		c.next++;
+	return c;
+}
+
 double ob_frame_clock_time(const ob_frame_clock *c)
 {
-	return (double)c->next / c->fps;
+	return c->still ? c->still[c->next] : (double)c->next / c->fps;
 }
 
 uint64_t ob_frame_clock_step(const ob_frame_clock *c, bool *between)
@@ -56,6 +65,7 @@ enum { SINKS_MAX = 3 };
 
 struct ob_capture {
 	ob_frame_clock clock;
+	ob_frames_request request;
 	uint64_t first; // frame that is drawn
 	ob_renderer *renderer;
 	ob_camera_def camera;
@@ -67,6 +77,9 @@ struct ob_capture {
 	char raw_name[300]; // for errors
 	uint8_t *rgba;
 	ob_host *host; // NULL = none to trace
+	const ob_universe *universe; // of the places; NULL = none
+	ob_worker_place *place; // [workers]
+	uint32_t workers;
 };
 
 static bool add(ob_capture *c, ob_sink *s)
@@ -103,22 +116,37 @@ static const ob_camera_def *find_camera(const ob_scene *s, const char *name)
 	return &s->camera[0];
 }
 
+static bool find_workers(ob_capture *c, const ob_universe *u, ob_error *e)
+{
+	c->universe = u;
+	c->workers = ob_universe_simulators(u);
+	c->place = calloc(c->workers, sizeof *c->place);
+	return c->place || ob_fail(e, "out of memory");
+}
+
 ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, double duration, double step,
-			    uint64_t first, ob_error *e)
+			    uint64_t first, const ob_universe *u, ob_error *e)
 {
 	ob_capture *c = calloc(1, sizeof *c);
 	if (!c) {
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	c->clock = ob_frame_clock_make(duration, f->fps, step, first);
+	c->request = *f;
+	c->clock = f->stills ? ob_frame_clock_of_stills(c->request.still, f->stills, step, first)
+			     : ob_frame_clock_make(duration, f->fps, step, first);
 	c->first = c->clock.next;
 	c->camera = *find_camera(scene, f->camera);
 	c->title = f->caption ? scene->title : NULL;
 	c->width = f->width;
 	c->height = f->height;
 	c->raw_fd = -1;
+	if (u && f->colour_by != OB_COLOUR_OWN && !find_workers(c, u, e)) {
+		ob_capture_close(c, NULL);
+		return NULL;
+	}
 	ob_render_setup setup = {
+		.colouring = { f->colour_by, c->place, c->workers },
 		.width = f->width,
 		.height = f->height,
 		.quality = f->quality,
@@ -161,6 +189,15 @@ uint64_t ob_capture_frames(const ob_capture *c)
 	return c->clock.next - c->first;
 }
 
+// Places of workers now: a restarted one has another process.
+static void locate_workers(const ob_capture *c)
+{
+	ob_worker_info info;
+	for (uint32_t i = 0; i < c->workers; i++)
+		c->place[i] = (ob_worker_place){ .pid = ob_universe_get_worker(c->universe, i, &info) ? info.pid : 0,
+						 .rank = ob_universe_rank_of(c->universe, i) };
+}
+
 bool ob_capture_show(ob_capture *c, const ob_snapshot *prev, const ob_snapshot *now, ob_error *e)
 {
 	bool between;
@@ -168,6 +205,7 @@ bool ob_capture_show(ob_capture *c, const ob_snapshot *prev, const ob_snapshot *
 		double t = ob_frame_clock_time(&c->clock);
 		const ob_snapshot *from = between ? prev : NULL;
 		uint64_t begin = ob_clock_ns();
+		locate_workers(c);
 		if (!ob_renderer_draw(c->renderer, from, now, between ? t : now->time, &c->camera, c->rgba, e))
 			return false;
 		if (c->title) {
@@ -198,6 +236,7 @@ bool ob_capture_close(ob_capture *c, ob_error *e)
 	if (c->raw_fd >= 0 && close(c->raw_fd) != 0 && fine)
 		fine = ob_fail(e, "%s: %s", c->raw_name, strerror(errno));
 	ob_renderer_destroy(c->renderer);
+	free(c->place);
 	free(c->rgba);
 	free(c);
 	return fine;

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/spelling.h"
 #include "host/death.h"
+#include "measure/colouring.h"
 #include "settings/free.h"
 #include "settings/settings.h"
 
@@ -101,6 +102,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_VIDEO] = { NULL, "video", "FILE", "write a video through ffmpeg", RUN, 0 },
 	[OB_OPTION_RAW] = { NULL, "raw", "FILE", "write raw rgb24 frames; - = standard output", RUN, 0 },
 	[OB_OPTION_FPS] = { NULL, "fps", "F", "frames per simulated second (60)", RUN, 0 },
+	[OB_OPTION_STILL] = { NULL, "still", "S,..", "write frames of these times (s) alone", RUN, 0 },
 	[OB_OPTION_SIZE] = { NULL, "size", "WxH", "pixels (1280x720)", RUN, 0 },
 	[OB_OPTION_QUALITY] = { NULL, "quality", "draft|fine",
 				"fine: soft shadows, light of the sky; takes some 20 times as long (draft)", RUN, 0 },
@@ -108,6 +110,8 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_CAMERA] = { NULL, "camera", "NAME", "which of the scene's cameras (the first)", RUN, 0 },
 	[OB_OPTION_OVERLAY] = { NULL, "overlay", "LIST", "draw over it: aabb, contacts, caption; several with commas",
 				RUN, 0 },
+	[OB_OPTION_COLOUR_BY] = { NULL, "colour-by", OB_COLOUR_KEY_NAMES,
+				  "colour objects by who simulates them, and how (own)", RUN, 0 },
 	[OB_OPTION_GPU] = { NULL, "gpu", "WHICH", "surfaceless, or the number of a GPU (the first that works)", RUN,
 			    0 },
 

@@ -38,13 +38,19 @@ static bool draw_all(drawing *d, ob_error *e)
 	}
 }
 
+static double duration_of(const drawing *d)
+{
+	const double asked = d->request.duration;
+	return asked > 0 ? asked : ob_recording_get_info(d->recording)->scene.duration;
+}
+
 static int carry_out(drawing *d)
 {
 	const ob_recording_info *i = ob_recording_get_info(d->recording);
 	const ob_frames_request *f = &d->request.frames;
-	double duration = d->request.duration > 0 ? d->request.duration : i->scene.duration;
+	double duration = duration_of(d);
 	ob_error e = { "" }, e_close;
-	d->capture = ob_capture_open(f, &i->scene, duration, i->interval, i->first, &e);
+	d->capture = ob_capture_open(f, &i->scene, duration, i->interval, i->first, NULL, &e);
 	if (!d->capture)
 		return ob_command_fail(OB_EXIT_FAILED, e.text);
 	bool drawn = draw_all(d, &e);
@@ -66,7 +72,8 @@ int ob_command_draw_replay(const ob_arguments *a)
 	if (!ob_request_read_replay(&d.request, a, &e) || !(d.recording = ob_recording_open(d.request.record, &e)))
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	int code;
-	if (!ob_request_check_camera(&d.request.frames, &ob_recording_get_info(d.recording)->scene, &e)) {
+	const ob_scene *scene = &ob_recording_get_info(d.recording)->scene;
+	if (!ob_request_check_frames(&d.request.frames, scene, duration_of(&d), &e)) {
 		code = ob_command_fail(OB_EXIT_USAGE, e.text);
 	} else {
 		signal(SIGPIPE, SIG_IGN); // a reader that leaves is an error of the sink, with a message

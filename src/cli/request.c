@@ -185,6 +185,28 @@ static bool read_overlay(ob_frames_request *f, const char *list, ob_error *e)
 	return true;
 }
 
+// Reads ascending times, as 0,.5,2.
+static bool read_stills(ob_frames_request *f, const ob_arguments *a, ob_error *e)
+{
+	const char *list = a->value[OB_OPTION_STILL];
+	if (list && (f->video || a->value[OB_OPTION_FPS]))
+		return ob_fail(e, "--still gives single frames: leave --%s away", f->video ? "video" : "fps");
+	for (; list && *list; f->stills++) {
+		char number[32];
+		const size_t n = strcspn(list, ",");
+		double *t = &f->still[f->stills];
+		if (f->stills == OB_STILLS_MAX)
+			return ob_fail(e, "--still: expected at most %d times", OB_STILLS_MAX);
+		snprintf(number, sizeof number, "%.*s", (int)n, list);
+		if (!ob_number_real(name_of(OB_OPTION_STILL), number, 0, 1e9, t, e))
+			return false;
+		if (f->stills > 0 && !(*t > t[-1]))
+			return ob_fail(e, "--still %s: expected growing times, as .5,2", a->value[OB_OPTION_STILL]);
+		list += n + (list[n] == ',');
+	}
+	return !list || f->stills > 0 || ob_fail(e, "--still: expected times, as .5,2");
+}
+
 static bool read_size(ob_frames_request *f, const char *text, ob_error *e)
 {
 	if (!text)
@@ -194,6 +216,15 @@ static bool read_size(ob_frames_request *f, const char *text, ob_error *e)
 		return ob_fail(e, "--size %s: expected WIDTHxHEIGHT, as 1280x720", text);
 	if (f->width < SIZE_MIN || f->height < SIZE_MIN || f->width > SIZE_MAX_PIXELS || f->height > SIZE_MAX_PIXELS)
 		return ob_fail(e, "--size %s: expected %d to %d pixels each way", text, SIZE_MIN, SIZE_MAX_PIXELS);
+	return true;
+}
+
+static bool read_colours(ob_frames_request *f, const char *key, ob_error *e)
+{
+	uint32_t value = OB_COLOUR_OWN;
+	if (key && !ob_setting_find(OB_COLOUR_KEY_NAMES, key, &value))
+		return ob_fail(e, "--colour-by %s: expected one of %s", key, OB_COLOUR_KEY_NAMES);
+	f->colour_by = (ob_colour_key)value;
 	return true;
 }
 
@@ -212,7 +243,7 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e
 	f->wanted = f->dir || f->video || f->raw;
 	static const ob_option_id details[] = { OB_OPTION_FPS,     OB_OPTION_SIZE,   OB_OPTION_QUALITY,
 						OB_OPTION_SAMPLES, OB_OPTION_CAMERA, OB_OPTION_OVERLAY,
-						OB_OPTION_GPU };
+						OB_OPTION_GPU,     OB_OPTION_STILL,  OB_OPTION_COLOUR_BY };
 	for (size_t i = 0; i < sizeof details / sizeof *details; i++) {
 		if (a->value[details[i]] && !f->wanted)
 			return ob_fail(e, "--%s needs --frames, --video or --raw", name_of(details[i]));
@@ -227,12 +258,14 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e
 	if (!count(a, OB_OPTION_SAMPLES, 1, f->quality == OB_QUALITY_FINE ? 256 : 32, &samples, e))
 		return false;
 	f->samples = (int)samples;
-	if (!real(a, OB_OPTION_FPS, 1e5, &f->fps, e) || !read_size(f, a->value[OB_OPTION_SIZE], e))
+	if (!real(a, OB_OPTION_FPS, 1e5, &f->fps, e) || !read_stills(f, a, e) ||
+	    !read_size(f, a->value[OB_OPTION_SIZE], e))
 		return false;
 	if (f->video && (f->width % 2 || f->height % 2))
 		return ob_fail(e, "--size %dx%d: a video needs an even width and height", f->width, f->height);
-	return read_overlay(f, a->value[OB_OPTION_OVERLAY], e) && (!f->wanted || ob_render_check(e)) &&
-	       (!f->video || ob_video_check(e)) && (!f->caption || ob_plot_check(e));
+	return read_overlay(f, a->value[OB_OPTION_OVERLAY], e) && read_colours(f, a->value[OB_OPTION_COLOUR_BY], e) &&
+	       (!f->wanted || ob_render_check(e)) && (!f->video || ob_video_check(e)) &&
+	       (!f->caption || ob_plot_check(e));
 }
 
 static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)
@@ -509,10 +542,11 @@ bool ob_request_check_replay(const ob_arguments *a, const ob_option_id *allowed,
 
 bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id allowed[] = { OB_OPTION_REPLAY,  OB_OPTION_DURATION, OB_OPTION_FRAMES,
-						OB_OPTION_VIDEO,   OB_OPTION_RAW,      OB_OPTION_FPS,
-						OB_OPTION_SIZE,    OB_OPTION_SAMPLES,  OB_OPTION_CAMERA,
-						OB_OPTION_OVERLAY, OB_OPTION_GPU,      OB_OPTION_QUALITY };
+	static const ob_option_id allowed[] = { OB_OPTION_REPLAY, OB_OPTION_DURATION,  OB_OPTION_FRAMES,
+						OB_OPTION_VIDEO,  OB_OPTION_RAW,       OB_OPTION_FPS,
+						OB_OPTION_SIZE,   OB_OPTION_SAMPLES,   OB_OPTION_CAMERA,
+						OB_OPTION_STILL,  OB_OPTION_COLOUR_BY, OB_OPTION_OVERLAY,
+						OB_OPTION_GPU,    OB_OPTION_QUALITY };
 	*r = (ob_replay_request){ .record = a->value[OB_OPTION_REPLAY] };
 	if (!ob_request_check_replay(a, allowed, sizeof allowed / sizeof *allowed, e) ||
 	    !read_frames(&r->frames, a, e) || !real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) ||
@@ -522,6 +556,11 @@ bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_erro
 		return ob_fail(
 			e, "--replay needs --frames, --video or --raw; obsim serve --replay %s shows it in a browser",
 			r->record);
+	if (r->frames.colour_by >= OB_COLOUR_WORKER && r->frames.colour_by <= OB_COLOUR_RANK)
+		return ob_fail(e,
+			       "--colour-by %s: a record does not hold where simulators ran; simulator, island, "
+			       "rest and cost can be shown",
+			       a->value[OB_OPTION_COLOUR_BY]);
 	return !r->frames.contacts || ob_fail(e, "--overlay contacts: a record holds no contacts");
 }
 
@@ -547,9 +586,12 @@ uint64_t ob_request_steps(double duration, double step)
 	return n < 1 ? 1 : n < 1e18 ? (uint64_t)n : (uint64_t)1e18;
 }
 
-bool ob_request_check_camera(const ob_frames_request *f, const ob_scene *s, ob_error *e)
+bool ob_request_check_frames(const ob_frames_request *f, const ob_scene *s, double duration, ob_error *e)
 {
 	const char *name = f->camera;
+	if (f->stills && f->still[f->stills - 1] > duration * (1 + 1e-12))
+		return ob_fail(e, "--still %g: the run ends at %g s; add --duration", f->still[f->stills - 1],
+			       duration);
 	if (!name)
 		return true;
 	ob_spelling near = ob_spelling_start(name);
@@ -588,7 +630,7 @@ static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 	if (steps > UINT32_MAX - 2)
 		return ob_fail(e, "%g s in steps of %g s are too many steps (at most %" PRIu32 "): shorten --duration",
 			       r->duration, r->run.step_length, UINT32_MAX - 2);
-	return ob_request_check_camera(&r->frames, s, e);
+	return ob_request_check_frames(&r->frames, s, r->duration, e);
 }
 
 double ob_request_thinnest(const ob_scene *s)

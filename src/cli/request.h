@@ -9,14 +9,19 @@
 #include "render/render.h"
 #include "scene/scene.h"
 
+enum { OB_STILLS_MAX = 64 };
+
 typedef struct ob_frames_request {
 	bool wanted; // any of the three below
 	const char *dir, *video, *raw; // NULL = not requested; raw "-" = standard output
 	const char *gpu, *camera; // NULL = the renderer's choice, the scene's first camera
 	double fps; // per simulated second
+	double still[OB_STILLS_MAX]; // s, ascending: times of single frames instead
+	uint32_t stills; // 0 = none
 	ob_quality quality;
 	int width, height, samples;
 	bool aabb, contacts, caption; // overlays
+	ob_colour_key colour_by;
 } ob_frames_request;
 
 typedef enum ob_measure_when {
@@ -85,8 +90,8 @@ typedef struct ob_replay_request {
 bool ob_request_check_replay(const ob_arguments *a, const ob_option_id *allowed, size_t count, ob_error *e);
 // false and e on options that have no meaning for a replay, or other errors.
 bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_error *e);
-// false and e when no camera has the requested name.
-bool ob_request_check_camera(const ob_frames_request *f, const ob_scene *s, ob_error *e);
+// false and e when no camera has the requested name, or a frame is due after the run's duration (s).
+bool ob_request_check_frames(const ob_frames_request *f, const ob_scene *s, double duration, ob_error *e);
 
 // Configuration of the host for a resolved request.
 ob_host_config ob_request_host(const ob_run_request *r);

@@ -192,7 +192,8 @@ static bool open_outputs(run *r, ob_error *e)
 {
 	const ob_run_request *q = &r->request;
 	if (q->frames.wanted) { // first: it makes directories
-		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->run.step_length, r->first, e);
+		r->capture = ob_capture_open(&q->frames, r->scene, q->duration, q->run.step_length, r->first,
+					     ob_host_universe(r->host), e);
 		if (!r->capture)
 			return false;
 		ob_capture_trace(r->capture, r->host);
@@ -282,7 +283,7 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 		.load = q->run.load,
 		.seed = q->scene_options.has_seed ? q->scene_options.seed : r->scene->seed,
 		.frames = r->frames,
-		.frame_rate = q->frames.wanted ? q->frames.fps : NAN,
+		.frame_rate = q->frames.wanted && !q->frames.stills ? q->frames.fps : NAN,
 		.total_s = ob_clock_wall() - r->begun,
 		.trace_events = r->trace.events,
 		.trace_lost = r->trace.lost,

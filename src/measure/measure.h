@@ -16,6 +16,7 @@ typedef struct ob_snapshot {
 	uint32_t count;
 	ob_passport *passport;
 	ob_motion *motion;
+	uint32_t *home; // home worker of each simulator, UINT32_MAX: none; NULL: unknown, as of a record
 	size_t contacts;
 	ob_contact_point *contact;
 	uint32_t count_max;

@@ -12,15 +12,19 @@ static bool grow_objects(ob_snapshot *s, uint32_t count)
 		return true;
 	ob_passport *passport = calloc(count, sizeof *passport);
 	ob_motion *motion = calloc(count, sizeof *motion);
-	if (!passport || !motion) {
+	uint32_t *home = calloc(count, sizeof *home);
+	if (!passport || !motion || !home) {
 		free(passport);
 		free(motion);
+		free(home);
 		return false;
 	}
 	free(s->passport);
 	free(s->motion);
+	free(s->home);
 	s->passport = passport;
 	s->motion = motion;
+	s->home = home;
 	s->count_max = count;
 	s->count = 0;
 	return true;
@@ -89,6 +93,8 @@ static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_er
 	ob_passport *p = &s->passport[id], again;
 	memset(p, 0, sizeof *p);
 	memset(&s->motion[id], 0, sizeof s->motion[id]);
+	if (!ob_universe_get_home(u, id, &s->home[id]))
+		s->home[id] = UINT32_MAX;
 	if (!ob_universe_get_passport(u, id, p) || !(p->flags & OB_OBJECT_PRESENT))
 		return true;
 	if (ob_universe_get_motion(u, id, &s->motion[id]))
@@ -154,6 +160,10 @@ bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from)
 	if (from->count) {
 		memcpy(to->passport, from->passport, from->count * sizeof *to->passport);
 		memcpy(to->motion, from->motion, from->count * sizeof *to->motion);
+		if (from->home)
+			memcpy(to->home, from->home, from->count * sizeof *to->home);
+		else
+			memset(to->home, 0xff, from->count * sizeof *to->home);
 	}
 	if (from->contacts)
 		memcpy(to->contact, from->contact, from->contacts * sizeof *to->contact);
@@ -164,6 +174,7 @@ void ob_snapshot_finish(ob_snapshot *s)
 {
 	free(s->passport);
 	free(s->motion);
+	free(s->home);
 	free(s->contact);
 	drop_hulls(s);
 	memset(s, 0, sizeof *s);

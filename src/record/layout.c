@@ -7,7 +7,7 @@
 // A new member of one of these structures may be needed to draw a record again: decide here.
 static_assert(sizeof(ob_passport) == 184 && sizeof(ob_motion) == 176, "members of /events and /motions");
 static_assert(sizeof(ob_hull) == 7008, "members of /hulls");
-static_assert(sizeof(ob_camera_def) == 152 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
+static_assert(sizeof(ob_camera_def) == 200 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
 
 #define COUNT(a) ((int)(sizeof(a) / sizeof *(a)))
 
@@ -43,6 +43,8 @@ const ob_record_table ob_record_events = {
 	}
 static const ob_record_member motion_members[] = {
 	{ "id", OB_RECORD_U32, offsetof(ob_record_motion, id), 0 },
+	{ "island", OB_RECORD_U32, offsetof(ob_record_motion, island), 0 },
+	MOTION(substeps, OB_RECORD_U16),
 	MOTION(flags, OB_RECORD_U32),
 	MOTION(t0, OB_RECORD_F64),
 	MOTION(valid_until, OB_RECORD_F64),
@@ -57,7 +59,9 @@ const ob_record_table ob_record_motions = {
 	{ "motions", "SI", "world, right-handed, z up; q: body to world, w x y z",
 	  "how an object moves from t0 on: p, v on a parabola with a; q, w as a free rigid body; flags: 1 in free "
 	  "flight, "
-	  "2 asleep, 8 in equilibrium, 16 on an ellipse with a frequency" },
+	  "2 asleep, 8 in equilibrium, 16 on an ellipse with a frequency; island: lowest id of the bodies solved with "
+	  "it; "
+	  "substeps: those that it needs" },
 	sizeof(ob_record_motion),
 	COUNT(motion_members),
 	motion_members,
@@ -107,12 +111,13 @@ const ob_record_table ob_record_hulls = {
 static const ob_record_member camera_members[] = {
 	CAMERA(name, OB_RECORD_NAME),     CAMERA(eye, OB_RECORD_VEC3),       CAMERA(target, OB_RECORD_VEC3),
 	CAMERA(velocity, OB_RECORD_VEC3), CAMERA(pan, OB_RECORD_F64),        CAMERA(tilt, OB_RECORD_F64),
-	CAMERA(fov, OB_RECORD_F64),       CAMERA(automatic, OB_RECORD_FLAG),
+	CAMERA(fov, OB_RECORD_F64),       CAMERA(automatic, OB_RECORD_FLAG), CAMERA(aboard, OB_RECORD_FLAG),
+	CAMERA(follow, OB_RECORD_NAME),
 };
 const ob_record_table ob_record_cameras = {
 	{ "cameras", "m, m/s, rad, rad/s", "world, right-handed, z up",
 	  "the scene's: the eye and its target travel with a velocity, it turns by pan and tilt; fov: vertical; "
-	  "automatic: it goes along with what moves" },
+	  "automatic: it goes along with what moves; follow: with the object of this name, aboard: and turns with it" },
 	sizeof(ob_camera_def),
 	COUNT(camera_members),
 	camera_members,

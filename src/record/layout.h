@@ -59,7 +59,8 @@ typedef struct ob_record_table {
 
 // Motion of an object from then on.
 typedef struct ob_record_motion {
-	uint32_t id, zero;
+	uint32_t id;
+	uint32_t island; // as in the motion, which may hold a frequency in its place
 	ob_motion motion;
 } ob_record_motion;
 

@@ -620,7 +620,9 @@ static bool append_hulls(ob_recorder *r, const ob_snapshot *s)
 // The recorded members of a motion.
 static ob_record_motion recorded(uint32_t id, const ob_motion *m)
 {
+	const bool swings = m->flags & OB_MOTION_SWINGS;
 	return (ob_record_motion){ .id = id,
+				   .island = swings ? id : m->island,
 				   .motion = { .t0 = m->t0,
 					       .valid_until = m->valid_until,
 					       .p = m->p,
@@ -628,7 +630,8 @@ static ob_record_motion recorded(uint32_t id, const ob_motion *m)
 					       .v = m->v,
 					       .w = m->w,
 					       .a = m->a,
-					       .frequency = m->flags & OB_MOTION_SWINGS ? m->frequency : 0,
+					       .frequency = swings ? m->frequency : 0,
+					       .substeps = m->substeps,
 					       .flags = m->flags } };
 }
 

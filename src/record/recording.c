@@ -285,11 +285,14 @@ static bool is_colour(const float *c, int n)
 
 static bool camera_makes_sense(ob_camera_def *c)
 {
-	uint8_t automatic;
+	uint8_t automatic, aboard; // bytes that may be an invalid bool
 	memcpy(&automatic, &c->automatic, sizeof automatic);
-	c->automatic = automatic != 0; // the byte may be an invalid bool
-	c->name[OB_NAME_MAX - 1] = 0;
+	memcpy(&aboard, &c->aboard, sizeof aboard);
+	c->automatic = automatic != 0;
+	c->aboard = aboard != 0;
+	c->name[OB_NAME_MAX - 1] = c->follow[OB_NAME_MAX - 1] = 0;
 	ob_utf8_make_plain(c->name);
+	ob_utf8_make_plain(c->follow);
 	return finite3(c->eye) && finite3(c->target) && finite3(c->velocity) && fabs(c->pan) <= number_max &&
 	       fabs(c->tilt) <= number_max && c->fov > 0 && c->fov < M_PI;
 }
@@ -843,6 +846,10 @@ static bool take_motion(ob_recording *r, const ob_record_motion *m, ob_error *e)
 		return damaged(r, "a motion makes no sense", e);
 	r->now.motion[m->id] = *now;
 	r->now.motion[m->id].step = (uint32_t)r->step[r->state];
+	if (!(now->flags & OB_MOTION_SWINGS)) {
+		r->now.motion[m->id].rest_time = 0;
+		r->now.motion[m->id].island = m->island;
+	}
 	return true;
 }
 

@@ -1,6 +1,7 @@
 #include "render/draw_list.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "shape/shape.h"
 
@@ -97,15 +98,46 @@ static const ob_mesh *look_of(const ob_draw_list *b, const ob_passport *p)
 	return p->mesh > 0 && p->mesh <= b->meshes ? &b->mesh[p->mesh - 1] : NULL;
 }
 
+static bool grow(ob_draw_list *b, uint32_t count)
+{
+	if (count <= b->capacity)
+		return true;
+	ob_draw_item *body = realloc(b->body, count * sizeof *body);
+	if (body)
+		b->body = body;
+	ob_attention *attention = realloc(b->attention, count * sizeof *attention);
+	if (attention)
+		b->attention = attention;
+	if (!body || !attention)
+		return false;
+	memset(attention + b->capacity, 0, (count - b->capacity) * sizeof *attention);
+	b->capacity = count;
+	return true;
+}
+
+static const double attention_fade = 1; // s of rest in which it falls by the factor e
+static const double attention_least = .05, attention_gap = 1; // gap: s between fills, after which it begins anew
+
+// Attention to object i at time t, s after the last fill. Waking takes time, too: else the picture would jump.
+static void attend(ob_draw_list *b, uint32_t i, double t, double s)
+{
+	ob_attention *a = &b->attention[i];
+	const ob_motion *m = &b->now->motion[i];
+	const uint32_t generation = b->now->passport[i].generation;
+	const bool rests = m->flags & OB_MOTION_RESTS, goes_on = a->level > 0 && a->generation == generation;
+	const double goal = rests ? attention_least : 1, from = goes_on ? a->level : 1;
+	const double since = goes_on ? s : fmax(t - m->t0, 0);
+	*a = (ob_attention){ generation, (float)(goal + (from - goal) * exp(-since / attention_fade)) };
+}
+
 bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapshot *now, double t)
 {
-	if (now->count > b->capacity) {
-		ob_draw_item *grown = realloc(b->body, now->count * sizeof *grown);
-		if (!grown)
-			return false;
-		b->body = grown;
-		b->capacity = now->count;
-	}
+	if (!grow(b, now->count))
+		return false;
+	const double since = t - b->time;
+	if (b->now && !(since >= 0 && since <= attention_gap))
+		memset(b->attention, 0, b->capacity * sizeof *b->attention);
+	b->time = t;
 	b->now = now;
 	b->count = 0;
 	b->planes = 0;
@@ -116,6 +148,7 @@ bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapsh
 		    (ob_shape_is(p->shape, OB_HULLED) && !ob_snapshot_hull(now, i)))
 			continue;
 		ob_pose pose = pose_at(prev, now, i, t);
+		attend(b, i, t, since);
 		if (!unbounded) {
 			const ob_mesh *look = look_of(b, p);
 			const double radius = look ? look->radius : ob_shape_radius(p->shape, p->size);
@@ -136,6 +169,7 @@ static const double lost_ranges =
 	1.5; // camera ranges: bodies farther from the initial target have less and less weight
 static const double spread =
 	2.05; // distance to a side of the picture, in one-sided fourth moments; 1.78 holds all of an even crowd
+static const double ground_clearance = .05; // of the eye, relative to its distance
 static const double nearest = .3; // relative to the initial distance: it comes no nearer
 
 // Extent of bodies beyond two opposite sides of a view pyramid with its tip in their middle (see call_camera.c).
@@ -148,10 +182,10 @@ typedef struct crowd {
 	const ob_camera_def *camera;
 	ob_view view;
 	ob_vec3 middle; // m
-	double weight;
+	double present, weight; // bodies that are not lost, before and after their attention
 } crowd;
 
-static double weight_of(const crowd *all, uint32_t i)
+static double presence_of(const crowd *all, uint32_t i)
 {
 	const ob_draw_item *body = &all->list->body[i];
 	if (all->list->now->passport[body->id].flags & OB_OBJECT_STATIC)
@@ -161,10 +195,16 @@ static double weight_of(const crowd *all, uint32_t i)
 	return 1 / (1 + far * far);
 }
 
+static double weight_of(const crowd *all, uint32_t i)
+{
+	return all->list->attention[all->list->body[i].id].level * presence_of(all, i);
+}
+
 static void find_middle(crowd *all)
 {
 	for (uint32_t i = 0; i < all->list->count; i++) {
 		double w = weight_of(all, i);
+		all->present += presence_of(all, i);
 		all->middle = ob_madd(all->middle, w, all->list->body[i].pose.p);
 		all->weight += w;
 	}
@@ -202,22 +242,54 @@ static double centre(const crowd *all, ob_vec3 axis, double tangent, double away
 	return .5 * (r.high - r.low);
 }
 
+// Moves the eye above the level ground that the camera began above.
+static void keep_above_ground(ob_camera_def *to, const ob_camera_def *c, const ob_draw_list *b, double clearance)
+{
+	for (int i = 0; i < b->planes; i++) {
+		const ob_pose *plane = &b->plane[i];
+		if (ob_quat_matrix(plane->q).m[2][2] > .999 && c->eye.z > plane->p.z)
+			to->eye.z = fmax(to->eye.z, plane->p.z + clearance);
+	}
+}
+
+// Moves the camera along with the object that it follows; without one of this name it stays.
+static void go_along(ob_camera_def *to, const ob_draw_list *b)
+{
+	for (uint32_t i = 0; i < b->count; i++) {
+		const ob_pose *pose = &b->body[i].pose;
+		if (strcmp(b->now->passport[b->body[i].id].name, to->follow) != 0)
+			continue;
+		if (to->aboard) {
+			const ob_mat3 r = ob_quat_matrix(pose->q);
+			to->eye = ob_add(pose->p, ob_rotate(&r, to->eye));
+			to->target = ob_add(pose->p, ob_rotate(&r, to->target));
+		} else {
+			to->eye = ob_add(to->eye, ob_sub(pose->p, to->target));
+			to->target = pose->p;
+		}
+		return;
+	}
+}
+
 ob_camera_def ob_camera_follow(const ob_camera_def *c, const ob_draw_list *b, int width, int height)
 {
 	ob_camera_def to = *c;
+	if (*c->follow)
+		go_along(&to, b);
 	if (!c->automatic)
 		return to;
 	crowd all = { .list = b, .camera = c, .view = ob_view_of_camera(c, 0, width, height) };
 	const ob_view *v = &all.view;
 	find_middle(&all);
-	if (!(all.weight >= .5))
-		return to; // no body moves, or all are lost
+	if (!(all.present >= .5))
+		return to; // no body may move, or all are lost
 	reach x = reach_of(&all, v->right, v->tan_x), y = reach_of(&all, v->up, v->tan_y);
 	double away = fmax((x.high + x.low) / (2 * v->tan_x), (y.high + y.low) / (2 * v->tan_y));
 	away = fmax(away, nearest * v->range);
 	to.target = ob_madd(all.middle, centre(&all, v->right, v->tan_x, away), v->right);
 	to.target = ob_madd(to.target, centre(&all, v->up, v->tan_y, away), v->up);
 	to.eye = ob_madd(to.target, -away, v->forward);
+	keep_above_ground(&to, c, b, ground_clearance * away);
 	return to;
 }
 
@@ -240,6 +312,7 @@ void ob_draw_list_sort(ob_draw_list *b, ob_vec3 eye)
 void ob_draw_list_finish(ob_draw_list *b)
 {
 	free(b->body);
+	free(b->attention);
 	*b = (ob_draw_list){ 0 };
 }
 
@@ -271,8 +344,10 @@ static void set_vec4(float to[4], double x, double y, double z, double w)
 	to[3] = (float)w;
 }
 
-static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec3 eye, bool look)
+static ob_instance instance_of(const ob_draw_list *b, const ob_draw_item *body, ob_vec3 eye, bool look)
 {
+	const ob_passport *p = &b->now->passport[body->id];
+	const ob_pose *pose = &body->pose;
 	ob_instance i;
 	ob_vec3 at = ob_sub(pose->p, eye);
 	double rounding = 0;
@@ -280,7 +355,7 @@ static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec
 	if (!ob_shape_outline(p->shape, p->size, &o) || look)
 		o = (ob_outline){ .half = { 1, 1, 1 } }; // meshes and hulls are in metres
 	if (look) {
-		rounding -= p->flags & OB_OBJECT_MESH_COLOUR ? 1 : 0;
+		rounding -= p->flags & OB_OBJECT_MESH_COLOUR && b->colouring.key == OB_COLOUR_OWN ? 1 : 0;
 		rounding -= p->flags & OB_OBJECT_MESH_SURFACE ? 2 : 0;
 	} else if (ob_shape_is(p->shape, OB_SIDED)) {
 		rounding = bevel_width(fmin(o.half.x, fmin(o.half.y, o.half.z)));
@@ -291,8 +366,7 @@ static ob_instance instance_of(const ob_passport *p, const ob_pose *pose, ob_vec
 	set_vec4(i.position_radius, at.x, at.y, at.z, o.ball);
 	set_vec4(i.attitude, pose->q.x, pose->q.y, pose->q.z, pose->q.w);
 	set_vec4(i.core, o.half.x, o.half.y, o.half.z, rounding);
-	for (int k = 0; k < 3; k++)
-		i.colour[k] = p->colour[k];
+	ob_colouring_of(&b->colouring, b->now, body->id, i.colour);
 	i.colour[3] = ob_surface_pack(p->roughness, p->metal);
 	return i;
 }
@@ -337,8 +411,7 @@ bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *
 	for (uint32_t i = 0; mesh && count && i < b->count; i++)
 		if (mesh[i] < out->meshes)
 			out->instance[count[mesh[i]]++] =
-				instance_of(&b->now->passport[b->body[i].id], &b->body[i].pose, v->eye,
-					    mesh[i] >= OB_MESHES + b->now->hulls);
+				instance_of(b, &b->body[i], v->eye, mesh[i] >= OB_MESHES + b->now->hulls);
 	const bool fine = mesh && count;
 	free(mesh);
 	free(count);

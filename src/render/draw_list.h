@@ -3,7 +3,7 @@
 #ifndef OB_RENDER_DRAW_LIST_H
 #define OB_RENDER_DRAW_LIST_H
 
-#include "measure/measure.h"
+#include "measure/colouring.h"
 #include "mesh/mesh.h"
 #include "render/mesh.h"
 #include "scene/scene.h"
@@ -30,6 +30,12 @@ void ob_view_projection(const ob_view *v, float m[16]);
 
 enum { OB_PLANES_MAX = 16 };
 
+// An object's share in the decision of an automatic camera: 1 while it moves, less and less while it rests.
+typedef struct ob_attention {
+	uint32_t generation;
+	float level; // 0: none yet
+} ob_attention;
+
 typedef struct ob_draw_item {
 	ob_pose pose;
 	double radius; // m, of its bounding sphere
@@ -40,12 +46,15 @@ typedef struct ob_draw_item {
 typedef struct ob_draw_list {
 	const ob_mesh *mesh; // [meshes] of the scene: set once, before the first fill
 	uint32_t meshes;
+	ob_colouring colouring; // likewise
 	const ob_snapshot *now;
 	ob_draw_item *body;
 	uint32_t count, capacity;
 	ob_pose plane[OB_PLANES_MAX];
 	uint32_t plane_id[OB_PLANES_MAX];
 	int planes;
+	ob_attention *attention; // [capacity], by id
+	double time; // s, of the last fill
 } ob_draw_list;
 
 // Instance data as the shaders read it (shaders/instance.glsl). 64 bytes.
@@ -67,10 +76,11 @@ typedef struct ob_instances {
 	uint32_t capacity, meshes_max;
 } ob_instances;
 
-// Evaluates all motions at time t (s); prev may be NULL. b starts zeroed. Returns false if memory runs out.
+// Evaluates all motions at time t (s); prev may be NULL. b starts zeroed. Fills with growing times carry attention on,
+// in steps of up to a second. Returns false if memory runs out.
 bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapshot *now, double t);
-// Moves an automatic camera so that it sees the moving bodies in a picture of this shape; returns any other unchanged.
-// A pure and smooth function of the bodies' positions, so that a picture depends on its time alone.
+// Moves an automatic camera so that it sees the moving bodies in a picture of this shape, from above level ground; and
+// one that follows an object, with it. Returns any other unchanged. Smooth in the bodies' positions.
 ob_camera_def ob_camera_follow(const ob_camera_def *c, const ob_draw_list *b, int width, int height);
 // Nearest to the eye first, so that hidden surfaces are not shaded.
 void ob_draw_list_sort(ob_draw_list *b, ob_vec3 eye);

@@ -4,7 +4,7 @@
 #ifndef OB_RENDER_RENDER_H
 #define OB_RENDER_RENDER_H
 
-#include "measure/measure.h"
+#include "measure/colouring.h"
 #include "scene/scene.h"
 
 typedef enum ob_quality {
@@ -19,6 +19,7 @@ typedef struct ob_render_setup {
 	// NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0", "1", ..
 	const char *device;
 	bool overlay_aabb, overlay_contacts;
+	ob_colouring colouring; // its places must outlive the renderer
 	// [meshes], the scene's, which must outlive the renderer; objects refer to them by the number in their body
 	// properties. One with a number beyond these is drawn as its collision shape
 	const ob_mesh *mesh;

@@ -57,6 +57,7 @@ static ob_renderer *create(const ob_render_setup *setup, const ob_look_def *look
 		    ob_passes_create(&r->passes, r->light, setup->mesh, setup->meshes, e)) {
 			r->list.mesh = setup->mesh;
 			r->list.meshes = setup->meshes;
+			r->list.colouring = setup->colouring;
 			return r;
 		}
 	}

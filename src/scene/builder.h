@@ -96,7 +96,8 @@ void ob_scene_add(lua_State *L, ob_shape shape);
 
 // True if the scene requested every -D; else false and e.
 bool ob_builder_check_defines(const ob_builder *b, const char *path, ob_error *e);
-// Moves the cameras into the scene, and places those that frame all objects. false: no memory.
-bool ob_builder_place_cameras(ob_builder *b);
+// Moves the cameras into the scene, and places those that frame all objects. false and e: no memory, or one follows an
+// object that never exists.
+bool ob_builder_place_cameras(ob_builder *b, const char *path, ob_error *e);
 
 #endif

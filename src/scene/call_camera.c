@@ -18,6 +18,7 @@
 typedef struct camera_fields {
 	ob_vec3 eye, target, from, velocity;
 	double fov, pan, tilt; // degrees, degrees/s
+	const char *follow, *on;
 } camera_fields;
 
 #define F(member, ...) OB_FIELD(camera_fields, member, .name = #member, __VA_ARGS__)
@@ -29,6 +30,8 @@ static const ob_field fields[] = {
 	F(velocity, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6),
 	F(pan, .kind = OB_FIELD_NUMBER, .low = -36000, .high = 36000),
 	F(tilt, .kind = OB_FIELD_NUMBER, .low = -36000, .high = 36000),
+	F(follow, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1),
+	F(on, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1),
 };
 #undef F
 
@@ -50,6 +53,8 @@ static void check_place(lua_State *L, const char *where, const camera_fields *f)
 				eye ? "target" : "eye");
 	if (eye && ob_norm(ob_sub(f->eye, f->target)) < 1e-6)
 		ob_sandbox_fail(L, "%s.target: expected a point away from the eye", where);
+	if (f->on && (f->follow || !eye))
+		ob_sandbox_fail(L, "%s.on: expected eye and target in the object's axes, and not follow, too", where);
 }
 
 static void check_new(lua_State *L, const ob_builder *b, const char *name)
@@ -74,6 +79,9 @@ static ob_camera_draft draft(const char *name, const camera_fields *f)
 		.from = isnan(f->from.x) ? ob_scale(usual_from, 1 / ob_norm(usual_from)) : f->from,
 	};
 	snprintf(c.def.name, sizeof c.def.name, "%s", name);
+	c.def.aboard = f->on != NULL;
+	if (f->on || f->follow)
+		snprintf(c.def.follow, sizeof c.def.follow, "%s", f->on ? f->on : f->follow);
 	return c;
 }
 
@@ -183,23 +191,35 @@ static void frame(const ob_scene *s, ob_camera_draft *c)
 	double x = .5 * (f.right - f.left), y = .5 * (f.above - f.below);
 	double z = -fmax((f.right + f.left) / (2 * v.tan_x), (f.above + f.below) / (2 * v.tan_y));
 	ob_vec3 side = ob_add(ob_scale(v.right, x), ob_scale(v.up, y));
-	c->def.automatic = true;
+	c->def.automatic = !*c->def.follow;
 	c->def.eye = ob_madd(side, z, v.forward);
 	c->def.target = ob_madd(c->def.eye, fmax(.5 * (f.near + f.far) - z, 1), v.forward);
 }
 
-bool ob_builder_place_cameras(ob_builder *b)
+// True if an object has this name, or a script may create one that does.
+static bool may_exist(const ob_scene *s, const char *name)
+{
+	for (uint32_t i = 0; i < s->objects; i++)
+		if (strcmp(s->object[i].passport.name, name) == 0)
+			return true;
+	return s->scripts > 0;
+}
+
+bool ob_builder_place_cameras(ob_builder *b, const char *path, ob_error *e)
 {
 	ob_scene *s = b->scene;
 	if (b->cameras == 0)
 		b->camera[b->cameras++] = draft("main", &usual);
 	s->camera = calloc(b->cameras, sizeof *s->camera);
 	if (!s->camera)
-		return false;
+		return ob_fail(e, "%s: no memory", path);
 	for (; s->cameras < b->cameras; s->cameras++) {
 		ob_camera_draft *c = &b->camera[s->cameras];
 		if (c->framed)
 			frame(s, c);
+		if (*c->def.follow && !may_exist(s, c->def.follow))
+			return ob_fail(e, "%s:1: camera \"%s\".%s: expected the name of an object, got \"%s\"", path,
+				       c->def.name, c->def.aboard ? "on" : "follow", c->def.follow);
 		s->camera[s->cameras] = c->def;
 	}
 	return true;

@@ -32,6 +32,8 @@ typedef struct ob_camera_def {
 	double pan, tilt; // rad/s, turning about the vertical and about the right-hand axis (pan-tilt)
 	double fov; // rad, vertical
 	bool automatic; // eye and target are initial; the camera follows moving objects
+	bool aboard; // eye and target lie in the axes of the object `follow`, and turn with it
+	char follow[OB_NAME_MAX]; // object that the camera moves along with; "" = none
 } ob_camera_def;
 
 typedef struct ob_look_def {

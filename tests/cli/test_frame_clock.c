@@ -77,8 +77,25 @@ static void test_later(void)
 	}
 }
 
+// Single frames at times of their own; a run that begins later has those from its time on.
+static void test_stills(void)
+{
+	static const double times[] = { 0, .5, .505, 2 };
+	bool between;
+	ob_frame_clock c = ob_frame_clock_of_stills(times, 4, .01, 0);
+	CHECK(ob_frame_clock_step(&c, &between) == 0 && !between);
+	CHECK(ob_frame_clock_need(&c, 0) == 50);
+	c.next = 2;
+	CHECK(ob_frame_clock_step(&c, &between) == 51 && between && ob_frame_clock_time(&c) == .505);
+	c.next = 4;
+	CHECK(ob_frame_clock_step(&c, &between) == UINT64_MAX);
+	c = ob_frame_clock_of_stills(times, 4, .01, 50);
+	CHECK(c.next == 1);
+}
+
 int main(void)
 {
+	test_stills();
 	test_later();
 	test_counts();
 	test_on_steps();

@@ -61,6 +61,9 @@ static void test_refused(void)
 	check_refused("s --tolerance 2m", "expected 1e-06m to 1m");
 	check_refused("s --tolerance 1mm --substeps 4", "expected one of them");
 	check_refused("s --lag 257", "expected 0 to 256");
+	check_refused("s --still 1", "--still needs --frames, --video or --raw");
+	check_refused("s --raw - --still 1,1", "--still 1,1: expected growing times");
+	check_refused("s --raw - --still 1 --fps 2", "--still gives single frames: leave --fps away");
 	check_refused("s --fps 30", "--fps needs --frames, --video or --raw");
 	check_refused("s --overlay aabb", "--overlay needs");
 	check_refused("s --raw - --size 1280", "WIDTHxHEIGHT");

@@ -143,11 +143,68 @@ static void automatic_cameras_centre(void)
 	}
 }
 
+// An automatic camera keeps the one body that moves beside six that rest, and no eye is below the ground.
+static void automatic_cameras_attend(void)
+{
+	ob_draw_list list = { 0 };
+	ob_snapshot s;
+	test_scene_start(&s, 7);
+	for (int i = 0; i < 6; i++)
+		test_scene_add(&s, OB_SHAPE_BOX, ob_v3(.3, .3, .3), ob_v3(-4 + .7 * i, 0, .3), ob_quat_identity(), red)
+			->flags = OB_MOTION_ASLEEP;
+	ob_motion *ball =
+		test_scene_add(&s, OB_SHAPE_SPHERE, ob_v3(.3, 0, 0), ob_v3(0, 0, .3), ob_quat_identity(), red);
+	ball->v = ob_v3(2, 0, 0);
+	ob_camera_def camera = test_scene_camera(ob_v3(0, -9, 3), ob_v3(0, 0, .3)), to = camera;
+	camera.automatic = true;
+	for (double t = 0; t <= 7; t += .125) {
+		CHECK(ob_draw_list_fill(&list, NULL, &s, t));
+		to = ob_camera_follow(&camera, &list, 320, 180);
+		ob_view v = ob_view_of_camera(&to, 0, 320, 180);
+		CHECK(ob_view_in_frustum(&v, ob_motion_at(ball, ob_v3(1, 1, 1), t).pose.p, -.3));
+	}
+	ob_draw_list late = { 0 };
+	CHECK(ob_draw_list_fill(&late, NULL, &s, 7)); // the same without what came before
+	CHECK_NEAR(ob_norm(ob_sub(ob_camera_follow(&camera, &late, 320, 180).eye, to.eye)), 0, 1e-4);
+	camera = test_scene_camera(ob_v3(0, -9, .05), ob_v3(0, 0, 2)); // looks up
+	camera.automatic = true;
+	CHECK(ob_camera_follow(&camera, &list, 320, 180).eye.z > .1);
+	ob_draw_list_finish(&late);
+	ob_draw_list_finish(&list);
+	test_scene_finish(&s);
+}
+
+// Cameras that follow an object keep their offset from it; cameras on it turn with it, too.
+static void cameras_go_along(void)
+{
+	ob_draw_list list = { 0 };
+	ob_snapshot s;
+	test_scene_start(&s, 1);
+	ob_quat left = ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, M_PI / 2));
+	test_scene_add(&s, OB_SHAPE_SPHERE, ob_v3(.3, 0, 0), ob_v3(5, 6, 7), left, red);
+	strcpy(s.passport[1].name, "ball");
+	CHECK(ob_draw_list_fill(&list, NULL, &s, 0));
+	ob_camera_def camera = test_scene_camera(ob_v3(-3, 0, 1), ob_v3(0, 0, 0));
+	strcpy(camera.follow, "ball");
+	ob_camera_def to = ob_camera_follow(&camera, &list, 320, 180);
+	CHECK_NEAR(ob_norm(ob_sub(to.eye, ob_v3(2, 6, 8))), 0, 1e-12);
+	CHECK_NEAR(ob_norm(ob_sub(to.target, ob_v3(5, 6, 7))), 0, 1e-12);
+	camera.aboard = true;
+	to = ob_camera_follow(&camera, &list, 320, 180);
+	CHECK_NEAR(ob_norm(ob_sub(to.eye, ob_v3(5, 3, 8))), 0, 1e-12);
+	strcpy(camera.follow, "none");
+	CHECK(ob_norm(ob_sub(ob_camera_follow(&camera, &list, 320, 180).eye, camera.eye)) == 0);
+	ob_draw_list_finish(&list);
+	test_scene_finish(&s);
+}
+
 int main(void)
 {
 	between_steps();
 	cameras_move();
 	automatic_cameras_centre();
+	automatic_cameras_attend();
+	cameras_go_along();
 	far_from_the_origin();
 	return check_end();
 }

@@ -43,6 +43,17 @@ def digest(directory):
 
 
 class Frames(program.Case):
+	def test_stills(self):
+		"""Single frames equal those of a film at these times."""
+		self.draw("film", "--duration", "1", "--fps", "10")
+		self.assertEqual(self.draw("stills", "--duration", "1", "--still", ".3,.8")["frames"], 2)
+		for still, frame in enumerate((3, 8)):
+			with open(self.path(f"film/frame-{frame:06}.png"), "rb") as a, open(self.path(f"stills/frame-{still:06}.png"), "rb") as b:
+				self.assertEqual(a.read(), b.read())
+		late = program.call("run", *BOXES, "--frames", self.path("late"), "--still", "2", "--duration", "1")
+		self.assertEqual(late.returncode, 2)
+		self.assertIn("the run ends at 1 s", late.stderr)
+
 	def draw(self, name, *words):
 		report = program.report(*BOXES, *SIZE, "--frames", self.path(name), *words)
 		names = sorted(os.listdir(self.path(name)))

@@ -37,6 +37,7 @@ _obsim()
 	--delay) mapfile -t COMPREPLY < <(compgen -W '.001 .01' -- "$word") ;;
 	--quality) mapfile -t COMPREPLY < <(compgen -W 'draft fine' -- "$word") ;;
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts caption aabb,contacts' -- "$word") ;;
+	--colour-by) mapfile -t COMPREPLY < <(compgen -W 'own simulator worker process rank island rest cost' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
 	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;
 	--engines) mapfile -t COMPREPLY < <(compgen -W 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick
@@ -45,7 +46,7 @@ _obsim()
 	--fault) mapfile -t COMPREPLY < <(compgen -W 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p= nopages:p= abort:p=' -- "$word") ;;
 	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
 	--video | --raw | --record | --series | --json | --trace | --checkpoint | --resume | --replay | --log-requests | --replay-requests) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-	--define | -D | --vary | --duration | --every | --step | --seed | --substeps | --iterations | --lag | --load | --patience | --name | --fps | --samples | \
+	--define | -D | --vary | --duration | --every | --step | --seed | --substeps | --iterations | --lag | --load | --patience | --name | --fps | --still | --samples | \
 		--camera | --interval | --repeats | --seeds | --limit | --objects) ;;
 	*)
 		case $command:$word in

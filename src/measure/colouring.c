@@ -1,0 +1,80 @@
+#include "measure/colouring.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double golden_turn = .6180339887498949; // of a circle: neighbouring numbers get distant hues
+static const float none[3] = { .28f, .30f, .33f };
+static const float touching[3] = { .85f, .30f, .04f }, flying[3] = { .08f, .55f, .80f };
+static const float balanced[3] = { .10f, .50f, .20f }, asleep[3] = { .09f, .13f, .40f };
+static const double most_substeps = 512;
+
+// Colour of a number: a hue of its own, bright for even, darker for odd turns.
+static void colour_of_number(uint32_t number, float out[3])
+{
+	const double hue = 6 * fmod(golden_turn * number, 1), value = number / 3 % 2 ? .42 : .78, least = .06;
+	for (int i = 0; i < 3; i++) {
+		const double at = fmod(hue + 4 - 2 * i, 6); // distance from the channel's own hue, in sixths
+		const double share = fmax(0, fmin(1, fabs(at - 3) - 1));
+		out[i] = (float)(least + share * (value - least));
+	}
+}
+
+static void colour_of_rest(const ob_motion *m, float out[3])
+{
+	const bool flies = !(m->flags & OB_MOTION_SWINGS) && ob_norm2(m->a) > 0;
+	memcpy(out,
+	       m->flags & OB_MOTION_ASLEEP        ? asleep
+	       : m->flags & OB_MOTION_EQUILIBRIUM ? balanced
+	       : flies                            ? flying
+						  : touching,
+	       3 * sizeof *out);
+}
+
+// From dark blue by red to light yellow.
+static void colour_of_cost(const ob_motion *m, float out[3])
+{
+	if (m->flags & OB_MOTION_RESTS || m->substeps == 0) {
+		memcpy(out, none, 3 * sizeof *out);
+		return;
+	}
+	const double share = fmin(1, log2(m->substeps) / log2(most_substeps));
+	out[0] = (float)(.03 + .87 * fmin(1, 2 * share));
+	out[1] = (float)(.03 + .72 * share * share);
+	out[2] = (float)(.22 * fmax(0, 1 - 2 * share) + .10 * share);
+}
+
+static bool has_simulator(const ob_snapshot *s, uint32_t id)
+{
+	return !(s->passport[id].flags & OB_OBJECT_PRESCRIBED);
+}
+
+void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, float colour[3])
+{
+	const ob_motion *m = &s->motion[id];
+	const uint32_t home = s->home && s->home[id] < c->workers ? s->home[id] : UINT32_MAX;
+	if (c->key == OB_COLOUR_OWN)
+		memcpy(colour, s->passport[id].colour, 3 * sizeof *colour);
+	else if (!has_simulator(s, id))
+		memcpy(colour, none, 3 * sizeof *colour);
+	else if (c->key == OB_COLOUR_SIMULATOR)
+		colour_of_number(id, colour);
+	else if (c->key == OB_COLOUR_ISLAND)
+		colour_of_number(m->flags & OB_MOTION_SWINGS ? id : m->island, colour);
+	else if (c->key == OB_COLOUR_REST)
+		colour_of_rest(m, colour);
+	else if (c->key == OB_COLOUR_COST)
+		colour_of_cost(m, colour);
+	else if (home == UINT32_MAX)
+		memcpy(colour, none, 3 * sizeof *colour);
+	else if (c->key == OB_COLOUR_WORKER)
+		colour_of_number(home, colour);
+	else if (c->key == OB_COLOUR_RANK)
+		colour_of_number(c->place[home].rank, colour);
+	else { // the first worker of its process
+		uint32_t first = 0;
+		while (c->place[first].pid != c->place[home].pid)
+			first++;
+		colour_of_number(first, colour);
+	}
+}

@@ -1,0 +1,35 @@
+// Colours that show the architecture in a picture: an object's colour by its simulator, worker, process, rank, island,
+// rest or cost. The page has the same functions (src/serve/page/colouring.js). Pure functions.
+#ifndef OB_MEASURE_COLOURING_H
+#define OB_MEASURE_COLOURING_H
+
+#include "measure/measure.h"
+
+typedef enum ob_colour_key {
+	OB_COLOUR_OWN, // as the scene has it
+	OB_COLOUR_SIMULATOR, // each object its own
+	OB_COLOUR_WORKER, // home worker of its simulator
+	OB_COLOUR_PROCESS, // process of that worker
+	OB_COLOUR_RANK, // rank of that worker
+	OB_COLOUR_ISLAND, // bodies solved together; grey: alone
+	OB_COLOUR_REST, // orange: touches; cyan: flies; green: in equilibrium; blue: asleep
+	OB_COLOUR_COST, // dark to bright: substeps that its island needs, by their logarithm; grey: not solved
+} ob_colour_key;
+#define OB_COLOUR_KEY_NAMES "own|simulator|worker|process|rank|island|rest|cost"
+
+// Process and rank of a worker
+typedef struct ob_worker_place {
+	int32_t pid;
+	uint32_t rank;
+} ob_worker_place;
+
+typedef struct ob_colouring {
+	ob_colour_key key;
+	const ob_worker_place *place; // [workers]
+	uint32_t workers;
+} ob_colouring;
+
+// Colour, linear RGB, of a present object. Objects without a simulator are grey, except for OB_COLOUR_OWN.
+void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, float colour[3]);
+
+#endif
