@@ -30,6 +30,7 @@ typedef struct ob_client {
 	ob_client_queue queue;
 	bool behind; // its queue was cleared; it gets the whole state once the rest has been sent
 	double taken_at; // s: time of its last progress, or of an empty queue
+	bool simulators; // is sent who simulates each object
 	bool contacts; // it shows them
 	uint32_t inspected; // id; UINT32_MAX: none
 	uint32_t number; // origin of its requests: from 1, of this connection only

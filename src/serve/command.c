@@ -13,7 +13,7 @@
 static const char *const kinds[OB_DO_KINDS] = {
 	[OB_DO_CREATE] = "create",     [OB_DO_REMOVE] = "remove",   [OB_DO_PAUSE] = "pause",
 	[OB_DO_RESUME] = "resume",     [OB_DO_STEP] = "step",       [OB_DO_RATE] = "rate",
-	[OB_DO_CONTACTS] = "contacts", [OB_DO_INSPECT] = "inspect",
+	[OB_DO_CONTACTS] = "contacts", [OB_DO_INSPECT] = "inspect", [OB_DO_SIMULATORS] = "simulators",
 };
 
 enum {
@@ -247,6 +247,7 @@ static bool make(reading *r, ob_command *c)
 		[OB_DO_REMOVE] = 1u << ID | 1u << GENERATION,
 		[OB_DO_RATE] = 1u << RATE,
 		[OB_DO_CONTACTS] = 1u << ON,
+		[OB_DO_SIMULATORS] = 1u << ON,
 	};
 	static const unsigned allowed[OB_DO_KINDS] = {
 		[OB_DO_CREATE] = 1u << ATTITUDE | 1u << VELOCITY | 1u << SPIN | 1u << COLOUR | 1u << FRICTION |
@@ -256,7 +257,8 @@ static bool make(reading *r, ob_command *c)
 	};
 	int kind = find_word(r->word[DO], kinds, OB_DO_KINDS);
 	if (!kind)
-		return fail(r, "expected create, remove, pause, resume, step, rate, contacts or inspect", "do") == 0;
+		return fail(r, "expected create, remove, pause, resume, step, rate, contacts, simulators or inspect",
+			    "do") == 0;
 	if (!needs(r, needed[kind] | 1u << DO, allowed[kind]))
 		return false;
 	*c = (ob_command){

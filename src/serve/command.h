@@ -26,6 +26,7 @@ typedef enum ob_command_kind {
 	OB_DO_RATE,
 	OB_DO_CONTACTS,
 	OB_DO_INSPECT,
+	OB_DO_SIMULATORS,
 	OB_DO_KINDS,
 } ob_command_kind;
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "measure/measure.h"
 #include "motion/flight.h"
 
 static void put_numbers(ob_message *m, const char *name, const double *v, int n)
@@ -53,8 +54,10 @@ ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *
 		ob_message_put_json(m, camera->name);
 		put_vec3(m, "eye", camera->eye);
 		put_vec3(m, "target", camera->target);
-		ob_message_print(m, ",\"fov\":%.9g,\"automatic\":%s}", camera->fov,
-				 camera->automatic ? "true" : "false");
+		ob_message_print(m, ",\"fov\":%.9g,\"automatic\":%s,\"aboard\":%s,\"follow\":", camera->fov,
+				 camera->automatic ? "true" : "false", camera->aboard ? "true" : "false");
+		ob_message_put_json(m, camera->follow);
+		ob_message_print(m, "}");
 	}
 	ob_message_print(m, "],\"meshes\":[");
 	for (uint32_t i = 0; mesh && i < scene->meshes; i++) {
@@ -100,18 +103,53 @@ ob_message *ob_facts_metrics(ob_host *h, uint32_t viewers)
 	return m;
 }
 
+ob_message *ob_facts_workers(const ob_host *h)
+{
+	const ob_universe *u = ob_host_universe(h);
+	ob_worker_info w;
+	ob_message *m = ob_message_new(true);
+	if (!m)
+		return NULL;
+	ob_message_print(m, "{\"workers\":[");
+	for (uint32_t i = 0; i < ob_universe_simulators(u) && ob_universe_get_worker(u, i, &w); i++) {
+		const uint32_t object = ob_worker_object(u, i);
+		ob_message_print(m, "%s[%d,%u,%u,%.3f,", i ? "," : "", w.pid, ob_universe_rank_of(u, i), w.objects,
+				 1e-9 * (double)w.cpu_ns);
+		ob_message_print(m, object == OB_NO_OBJECT ? "null]" : "%u]", object);
+	}
+	ob_message_print(m, "]}");
+	return m;
+}
+
+// True once no step will follow; then the text of the hash of its state, in hexadecimal.
+static bool find_hash(const ob_universe *u, const ob_universe_info *info, char text[20])
+{
+	ob_snapshot s = { 0 };
+	const bool ended = info->state == OB_UNIVERSE_FINISHED && ob_snapshot_take(&s, u, false, NULL);
+	if (ended)
+		snprintf(text, 20, "%016llx", (unsigned long long)ob_measure_hash(&s));
+	ob_snapshot_finish(&s);
+	return ended;
+}
+
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
 {
 	ob_universe_info info;
+	char hash[20] = "";
 	ob_universe_get_info(ob_host_universe(h), &info);
+	const bool ended = find_hash(ob_host_universe(h), &info, hash);
 	ob_message *m = ob_message_new(true);
 	if (m)
 		ob_message_print(
 			m,
 			"{\"statistics\":{\"viewers\":%u,\"objects\":%u,\"awake\":%u,\"pairs\":%u,\"islands\":%u,"
-			"\"step\":%llu,\"frozen\":%u,\"ended\":%s}}",
+			"\"step\":%llu,\"frozen\":%u,\"ended\":%s,\"deaths\":%u,\"hash\":\"%s\",\"last_death\":",
 			viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step,
-			info.frozen, info.state == OB_UNIVERSE_FINISHED ? "true" : "false");
+			info.frozen, ended ? "true" : "false", info.deaths, hash);
+	if (m) {
+		ob_message_put_json(m, info.last_death);
+		ob_message_print(m, "}}");
+	}
 	return m;
 }
 
@@ -184,6 +222,57 @@ static const char *state_of(const ob_passport *p, const ob_motion *m)
 	return ob_norm2(m->a) > 0 ? "flies" : "touches";
 }
 
+// The worker that simulates an object, and those that it simulates beside it.
+static void put_home(ob_message *m, const ob_universe *u, uint32_t id)
+{
+	enum { NAMED = 6 };
+	ob_universe_info info;
+	ob_worker_info worker;
+	ob_passport p;
+	uint32_t home, other, shared = 0;
+	ob_universe_get_info(u, &info);
+	if (!ob_universe_get_home(u, id, &home) || !ob_universe_get_worker(u, home, &worker))
+		return;
+	ob_message_print(m, ",\"home\":%u,\"pid\":%d,\"cpu_s\":%.3f,\"shares\":[", home, worker.pid,
+			 1e-9 * (double)worker.cpu_ns);
+	for (uint32_t i = 0; i < info.capacity; i++) {
+		if (!ob_universe_get_home(u, i, &other) || other != home || !ob_universe_get_passport(u, i, &p))
+			continue;
+		if (shared < NAMED) {
+			ob_message_print(m, shared ? "," : "");
+			ob_message_put_json(m, p.name);
+		}
+		shared++;
+	}
+	ob_message_print(m, "],\"shared\":%u", shared);
+}
+
+// Objects that its simulator reads: those whose bounds overlap its own. Left out if there are many.
+static void put_readings(ob_message *m, const ob_universe *u, uint32_t id)
+{
+	enum { MOST = 200 };
+	ob_universe_info info;
+	float own[6], other[6];
+	uint32_t reads[MOST], n = 0;
+	ob_universe_get_info(u, &info);
+	if (!ob_universe_get_bounds(u, id, own))
+		return;
+	for (uint32_t i = 0; i < info.capacity && n <= MOST; i++) {
+		bool near = i != id && ob_universe_get_bounds(u, i, other);
+		for (int k = 0; k < 3 && near; k++)
+			near = own[k] <= other[k + 3] && other[k] <= own[k + 3];
+		if (near && n < MOST)
+			reads[n] = i;
+		n += near;
+	}
+	if (n > MOST)
+		return;
+	ob_message_print(m, ",\"reads\":[");
+	for (uint32_t i = 0; i < n; i++)
+		ob_message_print(m, "%s%u", i ? "," : "", reads[i]);
+	ob_message_print(m, "]");
+}
+
 ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t id)
 {
 	const ob_universe *u = ob_host_universe(h);
@@ -208,7 +297,8 @@ ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t i
 		",\"state\":\"%s\",\"mass\":%.9g,\"friction\":%.9g,\"restitution\":%.9g,\"island\":%u,\"step\":%u,"
 		"\"substeps\":%u",
 		state_of(&p, &motion), p.mass, p.friction, p.restitution,
-		motion.flags & OB_MOTION_SWINGS ? id : motion.island, motion.step, motion.substeps);
+		motion.flags & OB_MOTION_SWINGS ? id : motion.island, motion.step,
+		motion.flags & OB_MOTION_RESTS ? 0 : motion.substeps);
 	put_vec3(m, "size", p.size);
 	ob_state now = ob_published_at(&motion, &p, info.time);
 	put_vec3(m, "p", now.pose.p);
@@ -219,8 +309,9 @@ ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t i
 		ob_message_put_json(m, scene->script[entry.script - 1].name);
 	}
 	if (entry.own_worker && ob_universe_get_worker(u, entry.id, &worker))
-		ob_message_print(m, ",\"worker\":%u,\"pid\":%d,\"tid\":%d,\"cpu\":%d,\"cpu_s\":%.3f", entry.id,
-				 worker.pid, worker.tid, worker.cpu, 1e-9 * (double)worker.cpu_ns);
+		ob_message_print(m, ",\"worker\":%u,\"tid\":%d,\"cpu\":%d", entry.id, worker.tid, worker.cpu);
+	put_home(m, u, id);
+	put_readings(m, u, id);
 	ob_message_print(m, "}}");
 	return m;
 }

@@ -12,6 +12,8 @@
 ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *info, const ob_content *mesh);
 // {"statistics": objects, awake, pairs, islands, step, viewers, ended ..}
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers);
+// {"workers": [[pid, rank, objects of the last step, CPU (s), object that it is busy with, or null], ..]}
+ob_message *ob_facts_workers(const ob_host *h);
 // The universe's figures in the text format of Prometheus (version 0.0.4), of less than 4 kB
 ob_message *ob_facts_metrics(ob_host *h, uint32_t viewers);
 // {"notice": the latest failure after *since (ns) that froze objects, in words}, and sets since; NULL also if there is none

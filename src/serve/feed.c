@@ -11,7 +11,7 @@ static const double tolerated = 1. / 256; // of the radius
 static const double unseen = .25 / 60; // s: also the share of the motion of a moving object
 static const double v_unit = 1e-3, w_unit = 2e-3; // m/s, rad/s: units of 16-bit velocities
 
-enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24 }; // offsets of counts in a message
+enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24, SIMULATORS_AT = 4 }; // offsets of counts in messages
 
 // State of an object as sent to viewers
 typedef struct known {
@@ -199,6 +199,14 @@ static void put_short_vec3(ob_message *out, ob_vec3 v, double one)
 	put_i16(out, v.z / one);
 }
 
+// Groups of 7 bits, low first
+static void put_number(ob_message *out, uint32_t n)
+{
+	for (; n > 127; n >>= 7)
+		ob_message_put_u8(out, n | 128);
+	ob_message_put_u8(out, n);
+}
+
 // before: the id of the previous motion in the message; UINT32_MAX: none
 static void put_motion(ob_message *out, const known *k, double time, uint32_t *before)
 {
@@ -206,10 +214,7 @@ static void put_motion(ob_message *out, const known *k, double time, uint32_t *b
 	const double q[4] = { m->q.w, m->q.x, m->q.y, m->q.z };
 	bool moves = k->kind != OB_FEED_STANDS, wide = moves && is_wide(k), begun = moves && m->t0 != time;
 	bool accelerated = moves && ob_norm2(m->a) > 0;
-	uint32_t further = k->id - *before;
-	for (; further > 127; further >>= 7)
-		ob_message_put_u8(out, further | 128);
-	ob_message_put_u8(out, further);
+	put_number(out, k->id - *before);
 	*before = k->id;
 	ob_message_put_u8(out, k->kind | (wide ? OB_FEED_WIDE : 0) | (accelerated ? OB_FEED_ACCELERATED : 0) |
 				       (begun ? OB_FEED_BEGUN : 0));
@@ -505,6 +510,43 @@ ob_message *ob_feed_contacts(ob_feed *f)
 		put_vec3(out, f->contact[i].normal);
 		ob_message_put_f32(out, f->contact[i].impulse);
 	}
+	return whole_or_none(out);
+}
+
+static unsigned state_of(const ob_motion *m)
+{
+	if (m->flags & OB_MOTION_RESTS)
+		return m->flags & OB_MOTION_ASLEEP ? 3 : 2;
+	return !(m->flags & OB_MOTION_SWINGS) && ob_norm2(m->a) > 0;
+}
+
+ob_message *ob_feed_simulators(ob_feed *f)
+{
+	uint32_t sent = 0, before = UINT32_MAX;
+	ob_message *out = ob_message_new(false);
+	if (!out)
+		return NULL;
+	ob_message_put_u8(out, OB_FEED_SIMULATORS);
+	ob_message_put_u8(out, 0);
+	ob_message_put(out, &(uint16_t){ 0 }, 2);
+	ob_message_put_u32(out, 0);
+	ob_message_put_f64(out, f->time);
+	for (size_t i = 0; i < f->objects; i++) {
+		const known *k = &f->object[i];
+		uint32_t home;
+		ob_motion m;
+		if (k->passport.flags & OB_OBJECT_PRESCRIBED || !f->source.motion(f->source.of, k->id, &m))
+			continue;
+		const bool housed = f->u && ob_universe_get_home(f->u, k->id, &home), rests = m.flags & OB_MOTION_RESTS;
+		put_number(out, k->id - before);
+		put_number(out, housed ? 1 + home : 0);
+		put_number(out, m.flags & OB_MOTION_SWINGS ? k->id : m.island);
+		put_number(out, rests ? 0 : m.substeps);
+		ob_message_put_u8(out, state_of(&m));
+		before = k->id;
+		sent++;
+	}
+	ob_message_set_u32(out, SIMULATORS_AT, sent);
 	return whole_or_none(out);
 }
 

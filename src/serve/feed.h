@@ -36,6 +36,10 @@
 //                     u8 wrap[2]: beyond an image's sides it is 0 repeated, 1 mirrored, 2 clamped. No parts: no images
 //        images       u32 width, height; then u8 red, green, blue, alpha of each pixel, the top row first
 //
+//      u8  4          u8 0    u16 0    u32 simulators    f64 time; then for each:
+//                     id less the previous one, 1 + home worker (0: unknown), island, substeps, each in groups of 7
+//                     bits, low first; u8 state: 0 touches, 1 flies, 2 in equilibrium, 3 asleep
+//
 // One thread at a time.
 #ifndef OB_SERVE_FEED_H
 #define OB_SERVE_FEED_H
@@ -47,7 +51,7 @@
 #include "mesh/mesh.h"
 #include "serve/message.h"
 
-enum { OB_FEED_MOTIONS = 1, OB_FEED_CONTACTS = 2, OB_FEED_MESH = 3 }; // first byte of a message
+enum { OB_FEED_MOTIONS = 1, OB_FEED_CONTACTS = 2, OB_FEED_MESH = 3, OB_FEED_SIMULATORS = 4 }; // first byte of a message
 enum { OB_FEED_VOID = 1, OB_FEED_PAUSED = 2 }; // its flags
 enum { // an object's
 	OB_FEED_STATIC = 1,
@@ -98,6 +102,8 @@ ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace);
 bool ob_feed_take_frozen(ob_feed *f, size_t *at, uint32_t *id);
 // All contact points. NULL: out of memory.
 ob_message *ob_feed_contacts(ob_feed *f);
+// Simulators of all objects, as of the last message of ob_feed_next. NULL: out of memory.
+ob_message *ob_feed_simulators(ob_feed *f);
 // A mesh of the scene: content, which never changes. NULL: out of memory.
 ob_message *ob_feed_mesh(const ob_mesh *m, uint32_t number);
 

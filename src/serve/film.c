@@ -12,6 +12,7 @@
 #include "serve/feed.h"
 
 enum { ANEW_AT_LEAST = 1 << 16, ANEW_AFTER = 4 }; // bytes; times the size of a whole state
+static const double simulators_interval = .25; // s, simulated, between two looks at who simulates each object
 static const size_t bytes_max = 256u << 20; // of messages: a page needs three times as much while it is made
 
 // ---- a recording as a source: "of" is the recording
@@ -93,6 +94,8 @@ typedef struct film {
 	uint32_t ids;
 	size_t since; // bytes since the last whole state
 	size_t whole; // bytes of that state
+	ob_message *simulators; // last ones written; NULL: none since the last whole state
+	double simulators_at; // s: when the next are due
 	double seconds, until; // CPU time that it may take; of the process, when it has
 } film;
 
@@ -139,6 +142,27 @@ static bool note_population(film *f)
 	return !f->objects->failed && !f->events->failed;
 }
 
+// Writes who simulates each object, if that has changed.
+static bool write_simulators(film *f)
+{
+	enum { AFTER_HEAD = 16 };
+	const double time = ob_recording_state(f->recording)->time;
+	if (f->simulators && time < f->simulators_at)
+		return true;
+	ob_message *m = ob_feed_simulators(f->feed), *last = f->simulators;
+	if (!m)
+		return false;
+	if (!last || m->size != last->size ||
+	    memcmp(m->bytes + AFTER_HEAD, last->bytes + AFTER_HEAD, m->size - AFTER_HEAD) != 0) {
+		put(f->messages, m);
+		f->since += m->size;
+	}
+	ob_message_release(last);
+	f->simulators = m;
+	f->simulators_at = time + simulators_interval;
+	return true;
+}
+
 static bool write_state(film *f)
 {
 	static const ob_pace_state pace = { .rate = 1 };
@@ -150,7 +174,7 @@ static bool write_state(film *f)
 	f->whole = f->whole ? f->whole : m->size; // the first is a whole state
 	ob_message_release(m);
 	if (f->since <= ANEW_AFTER * f->whole + ANEW_AT_LEAST)
-		return true;
+		return write_simulators(f);
 	m = ob_feed_whole(f->feed, &pace);
 	if (!m)
 		return false;
@@ -158,7 +182,9 @@ static bool write_state(film *f)
 	f->since = 0;
 	f->whole = m->size;
 	ob_message_release(m);
-	return true;
+	ob_message_release(f->simulators);
+	f->simulators = NULL;
+	return write_simulators(f);
 }
 
 static bool has_time(const film *f, const char *path, ob_error *e)
@@ -311,6 +337,7 @@ ob_message *ob_film_make(ob_recording *r, const char *path, double seconds, ob_e
 		out = pack(&f, path, e);
 	ob_feed_destroy(f.feed);
 	ob_message_release(f.messages);
+	ob_message_release(f.simulators);
 	ob_message_release(f.objects);
 	ob_message_release(f.events);
 	free(f.passport);

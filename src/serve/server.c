@@ -93,6 +93,24 @@ static void send_all(ob_server *s, ob_message *m, bool contacts)
 	ob_message_release(m);
 }
 
+// Sends who simulates each object, and what workers do, to those who have asked.
+static void send_simulators(ob_server *s)
+{
+	ob_message *simulators = NULL, *workers = NULL;
+	for (ob_client *c = s->clients; c; c = c->next) {
+		if (!c->simulators)
+			continue;
+		simulators = simulators ? simulators : ob_feed_simulators(s->feed);
+		workers = workers ? workers : ob_facts_workers(s->host);
+		if (!simulators || !workers)
+			break;
+		send_to(c, simulators);
+		send_to(c, workers);
+	}
+	ob_message_release(simulators);
+	ob_message_release(workers);
+}
+
 static void send_one(ob_client *c, ob_message *m)
 {
 	if (m && !m->failed)
@@ -156,6 +174,7 @@ static void look(lws_sorted_usec_list_t *tick)
 		send_all(s, ob_feed_contacts(s->feed), true);
 	if (details && s->clients) {
 		send_frozen(s);
+		send_simulators(s);
 		send_all(s, ob_facts_statistics(s->host, s->count), false);
 		s->details_at = begin + detail_interval;
 	}
@@ -189,6 +208,9 @@ static void carry_out(ob_server *s, ob_client *c, const ob_command *asked)
 	switch (asked->kind) {
 	case OB_DO_CONTACTS:
 		c->contacts = asked->on;
+		return;
+	case OB_DO_SIMULATORS:
+		c->simulators = asked->on;
 		return;
 	case OB_DO_INSPECT:
 		c->inspected = asked->id;

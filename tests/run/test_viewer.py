@@ -123,6 +123,30 @@ class Viewer(server.Case):
 		self.assertEqual(b.console(), [])
 		self.end(saying="was killed by SIGKILL")
 
+	def test_simulators(self):
+		"""Colours and the strip of workers show who simulates what; lines, what the picked object reads."""
+		self.serve("-D", "n=8", "--isolation", "process", "--workers", "2", "--duration", "6", scene="falling_boxes")
+		b = self.open()
+		b.wait("obsim.universe.told > 2")
+		b.key("m")
+		b.wait("document.querySelectorAll('#workers tbody tr').length === 2 && obsim.universe.simulators.size === 8")
+		colours = "const s = document.querySelector('#colours'); s.value = arguments[0]; s.dispatchEvent(new Event('change'))"
+		b.wait("document.querySelector('#statistics').textContent.includes(' 0 awake')")
+		pictures = []
+		for key in ("own", "simulator", "rest"):
+			b.run(colours, key)
+			pictures.append(self.still(b))
+		b.run("obsim.pick([...obsim.universe.simulators.keys()][0])")
+		b.wait("document.querySelector('#details dl').textContent.includes('reads')")
+		pictures.append(self.still(b))
+		self.assertEqual(len(set(pictures)), 4)
+		b.wait("document.querySelector('#notice').textContent.includes('The run has ended')")
+		self.assertIn(program.report(program.scene("falling_boxes"), "-D", "n=8", "--duration", "6")["state_hash"],
+			b.run("return document.querySelector('#notice').textContent"))
+		self.keep(b, "simulators.png")
+		self.assertEqual(b.console(), [])
+		self.end()
+
 	def test_viewpoint(self):
 		"""Each looks from elsewhere: round it, along, with the head turned."""
 		self.serve("--paused")
@@ -148,6 +172,8 @@ class Viewer(server.Case):
 		self.assertLess(move(places[2][:3], places[3][:3]), 1e-9, "to turn the head is not to move")
 		self.assertGreater(move(places[2][3:], places[3][3:]), .01)
 		self.assertEqual(eye(other), still)
+		one.pointer(("move", 500, 300), ("down", 0), ("move", 500, 20), ("up", 0)) # upwards, not under the ground
+		self.assertGreater(eye(one)[2], 0)
 		for b in one, other:
 			self.assertEqual(b.console(), [])
 		self.end()
@@ -261,6 +287,11 @@ class Viewer(server.Case):
 		b.key("?")
 		self.assertTrue(b.run("return !document.querySelector('#help').hidden"))
 		self.keep(b, "tools.png")
+		b.key("\ue00c") # escape closes help first, and then the panel
+		self.assertEqual(b.run("return ['help', 'details'].map((id) => document.querySelector('#' + id).hidden)"), [True, False])
+		b.key("\ue00c")
+		self.assertTrue(b.run("return document.querySelector('#details').hidden"))
+		b.run("obsim.pick(1)")
 		b.key("\ue017") # delete
 		b.wait("!obsim.universe.objects.has(1)")
 		self.assertEqual(b.console(), [])

@@ -96,7 +96,7 @@ static bool has(const unsigned char *bytes, size_t size, const char *text)
 static void check_messages(const unsigned char *bytes, size_t size)
 {
 	double time = -1;
-	uint32_t number = 0, told = 0, anew = 0;
+	uint32_t number = 0, told = 0, anew = 0, simulators = 0;
 	size_t at = 0, whole = 0;
 	for (; at + 4 <= size; number++) {
 		uint32_t n = u32_at(bytes + at);
@@ -113,6 +113,11 @@ static void check_messages(const unsigned char *bytes, size_t size)
 			continue;
 		double now;
 		memcpy(&now, m + 8, sizeof now);
+		if (m[0] == OB_FEED_SIMULATORS) {
+			CHECK(now == time && u32_at(m + 4) == (now < 2 ? OBJECTS - 2 : OBJECTS - 1));
+			simulators++;
+			continue;
+		}
 		CHECK(m[0] == OB_FEED_MOTIONS && now >= time);
 		if (m[1] & OB_FEED_VOID) {
 			CHECK(now == time || number == 2);
@@ -126,6 +131,7 @@ static void check_messages(const unsigned char *bytes, size_t size)
 		time = now;
 	}
 	CHECK(at == size && told == STATES - 1);
+	CHECK(simulators >= anew && simulators <= anew + 2); // with each whole state, and once they have changed
 	CHECK(anew > 1 && whole < size / 3);
 }
 

@@ -1,11 +1,14 @@
 // A viewer's own viewpoint: it orbits a target (drag), moves (right button, shift, two fingers, arrows), turns its head
 // (alt, or keys), comes nearer and goes away (wheel, pinch). Until the user moves it, an automatic one follows moving
 // objects.
+import { turned } from './motion.js';
+
 const STEEPEST = 89 * Math.PI / 180;
 const LOST_RANGES = 1.5, SPREAD = 2.05, NEAREST = 0.3; // for an automatic viewpoint: see src/render/draw_list.c
 const NARROWEST = 1.3; // width over height, below which the angle of view grows with the height
 const FADE = 0.2; // s, in which a viewpoint approaches a followed object
 const NEAR = 30; // distance to it, in radii
+const CLEARANCE = 0.05; // height of the eye above the ground, relative to its distance
 
 const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -14,19 +17,21 @@ const unit = (a) => add([0, 0, 0], a, 1 / Math.hypot(...a));
 
 export class Camera {
 	constructor() {
+		this.ground = -Infinity; // m: height of level ground, under which an eye that began above it does not go
 		this.set({ eye: [8, -10, 6], target: [0, 0, 1], fov: 0.8 });
 	}
 
-	set({ eye, target, fov, automatic }) {
+	set({ eye, target, fov, automatic, follow, aboard }) {
 		const d = add(target, eye, -1), range = Math.hypot(...d) || 1;
 		this.target = [...target];
 		this.range = range;
 		this.azimuth = Math.atan2(d[1], d[0]);
 		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, Math.asin(d[2] / range)));
 		this.fov = fov;
-		this.first = { target: this.target, range };
+		this.first = { target: [...target], range, elevation: this.elevation, height: eye[2] };
 		this.following = automatic === true;
 		this.off = null;
+		this.goes = follow ? { name: follow, aboard, eye, target } : null; // along with the object of this name
 	}
 
 	get forward() {
@@ -35,28 +40,47 @@ export class Camera {
 	}
 	get eye() { return add(this.target, this.forward, -this.range); }
 
+	get floor() { return this.first.height > this.ground ? this.ground : -Infinity; }
+
 	orbit(right, up) {
-		this.following = false;
+		this.leave();
 		this.azimuth -= right;
 		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, this.elevation - up));
+		this.keepAbove();
+	}
+	leave() {
+		this.following = false;
+		this.goes = null;
+	}
+	// Tilts until the eye is above the ground, and lifts the target if that does not suffice.
+	keepAbove() {
+		const lowest = this.floor + CLEARANCE * this.range;
+		if (this.eye[2] >= lowest)
+			return;
+		this.target[2] = Math.max(this.target[2], lowest - this.range * Math.sin(STEEPEST));
+		this.elevation = Math.max(-STEEPEST, Math.min(this.elevation, Math.asin((this.target[2] - lowest) / this.range)));
 	}
 	// The head turns, the eye stays.
 	turn(right, up) {
 		const eye = this.eye;
 		this.off = null;
-		this.orbit(right, -up);
+		this.leave();
+		this.azimuth -= right;
+		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, this.elevation + up));
 		this.target = add(eye, this.forward, this.range);
 	}
 	// m, along the picture and into it
 	translate(right, up, ahead) {
 		const f = this.forward, r = unit(cross(f, [0, 0, 1])), u = cross(r, f);
-		this.following = false;
+		this.leave();
 		this.off = null;
 		this.target = add(add(add(this.target, r, right), u, up), f, ahead);
+		this.target[2] += Math.max(0, this.floor + CLEARANCE * this.range - this.eye[2]);
 	}
 	zoom(factor) {
 		this.range = this.near = Math.max(0.05, Math.min(1e5, this.range * factor));
-		this.following = false;
+		this.leave();
+		this.keepAbove();
 	}
 
 	// From now on it follows a body at p, and orbits it, until it is moved away.
@@ -72,21 +96,36 @@ export class Camera {
 		this.off = this.off.map((x) => x * left);
 		this.target = add(p, this.off);
 		this.range = this.near + left * (this.range - this.near);
+		this.keepAbove();
+	}
+
+	// Goes along with the object that the scene has named, as ob_camera_follow of the renderer.
+	go(bodies) {
+		const body = bodies.find((b) => b.name === this.goes.name);
+		if (!body)
+			return;
+		const { eye, target, aboard } = this.goes;
+		const place = (v) => add(body.p, aboard ? turned(body.q, v) : add(v, target, -1));
+		const [from, to] = [place(eye), place(target)], d = add(to, from, -1);
+		this.target = to;
+		this.azimuth = Math.atan2(d[1], d[0]);
+		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, Math.asin(d[2] / this.range)));
 	}
 
 	// Places the viewpoint to see moving objects, as ob_camera_follow of the renderer.
 	follow(bodies, width, height) {
 		const v = this.view(width, height), { target, range } = this.first, moving = [];
-		let all = 0, middle = [0, 0, 0];
-		for (const { p, radius, fixed } of bodies) {
+		let all = 0, present = 0, middle = [0, 0, 0];
+		for (const { p, radius, fixed, attention } of bodies) {
 			if (fixed || !Number.isFinite(radius))
 				continue;
-			const d = add(p, target, -1), weight = 1 / (1 + (dot(d, d) / (LOST_RANGES * range) ** 2) ** 2);
+			const d = add(p, target, -1), presence = 1 / (1 + (dot(d, d) / (LOST_RANGES * range) ** 2) ** 2), weight = attention * presence;
+			present += presence;
 			moving.push({ p, radius, weight });
 			all += weight;
 			middle = add(middle, p, weight);
 		}
-		if (all < 0.5)
+		if (present < 0.5)
 			return;
 		middle = [0, 1, 2].map((k) => middle[k] / all);
 		const placed = moving.map(({ p, radius, weight }) => {
@@ -114,6 +153,8 @@ export class Camera {
 		};
 		this.target = add(add(middle, v.right, centre('right', v.tanX)), v.up, centre('up', v.tanY));
 		this.range = away;
+		this.elevation = this.first.elevation;
+		this.keepAbove();
 	}
 
 	// The axes and the frustum, as ob_view of the renderer.

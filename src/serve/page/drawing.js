@@ -605,8 +605,16 @@ export class Drawing {
 		gl.drawArrays(gl.TRIANGLE_STRIP, 0, vertices);
 	}
 
-	// overlay: { from, to (m, world), colour (sRGB, alpha), width (px) }
+	// overlay: { from, to (m, world), colour (sRGB, alpha), width (px), over: true: bodies do not hide it }
 	drawSegments(overlay, view) {
+		const over = overlay.filter((s) => s.over);
+		this.drawSegmentsOf(over.length ? overlay.filter((s) => !s.over) : overlay, view);
+		this.gl.disable(this.gl.DEPTH_TEST);
+		this.drawSegmentsOf(over, view);
+		this.gl.enable(this.gl.DEPTH_TEST);
+	}
+
+	drawSegmentsOf(overlay, view) {
 		const gl = this.gl, data = new Float32Array(SEGMENT * overlay.length);
 		overlay.forEach((s, i) => data.set([...sub(s.from, view.eye), ...sub(s.to, view.eye), ...s.colour, s.width], SEGMENT * i));
 		gl.bindVertexArray(this.segmentArray);

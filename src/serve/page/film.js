@@ -3,7 +3,7 @@
 import { FREE, STANDS, normalize, poseAt } from './motion.js';
 import { Universe, between } from './universe.js';
 
-const LENGTH = 4, TIME_AT = 8, FLAGS_AT = 1, VOID = 1, JSON_BEGINS = 0x7b, MESH_BEGINS = 3; // of a message
+const LENGTH = 4, TIME_AT = 8, FLAGS_AT = 1, VOID = 1, JSON_BEGINS = 0x7b, MESH_BEGINS = 3, SIMULATORS_BEGIN = 4; // of a message
 const JUMP = 1; // s: for a longer jump, it begins at a whole state
 const NEWS = 0.15; // s of wall time between two details of the picked object
 
@@ -46,7 +46,7 @@ export class Film extends Universe {
 			else if (first === MESH_BEGINS)
 				this.hear(data);
 			else
-				this.steps.push({ time: view.getFloat64(at - size + TIME_AT, true), data, anew: (view.getUint8(at - size + FLAGS_AT) & VOID) !== 0 });
+				this.steps.push({ aside: first === SIMULATORS_BEGIN, time: view.getFloat64(at - size + TIME_AT, true), data, anew: (view.getUint8(at - size + FLAGS_AT) & VOID) !== 0 });
 		}
 		this.seek(this.begin);
 		this.rate = 1;
@@ -72,8 +72,8 @@ export class Film extends Universe {
 			const step = this.steps[++this.shown];
 			if (step.anew)
 				continue; // only for a start there
-			this.since = this.heard;
-			this.heard = step.time;
+			if (!step.aside)
+				[this.since, this.heard] = [this.heard, step.time];
 			this.hear(step.data);
 		}
 		Object.assign(this, { rate, paused });
@@ -128,6 +128,8 @@ export class Film extends Universe {
 		case 'rate':
 			this.rate = command.rate;
 			break;
+		case 'simulators':
+			break; // it has them anyway
 		case 'inspect':
 			this.inspected = command.id;
 			if (command.id !== undefined)

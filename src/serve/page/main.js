@@ -6,9 +6,12 @@ import { Panel } from './panel.js';
 import { isEndless, isHulled, outlineOf } from './shapes.js';
 import { Universe } from './universe.js';
 import { turned } from './motion.js';
+import { colourBy } from './colouring.js';
+import { Workers } from './workers.js';
 
 const THROWN = 12; // m/s
 const PICKED = [1, 0.7, 0.33, 1];
+const READING = [1, 0.42, 0.7, 0.9];
 const HINT = 'drag to go round · right button to move · wheel to come nearer · click an object to know it · ? for more';
 const HINT_TOUCH = 'drag to go round · two fingers to move and come nearer · tap an object to know it';
 const AGAIN = [0.5, 1, 2, 5]; // s: waits before attempts to reconnect
@@ -17,21 +20,27 @@ const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const recording = document.querySelector('meta[name=recording]').content;
-const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel();
-let drawing, look, cameras = [], shownCamera = 0, picked = null, tries = 0, frames = 0, framesTold = 0, shown = '';
+const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers();
+let drawing, look, cameras = [], shownCamera = 0, picked = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '';
 
 // ---- the picture
 
 function bodies() {
-	const out = [];
+	const out = [], key = workers.key, others = key !== 'own';
 	for (const o of universe.objects.values()) {
 		const pose = universe.pose(o);
 		const mesh = drawing.looks.get(o.mesh);
 		if (pose)
-			out.push({ id: o.id, shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour, meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, kind: o.motion.kind, shown: o.colour,
+			out.push({ id: o.id, name: o.name, attention: universe.attention(o), shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour && !others, meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, kind: o.motion.kind, shown: colourBy(key, o, universe.simulators.get(o.id), workers.list),
 				roughness: o.roughness, metal: o.metal, ...pose });
 	}
 	return out;
+}
+
+// Lines from the picked object to those that its simulator reads.
+function readings(list) {
+	const from = list.find((b) => b.id === picked), others = new Set(read);
+	return from ? list.filter((b) => others.has(b.id) && !isEndless(b.shape)).map((b) => ({ from: from.p, to: b.p, colour: READING, width: 2, over: true })) : [];
 }
 
 function overlay(list, view) {
@@ -42,7 +51,7 @@ function overlay(list, view) {
 		else if (!isEndless(b.shape) && (panel.on.boxes || b.frozen))
 			out.push(...boxSegments(b, edgeColour(b)));
 	}
-	return out;
+	return panel.on.simulators ? out.concat(readings(list)) : out;
 }
 
 // Follows the picked object with the viewpoint, if requested.
@@ -66,17 +75,25 @@ function frame(now) {
 	const list = bodies();
 	if (camera.following)
 		camera.follow(list, width, height);
+	if (camera.goes)
+		camera.go(list);
 	accompany(list, seconds);
 	const view = camera.view(width, height);
 	// An unchanged picture is not drawn again: a paused universe costs nothing.
 	const { on } = panel, seen = [universe.time, universe.news, drawing.looks.size, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
-		on.contacts].join();
+		on.contacts, on.simulators, workers.key, read].join();
 	if (seen !== shown)
 		drawing.draw(list, view, look, overlay(list, view));
 	shown = seen;
 	panel.clock(universe.time, universe.rate, universe.paused);
 	frames++;
 	requestAnimationFrame(frame);
+}
+
+// m: height of the highest level ground.
+function groundHeight() {
+	const level = [...universe.objects.values()].filter((o) => isEndless(o.shape) && o.motion && turned(o.motion.q, [0, 0, 1])[2] > 0.999);
+	return Math.max(...level.map((o) => o.motion.p[2]));
 }
 
 // ---- picking
@@ -144,6 +161,7 @@ function pointAt(x, y) {
 
 function pick(id) {
 	picked = id;
+	read = [];
 	if (id === null)
 		panel.details(null);
 	universe.send(id === null ? { do: 'inspect' } : { do: 'inspect', id });
@@ -180,6 +198,10 @@ function throwOne() {
 
 // ---- requests
 
+function askSimulators() {
+	universe.send({ do: 'simulators', on: panel.on.simulators || workers.key !== 'own' });
+}
+
 panel.addEventListener('pause', () => universe.send({ do: universe.paused ? 'resume' : 'pause' }));
 panel.addEventListener('step', () => universe.send({ do: 'step' }));
 if (recording) {
@@ -188,6 +210,16 @@ if (recording) {
 }
 panel.addEventListener('rate', (e) => universe.send({ do: 'rate', rate: e.detail }));
 panel.addEventListener('contacts', (e) => universe.send({ do: 'contacts', on: e.detail }));
+panel.addEventListener('simulators', (e) => {
+	workers.show(e.detail);
+	askSimulators();
+});
+workers.addEventListener('colours', askSimulators);
+panel.addEventListener('kill', () => {
+	const o = universe.objects.get(picked);
+	if (o)
+		universe.send({ do: 'kill', id: o.id, generation: o.generation });
+});
 panel.addEventListener('throw', throwOne);
 panel.addEventListener('follow', () => {
 	if (picked === null)
@@ -231,7 +263,10 @@ universe.addEventListener('welcome', (e) => {
 	panel.notice(frames ? '' : matchMedia('(pointer: coarse)').matches ? HINT_TOUCH : HINT, 8);
 	if (panel.on.contacts)
 		universe.send({ do: 'contacts', on: true });
+	if (panel.on.simulators || workers.key !== 'own')
+		askSimulators();
 });
+universe.addEventListener('workers', (e) => workers.hear(e.detail, (id) => universe.objects.get(id)?.name || `object ${id}`));
 // Fetches meshes, which a browser keeps as contents; a recording holds its own. Until they arrive, objects show their
 // collision shapes.
 async function fetchMeshes(paths) {
@@ -245,15 +280,24 @@ async function fetchMeshes(paths) {
 }
 
 universe.addEventListener('mesh', (e) => drawing.addMesh(e.detail));
-universe.addEventListener('film', (e) => panel.film(e.detail));
-universe.addEventListener('statistics', (e) => panel.statistics(e.detail));
+universe.addEventListener('population', () => { camera.ground = groundHeight(); });
+universe.addEventListener('film', (e) => {
+	panel.film(e.detail);
+	workers.film();
+});
+universe.addEventListener('statistics', (e) => {
+	universe.ended = e.detail.ended;
+	panel.statistics(e.detail);
+});
 setInterval(() => {
-	panel.speed(frames - framesTold, drawing?.software);
+	panel.speed(frames - framesTold, drawing?.software, frames > 0);
 	framesTold = frames;
 }, 1000);
 universe.addEventListener('details', (e) => {
-	if (e.detail.id === picked)
-		panel.details(e.detail);
+	if (e.detail.id !== picked)
+		return;
+	panel.details(e.detail);
+	read = e.detail.reads ?? [];
 });
 universe.addEventListener('error', (e) => panel.notice(e.detail));
 universe.addEventListener('notice', (e) => panel.notice(e.detail, 15));
@@ -274,5 +318,5 @@ async function begin() {
 }
 
 // For tests and the console
-window.obsim = { universe, camera, panel, pick, frames: () => frames, drawing: () => drawing };
+window.obsim = { universe, camera, panel, workers, pick, frames: () => frames, drawing: () => drawing };
 begin().catch((error) => panel.notice(error.message, 0));

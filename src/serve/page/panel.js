@@ -5,8 +5,8 @@ const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, meta
 	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08], 0.62, 0], steel: [7800, 0.4, 0.3, [0.56, 0.57, 0.58], 0.32, 1],
 	rubber: [1100, 0.9, 0.7, [0.09, 0.09, 0.11], 0.8, 0], ice: [917, 0.03, 0.1, [0.55, 0.72, 0.83], 0.1, 0],
 };
-const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c: 'contacts', v: 'view', f: 'follow', '?': 'help', t: 'throw', Delete: 'remove',
-	Escape: 'deselect' };
+const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c: 'contacts', v: 'view', m: 'simulators', f: 'follow', '?': 'help', t: 'throw', Delete: 'remove',
+	Escape: 'leave' };
 
 const MARKS_MOST = 400; // on the time bar
 const MORE = new Set(['friction', 'restitution', 'island of', 'substeps']); // details that small screens leave out
@@ -19,7 +19,7 @@ export class Panel extends EventTarget {
 	constructor() {
 		super();
 		this.off = new Set(); // unavailable controls
-		this.on = { make: false, boxes: false, contacts: false, help: false };
+		this.on = { make: false, boxes: false, contacts: false, simulators: false, help: false };
 		document.addEventListener('click', (e) => {
 			const button = e.target.closest('[data-do]');
 			if (button)
@@ -44,17 +44,27 @@ export class Panel extends EventTarget {
 		return what !== undefined;
 	}
 
+	// Esc leaves one thing after the other, the uppermost first.
+	leave() {
+		const open = ['help', 'make'].find((what) => this.on[what]);
+		this.ask(open ?? 'deselect');
+	}
+
 	ask(what) {
+		if (what === 'leave')
+			return this.leave();
 		if (this.off.has(what))
-			return;
+			return undefined;
 		if (what in this.on) {
 			this.on[what] = !this.on[what];
 			$(`[data-do=${what}]`).setAttribute('aria-pressed', this.on[what]);
 			$('#maker').hidden = !this.on.make;
 			$('#help').hidden = !this.on.help;
 			$('#picture').classList.toggle('making', this.on.make);
+			document.body.classList.toggle('shows-workers', this.on.simulators);
 		}
 		this.tell(what, this.on[what]);
+		return undefined;
 	}
 
 	// Object to create, without its place: { shape, size, mass, colour .. } of a command, and its height over the
@@ -79,15 +89,17 @@ export class Panel extends EventTarget {
 			for (const button of document.querySelectorAll(`[data-do=${what}]`))
 				button.disabled = w.look_only;
 		$('#rate').disabled = w.look_only;
+		this.looksOnly = w.look_only;
+		this.isolation = w.isolation;
 		this.pool = `one of ${w.workers} ${w.isolation === 'process' ? 'processes' : 'threads'}`;
 	}
 
 	// Shows if the viewpoint follows the picked object
 	follows(on) { $('[data-do=follow]').setAttribute('aria-pressed', on); }
 
-	// Shows frames per second; software rendering has few.
-	speed(frames, software) {
-		$('#speed').textContent = `${frames} frames/s${software ? ', drawn without a GPU' : ''}`;
+	// Shows frames per second, from the first on; software rendering has few.
+	speed(frames, software, began) {
+		$('#speed').textContent = !began ? '' : `${frames} frame${frames === 1 ? '' : 's'}/s${software ? ', drawn without a GPU' : ''}`;
 	}
 
 	// Shows the controls of a recording: a time bar, and none that change objects.
@@ -119,7 +131,13 @@ export class Panel extends EventTarget {
 
 	statistics(s) {
 		$('#statistics').textContent = `${s.objects} objects, ${s.awake} awake, ${s.islands} islands, ` +
-			`${s.viewers} viewer${s.viewers === 1 ? '' : 's'}${s.frozen ? `, ${s.frozen} frozen` : ''}${s.ended ? ', ended' : ''}`;
+			`${s.viewers} viewer${s.viewers === 1 ? '' : 's'}${s.frozen ? `, ${s.frozen} frozen` : ''}${s.deaths ? `, ${s.deaths} death${s.deaths === 1 ? '' : 's'}` : ''}`;
+		if (this.deaths !== undefined && s.deaths > this.deaths)
+			this.notice(`${s.last_death}. All simulators were started again from the last checkpoint, and reach the same bits.`, 8);
+		else if (s.ended && !this.ended)
+			this.notice(`The run has ended after step ${s.step}${s.deaths ? `, with ${s.deaths} deaths` : ''}; hash of its state: ${s.hash}`, 0);
+		this.deaths = s.deaths;
+		this.ended = s.ended;
 	}
 
 	clock(time, rate, paused) {
@@ -142,13 +160,14 @@ export class Panel extends EventTarget {
 			facts.push(['mass', `${number(d.mass, 4)} kg`], ['friction', number(d.friction)], ['restitution', number(d.restitution)],
 				['position', `${vector(d.p)} m`], ['velocity', `${vector(d.v)} m/s`], ['rotation', `${vector(d.w)} rad/s`]);
 		if (!d.gone && d.mass > 0 && d.island !== undefined)
-			facts.push(['island of', d.island], ['substeps', d.substeps]);
+			facts.push(['island of', d.island], ['substeps', d.substeps || 'none: it rests']);
 		if (d.script)
 			facts.push(['script', d.script]);
-		if (d.worker === undefined && d.island !== undefined)
+		if (d.home !== undefined)
+			facts.push(['simulator', `worker ${d.home}, pid ${d.pid}`], ['CPU used', `${d.cpu_s.toFixed(2)} s`], ['reads', d.reads === undefined ? 'many' : `${d.reads.length} others`]);
+		else if (d.island !== undefined && d.mass > 0)
 			facts.push(['simulator', this.pool]);
-		else if (d.worker !== undefined)
-			facts.push(['simulator', `worker ${d.worker}, pid ${d.pid}`], ['CPU used', `${d.cpu_s.toFixed(2)} s`]);
+		this.offerKill(d);
 		$('#details dl').replaceChildren(...facts.flatMap(([name, value]) => {
 			const dt = document.createElement('dt'), dd = document.createElement('dd');
 			dt.className = dd.className = MORE.has(name) ? 'more' : '';
@@ -156,6 +175,18 @@ export class Panel extends EventTarget {
 			dd.textContent = value;
 			return [dt, dd];
 		}));
+	}
+
+	// Offers to kill the process that simulates the picked object, with the names of all objects in it.
+	offerKill(d) {
+		const button = $('[data-do=kill]'), why = $('#details .why'), shared = d.shares ?? [];
+		button.hidden = d.gone || d.home === undefined || this.looksOnly;
+		button.disabled = this.isolation !== 'process';
+		button.textContent = `Kill worker ${d.home}`;
+		why.hidden = button.hidden;
+		const named = shared.map((name, i) => name || `object ${i}`).join(', '), more = (d.shared ?? 0) - shared.length;
+		why.textContent = button.disabled ? 'Its simulator is a thread of one process, which a kill would end as a whole; serve with --isolation process.' :
+			`It simulates ${named}${more > 0 ? ` and ${more} more` : ''}. All simulators start again from the last checkpoint, and reach the same bits.`;
 	}
 
 	// Shows a notice for some seconds, or, with none, until the next

@@ -5,12 +5,13 @@ import { isHulled, radiusOf } from './shapes.js';
 const DELAY = 0.05; // s of wall time by which the shown time lags, so that messages arrive before they are needed
 const PULL = 5; // 1/s: rate at which its clock approaches the universe's
 const LOST = 0.5, SETTLED = 1e-4; // s: from this difference on, the clock is set; below that, it stands
-const MOTIONS = 1, CONTACTS = 2, MESH = 3, VOID = 1, PAUSED = 2; // of a message
+const MOTIONS = 1, CONTACTS = 2, MESH = 3, SIMULATORS = 4, VOID = 1, PAUSED = 2; // of a message
 const MESH_HEAD = 12, MESH_VERTEX = 12; // bytes; floats
 const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
 const BLEND = 0.08; // s, simulated, to blend a prediction into a new motion
+const ATTENTION_FADE = 1, ATTENTION_LEAST = 0.05, ATTENTION_GAP = 1; // s, share, s: as in src/render/draw_list.c
 
 class Reader {
 	constructor(buffer) {
@@ -46,12 +47,14 @@ export class Universe extends EventTarget {
 		this.url = url;
 		this.objects = new Map();
 		this.contacts = [];
+		this.simulators = new Map(); // by id: { home: worker, -1 unknown, island, substeps, state }
 		this.told = 0; // s: newest received time
 		this.toldAt = 0; // s of wall time of its arrival
 		this.speed = 0; // simulated seconds a second, measured
 		this.time = 0; // s: the shown time
 		this.rate = 1;
 		this.paused = false;
+		this.ended = false; // no step will follow
 		this.bytes = this.messages = 0;
 		this.news = 0; // grows with each received change
 	}
@@ -84,6 +87,8 @@ export class Universe extends EventTarget {
 			this.hearMotions(r);
 		else if (kind === CONTACTS)
 			this.hearContacts(r);
+		else if (kind === SIMULATORS)
+			this.hearSimulators(r);
 		else if (kind === MESH)
 			this.hearMesh(r, data);
 	}
@@ -164,6 +169,19 @@ export class Universe extends EventTarget {
 		this.contacts = Array.from({ length: n }, () => ({ p: r.vec3(), n: r.vec3(), impulse: r.f32() }));
 	}
 
+	hearSimulators(r) {
+		r.u8();
+		r.u16();
+		const n = r.u32();
+		r.f64();
+		this.simulators.clear();
+		for (let i = 0, id = -1; i < n; i++) {
+			id = (id + r.number()) % 2 ** 32;
+			this.simulators.set(id, { home: r.number() - 1, island: r.number(), substeps: r.number(), state: r.u8() });
+		}
+		this.news++;
+	}
+
 	// The clock follows received times, at any rate.
 	follow(time) {
 		const now = performance.now() / 1000, since = now - this.toldAt;
@@ -177,14 +195,23 @@ export class Universe extends EventTarget {
 
 	// Advances the shown time; call it once a frame.
 	advance(seconds) {
-		const speed = this.paused ? 0 : this.speed;
+		const speed = this.paused || this.ended ? 0 : this.speed;
 		const goal = this.told + speed * Math.min(performance.now() / 1000 - this.toldAt - DELAY, 0.25);
 		const off = goal - this.time;
-		if (Math.abs(off) > LOST * Math.max(1, speed) || (this.paused && Math.abs(off) < SETTLED))
+		if (Math.abs(off) > LOST * Math.max(1, speed) || (speed === 0 && Math.abs(off) < SETTLED))
 			this.time = goal;
 		else
 			this.time += speed * seconds + off * Math.min(1, PULL * seconds);
 		return this.time;
+	}
+
+	// Attention to a body, for an automatic viewpoint: 1 while it moves, less and less while it rests.
+	attention(body) {
+		const rests = body.motion.kind === STANDS && !body.fixed, goal = rests ? ATTENTION_LEAST : 1, at = body.attended;
+		const goesOn = at && this.time >= at.time && this.time - at.time <= ATTENTION_GAP;
+		const from = goesOn ? at.level : 1, since = goesOn ? this.time - at.time : Math.max(0, this.time - body.motion.t0);
+		body.attended = { time: this.time, level: goal + (from - goal) * Math.exp(-since / ATTENTION_FADE) };
+		return body.attended.level;
 	}
 
 	// Pose of a body at that time; null: not received yet.

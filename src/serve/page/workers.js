@@ -1,0 +1,60 @@
+// The strip of workers: colour, process, CPU, and what each does now; and the choice of colours.
+import { colourOfNumber, cssColour } from './colouring.js';
+
+const SPAN = 1; // s over which a share of CPU is taken: the host refreshes CPU times twice a second
+const MOST = 16; // rows: beyond that, the workers with the most CPU
+
+const $ = (selector) => document.querySelector(selector);
+
+export class Workers extends EventTarget {
+	constructor() {
+		super();
+		this.list = []; // { pid, rank, objects, cpu, busy, share }, by worker
+		this.marks = []; // { at, cpu } a worker, from which shares are taken
+		$('#colours').addEventListener('change', () => this.dispatchEvent(new CustomEvent('colours', { detail: this.key })));
+	}
+
+	get key() { return $('#colours').value; }
+
+	show(on) { $('#workers').hidden = !on; }
+
+	// A recording does not hold where simulators ran.
+	film() {
+		for (const option of $('#colours').options)
+			option.hidden = ['worker', 'process', 'rank'].includes(option.value);
+		$('#workers table').hidden = true;
+	}
+
+	hear(rows, nameOf, now = performance.now() / 1000) {
+		this.list = rows.map(([pid, rank, objects, cpu, busy], i) => {
+			const mark = this.marks[i] ??= { at: now, cpu, share: null, pid }, span = now - mark.at;
+			if (mark.pid !== pid)
+				Object.assign(mark, { at: now, cpu, share: null, pid });
+			else if (span >= SPAN)
+				Object.assign(mark, { at: now, share: Math.max(0, cpu - mark.cpu) / span, cpu });
+			return { pid, rank, objects, cpu, busy, share: mark.share };
+		});
+		if ($('#workers').hidden)
+			return;
+		const rowsShown = this.list.map((w, i) => ({ ...w, i }));
+		if (rowsShown.length > MOST)
+			rowsShown.sort((a, b) => (b.share ?? 0) - (a.share ?? 0) || a.i - b.i);
+		$('#workers tbody').replaceChildren(...rowsShown.slice(0, MOST).map((w) => this.row(w, nameOf)));
+		const more = rowsShown.length - MOST;
+		$('#workers .rest').textContent = more > 0 ? `and ${more} more, with less CPU` : '';
+	}
+
+	row({ i, pid, rank, objects, share, busy }, nameOf) {
+		const tr = document.createElement('tr'), chip = document.createElement('i'), bar = document.createElement('meter');
+		chip.style.background = cssColour(colourOfNumber(i));
+		Object.assign(bar, { max: 1, value: share ?? 0, title: share === null ? '' : `${Math.round(100 * share)} % of a core` });
+		const ranks = this.list.some((w) => w.rank > 0);
+		const cells = [chip, `${i}`, `pid ${pid}${ranks ? `, rank ${rank}` : ''}`, bar, `${objects}`, busy === null ? 'waits' : nameOf(busy)];
+		tr.append(...cells.map((content) => {
+			const td = document.createElement('td');
+			td.append(content);
+			return td;
+		}));
+		return tr;
+	}
+}
