@@ -8,6 +8,9 @@
 // workers and isolation. Units: SI, radians, world frame. On failure functions return false and explain it in e; nothing
 // else is changed, unless a list of changes is longer than OB_CONTROL_BATCH: then earlier parts of it took effect.
 //
+// Torques, pushes and drags act on what objects do at each step boundary, until they are changed, released, or the
+// program leaves. A drag is a critically damped spring that moves objects of any mass alike, at 100 m/s at most.
+//
 // Thread-safety: one thread at a time for each ob_controller.
 #ifndef OB_CONTROL_H
 #define OB_CONTROL_H
@@ -46,12 +49,24 @@ bool ob_controller_restore(ob_controller *c, uint64_t snapshot, ob_error *e);
 bool ob_controller_forget(ob_controller *c, uint64_t snapshot, ob_error *e);
 
 // Changes n objects: constant external force from now on (value: x y z, N); impulse and angular impulse (N s, N m s);
-// state to go on from (position m, attitude w x y z, velocity m/s, angular velocity rad/s), also of static and kinematic
-// objects, whose path ends; colour (linear r g b a, 0 to 1).
+// state to go on from (position m, attitude w x y z, velocity m/s, angular velocity rad/s; a part whose first number is NaN
+// stays as it is), also of static and kinematic objects, whose path ends; colour (linear r g b a, 0 to 1).
 bool ob_controller_set_forces(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 bool ob_controller_kick(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 bool ob_controller_set_states(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 bool ob_controller_set_colours(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+// Likewise: torque from now on (x y z, N m); force at a point of the body (force x y z, N, from now on; point x y z, m, from
+// the centre of mass in the body frame); spring from a point of the body to a target (target x y z, m; point x y z, m;
+// frequency, Hz, 0 = 3). Torques and forces of 0 end. release ends all three of an object. friction: coefficient; the
+// object's contacts begin anew.
+bool ob_controller_set_torques(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+bool ob_controller_push(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+bool ob_controller_drag(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+bool ob_controller_release(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+bool ob_controller_set_frictions(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+// Kills the worker processes that simulate these objects (value unused): a fault, after which the run goes on to the same
+// bits. Refused where simulators are threads.
+bool ob_controller_kill(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 bool ob_controller_remove(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 // Creates objects with the syntax of scenes: "box { size = { 1, 1, 1 }, at = { 0, 0, 5 } }". Writes at most max ids, which
 // ascend, and their number, which may exceed it.

@@ -31,6 +31,7 @@ __all__ = ['Error', 'Object', 'Run', 'Universe', 'attach', 'names', 'run']
 CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
 CHANGE = numpy.dtype([('id', 'u4'), ('generation', 'u4'), ('value', 'f8', 13)])
 _PRESENT, _STATIC, _FROZEN, _KINEMATIC = 1, 2, 4, 8
+_SAME = numpy.nan
 _numbers = itertools.count()
 
 
@@ -78,7 +79,6 @@ class Object:
 
     name = property(lambda self: self._passport().name.decode(), doc='As the scene has it.')
     mass = property(lambda self: self._passport().mass, doc='kg; 0 if no force moves it.')
-    friction = property(lambda self: self._passport().friction, doc='Coulomb coefficient.')
     restitution = property(lambda self: self._passport().restitution, doc='0 to 1.')
     shape = property(lambda self: _native.library().ob_shape_name(self._passport().shape).decode(), doc='"box", for one.')
     size = property(lambda self: _vector(self._passport().size), doc='m: half extents, or radius and half length.')
@@ -94,9 +94,7 @@ class Object:
 
     def _move(self, **change):
         """Sets some parts of the state, and keeps the others."""
-        parts = [numpy.asarray(change.get(name, self._row(name)), float)
-                 for name in ('position', 'attitude', 'velocity', 'angular_velocity')]
-        self._universe.set_states([self._id], *[p[None] for p in parts])
+        self._universe.set_states([self._id], **change)
 
     position = property(lambda self: self._row('position'), lambda self, p: self._move(position=p), doc='m, centre of mass.')
     attitude = property(lambda self: self._row('attitude'), lambda self, q: self._move(attitude=q), doc='w, x, y, z.')
@@ -112,6 +110,36 @@ class Object:
     @force.setter
     def force(self, newtons):
         self._universe.set_forces([self._id], [newtons])
+
+    def _set_torque(self, newton_metres):
+        self._universe.set_torques([self._id], [newton_metres])
+
+    torque = property(None, _set_torque, doc='N m: a torque, from now on; to set.')
+
+    @property
+    def friction(self):
+        """Coulomb coefficient."""
+        return self._passport().friction
+
+    @friction.setter
+    def friction(self, coefficient):
+        self._universe.set_frictions([self._id], [[coefficient]])
+
+    def push(self, force, point=(0, 0, 0)):
+        """A force (N) at a point of the body (m, from its centre of mass, body frame), until it is 0 or released."""
+        self._universe.push([self._id], [force], [point])
+
+    def drag(self, target, point=(0, 0, 0), frequency=0):
+        """A spring from a point of the body to a target (m), until it is released; frequency: Hz, 0 is 3."""
+        self._universe.drag([self._id], [target], [point], frequency)
+
+    def release(self):
+        """Ends torque, push and drag."""
+        self._universe.release([self._id])
+
+    def kill(self):
+        """Kills the worker process that simulates it; the run goes on to the same bits."""
+        self._universe.kill([self._id])
 
     @property
     def colour(self):
@@ -244,6 +272,7 @@ class Universe:
         raise Error('this universe is read only: obsim.run starts one that can be changed')
 
     step = reset = set_states = set_forces = set_colours = kick = send = remove = create = snapshot = restore = _refuse
+    set_torques = set_frictions = push = drag = release = kill = _refuse
 
 
 class Run(Universe):
@@ -366,8 +395,33 @@ class Run(Universe):
         """Impulses (N s) and angular impulses (N m s)."""
         self._change('ob_controller_kick', ids, (impulse, 3), (twist, 3))
 
-    def set_states(self, ids, position, attitude=(1, 0, 0, 0), velocity=(0, 0, 0), angular_velocity=(0, 0, 0)):
-        """States to go on from, also of static and kinematic objects. Their contacts end."""
+    def set_torques(self, ids, torque):
+        """Torques (N m), from now on."""
+        self._change('ob_controller_set_torques', ids, (torque, 3))
+
+    def push(self, ids, force, point=(0, 0, 0)):
+        """Forces (N) at points of bodies (m, from the centre of mass, body frame), from now on."""
+        self._change('ob_controller_push', ids, (force, 3), (point, 3))
+
+    def drag(self, ids, target, point=(0, 0, 0), frequency=0):
+        """Springs from points of bodies to targets (m), from now on."""
+        self._change('ob_controller_drag', ids, (target, 3), (point, 3), (frequency, 1))
+
+    def release(self, ids):
+        """Ends torques, pushes and drags."""
+        self._change('ob_controller_release', ids)
+
+    def set_frictions(self, ids, coefficient):
+        """Coulomb coefficients. The contacts of these objects begin anew."""
+        self._change('ob_controller_set_frictions', ids, (coefficient, 1))
+
+    def kill(self, ids):
+        """Kills the worker processes that simulate these objects."""
+        self._change('ob_controller_kill', ids)
+
+    def set_states(self, ids, position=_SAME, attitude=_SAME, velocity=_SAME, angular_velocity=_SAME):
+        """States to go on from, also of static and kinematic objects; a part that is left away stays as it is. Their
+        contacts end."""
         self._change('ob_controller_set_states', ids, (position, 3), (attitude, 4), (velocity, 3), (angular_velocity, 3))
 
     def set_colours(self, ids, rgba):

@@ -82,6 +82,12 @@ _functions = {
     'ob_controller_set_states': (ctypes.c_bool, _change),
     'ob_controller_set_colours': (ctypes.c_bool, _change),
     'ob_controller_remove': (ctypes.c_bool, _change),
+    'ob_controller_set_torques': (ctypes.c_bool, _change),
+    'ob_controller_push': (ctypes.c_bool, _change),
+    'ob_controller_drag': (ctypes.c_bool, _change),
+    'ob_controller_release': (ctypes.c_bool, _change),
+    'ob_controller_set_frictions': (ctypes.c_bool, _change),
+    'ob_controller_kill': (ctypes.c_bool, _change),
     'ob_controller_create': (ctypes.c_bool, [_pointer, ctypes.c_char_p, _pointer, _size, ctypes.POINTER(_size), _pointer]),
     'ob_controller_message': (ctypes.c_bool, [_pointer, _u32, _pointer, _size, _pointer]),
 }

@@ -28,6 +28,7 @@ typedef enum saved_area {
 	AREA_SCRIPT_CELLS,
 	AREA_SCRIPT_TEXTS,
 	AREA_HULLS, // without the scene's
+	AREA_PULLS,
 	AREAS
 } saved_area;
 
@@ -64,6 +65,7 @@ static const ob_checkpoint_rule rules[AREAS] = {
 	[AREA_SCRIPT_CELLS] = { "scripts' state", sizeof(ob_script_cell), 0, OBJECTS_MAX },
 	[AREA_SCRIPT_TEXTS] = { "scripts", 1, 0, SCRIPTS_MAX },
 	[AREA_HULLS] = { "hulls", sizeof(ob_hull_corners), 0, OB_SCENE_HULLS_MAX },
+	[AREA_PULLS] = { "pulls", sizeof(ob_pull), 0, OB_PULLS_MAX },
 };
 
 // Points the arrays into the file's memory.
@@ -83,6 +85,7 @@ static void bind(ob_saved_run *r, const ob_checkpoint_file *f)
 	u->script_cell = f->area[AREA_SCRIPT_CELLS].at;
 	u->script_text = f->area[AREA_SCRIPT_TEXTS].at;
 	r->host.population.hull = f->area[AREA_HULLS].at;
+	r->host.population.pull = f->area[AREA_PULLS].at;
 }
 
 // ---- saving
@@ -140,7 +143,8 @@ bool ob_saved_run_make(ob_saved_run *r, ob_checkpoint_file *f, ob_host *h, const
 				  [AREA_SCRIPT_TURNS] = u->script_cells,
 				  [AREA_SCRIPT_CELLS] = u->script_cells,
 				  [AREA_SCRIPT_TEXTS] = u->script_bytes,
-				  [AREA_HULLS] = r->host.population.hulls };
+				  [AREA_HULLS] = r->host.population.hulls,
+				  [AREA_PULLS] = r->host.population.pulls };
 	for (int i = 0; i < AREAS; i++)
 		if (count[i] > rules[i].most)
 			return ob_fail(e, "a checkpoint has no room for so many %s", rules[i].name);
@@ -223,6 +227,7 @@ static bool open_universe(ob_saved_run *r, const ob_checkpoint_file *f, const ch
 	u->script_bytes = (uint32_t)f->area[AREA_SCRIPT_TEXTS].count;
 	r->host.population.count = (uint32_t)f->area[AREA_SLOTS].count;
 	r->host.population.hulls = (uint32_t)f->area[AREA_HULLS].count;
+	r->host.population.pulls = (uint32_t)f->area[AREA_PULLS].count;
 	memcpy(&r->host.counters, f->area[AREA_COUNTERS].at, sizeof r->host.counters);
 	return ob_saved_universe_check(u, &why) || ob_fail(e, "%s: this checkpoint is damaged: %s", name, why.text);
 }

@@ -354,8 +354,7 @@ static const struct {
 	  "Runs a scene as one world, as threads and as processes, and prints one table." },
 	{ OB_COMMAND_TOP, "obsim top [NAME] [OPTION ...]",
 	  "Looks into a running universe (the newest, unless named) from another terminal." },
-	{ OB_COMMAND_SEND, "obsim send NAME create|remove|colour|message|move ...",
-	  "Changes objects of a running universe, or sends messages." },
+	{ OB_COMMAND_SEND, "obsim send NAME REQUEST ...", "Changes objects of a running universe, or sends messages." },
 	{ OB_COMMAND_EXPORT, "obsim export FILE.h5 PAGE.html [OPTION ...]",
 	  "Makes a page of what was recorded, for any browser, or MCAP (FILE.mcap)." },
 	{ OB_COMMAND_INSPECT, "obsim inspect FILE [OPTION ...]",
@@ -401,7 +400,17 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		      "obsim send NAME colour OBJECT '#rrggbb'\n"
 		      "obsim send NAME message OBJECT VALUE ...                             for its on_message\n"
 		      "obsim send NAME move OBJECT WORKER                                   its simulator, to another "
-		      "worker\n",
+		      "worker\n"
+		      "obsim send NAME drag|push OBJECT X Y Z [PX PY PZ]                    to a place (m), by a force "
+		      "(N), at "
+		      "a point of it\n"
+		      "obsim send NAME torque|force|kick|place|velocity OBJECT X Y Z        N m, N, N s, m, m/s\n"
+		      "obsim send NAME release|kill OBJECT                                  ends drag, push and "
+		      "torque; its "
+		      "simulator\n"
+		      "obsim send NAME friction OBJECT NUMBER\n"
+		      "obsim send NAME keep|return|restart                                  a served universe, to a "
+		      "snapshot\n",
 		      f);
 	if (command == OB_COMMAND_SERVE)
 		fputs("\nobsim serve --replay FILE.h5 [--listen ADDR:PORT] shows what was recorded, to each viewer at "

@@ -1,11 +1,14 @@
 // obsim send: sends a request to a running universe, from another terminal or a program.
+#include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/spelling.h"
 #include "cli/command.h"
 #include "host/ask.h"
+#include "host/pull.h"
 #include "shape/shape.h"
 #include "table/table.h"
 
@@ -64,10 +67,16 @@ static bool create(sending *s, ob_error *e)
 	return fine;
 }
 
+// A request with an object alone.
+static bool send_object(sending *s, ob_request_kind kind, ob_error *e)
+{
+	s->request.kind = kind;
+	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+}
+
 static bool remove_object(sending *s, ob_error *e)
 {
-	s->request.kind = OB_REQUEST_REMOVE;
-	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+	return send_object(s, OB_REQUEST_REMOVE, e);
 }
 
 static bool colour(sending *s, ob_error *e)
@@ -87,6 +96,111 @@ static bool message(sending *s, ob_error *e)
 	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
 }
 
+// Reads three numbers from word i on.
+static bool read_vector(const sending *s, int i, ob_vec3 *out, ob_error *e)
+{
+	double v[3];
+	for (int k = 0; k < 3; k++) {
+		char *end;
+		const char *word = s->word[i + k] ? s->word[i + k] : "";
+		v[k] = strtod(word, &end);
+		if (!*word || *end)
+			return ob_fail(e, "expected three numbers after the object, got \"%s\"", word);
+	}
+	*out = ob_v3(v[0], v[1], v[2]);
+	return true;
+}
+
+// A request with an object, a vector and, if there are more words, a point of the object's body.
+static bool send_vector(sending *s, ob_request_kind kind, ob_vec3 *value, ob_error *e)
+{
+	s->request.kind = kind;
+	return find_object(s, s->word[0], e) && read_vector(s, 1, value, e) &&
+	       (!s->word[4] || read_vector(s, 4, &s->request.point, e)) && ob_ask(s->u, &s->request, e);
+}
+
+static bool force(sending *s, ob_error *e)
+{
+	return send_vector(s, OB_REQUEST_FORCE, &s->request.force, e);
+}
+
+static bool kick(sending *s, ob_error *e)
+{
+	return send_vector(s, OB_REQUEST_KICK, &s->request.force, e);
+}
+
+static bool torque(sending *s, ob_error *e)
+{
+	return send_vector(s, OB_REQUEST_TORQUE, &s->request.twist, e);
+}
+
+static bool push(sending *s, ob_error *e)
+{
+	return send_vector(s, OB_REQUEST_PUSH, &s->request.force, e);
+}
+
+static bool drag(sending *s, ob_error *e)
+{
+	s->request.frequency = OB_PULL_FREQUENCY;
+	return send_vector(s, OB_REQUEST_DRAG, &s->request.target, e);
+}
+
+// A state that stays as it is, but for a part.
+static ob_state same_state(void)
+{
+	return (ob_state){ { { NAN, 0, 0 }, { NAN, 0, 0, 0 } }, { NAN, 0, 0 }, { NAN, 0, 0 } };
+}
+
+static bool place(sending *s, ob_error *e)
+{
+	s->request.state = same_state();
+	return send_vector(s, OB_REQUEST_STATE, &s->request.state.pose.p, e);
+}
+
+static bool velocity(sending *s, ob_error *e)
+{
+	s->request.state = same_state();
+	return send_vector(s, OB_REQUEST_STATE, &s->request.state.v, e);
+}
+
+static bool friction(sending *s, ob_error *e)
+{
+	char *end;
+	s->request.kind = OB_REQUEST_FRICTION;
+	s->request.friction = strtod(s->word[1], &end);
+	if (!*s->word[1] || *end)
+		return ob_fail(e, "friction: expected a number, got \"%s\"", s->word[1]);
+	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+}
+
+static bool release(sending *s, ob_error *e)
+{
+	return send_object(s, OB_REQUEST_RELEASE, e);
+}
+
+static bool kill_simulator(sending *s, ob_error *e)
+{
+	return send_object(s, OB_REQUEST_KILL, e);
+}
+
+static bool keep(sending *s, ob_error *e)
+{
+	s->request.kind = OB_REQUEST_KEEP;
+	return ob_ask(s->u, &s->request, e);
+}
+
+static bool return_to_kept(sending *s, ob_error *e)
+{
+	s->request.kind = OB_REQUEST_RETURN;
+	return ob_ask(s->u, &s->request, e);
+}
+
+static bool restart(sending *s, ob_error *e)
+{
+	s->request.kind = OB_REQUEST_RESTART;
+	return ob_ask(s->u, &s->request, e);
+}
+
 static bool move(sending *s, ob_error *e)
 {
 	char *end;
@@ -101,16 +215,38 @@ static bool move(sending *s, ob_error *e)
 static const struct verb {
 	const char *name, *usage;
 	int words; // at least
-	bool more;
+	int more; // than these, at most
 	bool (*send)(sending *s, ob_error *e);
 } verbs[] = {
-	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", 1, false, create },
-	{ "remove", "remove OBJECT", 1, false, remove_object },
-	{ "colour", "colour OBJECT '#rrggbb'", 2, false, colour },
-	{ "message", "message OBJECT VALUE ...", 1, true, message },
-	{ "move", "move OBJECT WORKER", 2, false, move },
+	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", 1, 0, create },
+	{ "remove", "remove OBJECT", 1, 0, remove_object },
+	{ "colour", "colour OBJECT '#rrggbb'", 2, 0, colour },
+	{ "message", "message OBJECT VALUE ...", 1, INT_MAX - 1, message },
+	{ "force", "force OBJECT X Y Z", 4, 0, force },
+	{ "kick", "kick OBJECT X Y Z", 4, 0, kick },
+	{ "torque", "torque OBJECT X Y Z", 4, 0, torque },
+	{ "push", "push OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", 4, 3, push },
+	{ "drag", "drag OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", 4, 3, drag },
+	{ "release", "release OBJECT", 1, 0, release },
+	{ "place", "place OBJECT X Y Z", 4, 0, place },
+	{ "velocity", "velocity OBJECT X Y Z", 4, 0, velocity },
+	{ "friction", "friction OBJECT NUMBER", 2, 0, friction },
+	{ "move", "move OBJECT WORKER", 2, 0, move },
+	{ "kill", "kill OBJECT", 1, 0, kill_simulator },
+	{ "keep", "keep", 0, 0, keep },
+	{ "return", "return", 0, 0, return_to_kept },
+	{ "restart", "restart", 0, 0, restart },
 };
 enum { VERBS = sizeof verbs / sizeof *verbs };
+
+// Lists all requests.
+static void refuse_all(ob_error *e)
+{
+	char text[256] = "";
+	for (int i = 0; i < VERBS; i++)
+		snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s", i ? ", " : "", verbs[i].name);
+	ob_fail(e, "expected a request: obsim send NAME with one of %s", text);
+}
 
 static const struct verb *find_verb(const char *name, ob_error *e)
 {
@@ -123,7 +259,7 @@ static const struct verb *find_verb(const char *name, ob_error *e)
 	if (name && near.best)
 		ob_fail(e, "unknown request '%s': did you mean %s?", name, near.best);
 	else
-		ob_fail(e, "expected a request: obsim send NAME create, remove, colour, message or move");
+		refuse_all(e);
 	return NULL;
 }
 
@@ -136,9 +272,9 @@ int ob_command_send(const ob_arguments *a)
 	int words = 0;
 	while (v && a->operands[2 + words])
 		words++;
-	if (v && (words < v->words || (words > v->words && !v->more)))
+	if (v && (words < v->words || words - v->words > v->more))
 		ob_fail(&e, "%s: expected obsim send %s %s", v->name, a->operand, v->usage);
-	if (!v || words < v->words || (words > v->words && !v->more))
+	if (!v || words < v->words || words - v->words > v->more)
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	sending s = { .universe = a->operand, .word = a->operands + 2 };
 	s.u = ob_universe_attach(s.universe, &e);

@@ -60,6 +60,10 @@ static bool live(ob_host *h, ob_pace *pace, const serve_request *s, uint64_t las
 	while (ob_host_wait(h, e)) {
 		double took = ob_clock_wall() - began;
 		ob_rerun_log_state(s->log, h, &next_state);
+		if (ob_host_operate(h)) {
+			done = ob_step_count(ob_host_universe(h));
+			ob_pace_restart(pace);
+		}
 		if (at_once && took < .5 * go_time)
 			batch *= 2;
 		else if (took > 2 * go_time && batch > 1)
@@ -88,7 +92,11 @@ static int carry_out(ob_host *h, const serve_request *q, uint64_t last)
 	ob_pace_begin(&pace, q->run.pace, q->paused);
 	ob_server *server = ob_server_start(&q->server, h, &pace, &e);
 	if (server) {
-		printf("%s is at %s\nCtrl-C ends it.\n", q->server.scene->title, ob_server_url(server));
+		printf("%s is at %s\n", q->server.scene->title, ob_server_url(server, OB_ROLE_OPERATE));
+		for (ob_role r = OB_ROLE_OPERATE; r-- > OB_ROLE_WATCH;)
+			if (*ob_server_url(server, r))
+				printf("To %s: %s\n", ob_role_name(r), ob_server_url(server, r));
+		printf("Ctrl-C ends it.\n");
 		fflush(stdout);
 		ended = live(h, &pace, q, last, &e);
 	}
@@ -104,7 +112,8 @@ static int show_film(const serve_request *q, ob_error *e)
 	ob_server *server = ob_server_start(&q->server, NULL, NULL, e);
 	if (!server)
 		return ob_command_fail(OB_EXIT_FAILED, e->text);
-	printf("%s, recorded, is at %s\nCtrl-C ends it.\n", q->server.scene->title, ob_server_url(server));
+	printf("%s, recorded, is at %s\nCtrl-C ends it.\n", q->server.scene->title,
+	       ob_server_url(server, OB_ROLE_OPERATE));
 	fflush(stdout);
 	while (!ob_interrupt_came())
 		nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * patience) }, NULL);
@@ -165,6 +174,7 @@ int ob_command_serve(const ob_arguments *a)
 	if (!a->value[OB_OPTION_ON_DEATH] && !config.run.monolith && !scene->scripts) // neither can be frozen
 		config.on_death = OB_ON_DEATH_KEEP;
 	config.spare = q.room;
+	config.returns = true;
 	// a motion carries its step as 32 bits
 	uint64_t last =
 		a->value[OB_OPTION_DURATION] ? ob_request_steps(q.run.duration, q.run.run.step_length) : UINT32_MAX - 2;

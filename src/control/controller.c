@@ -166,6 +166,36 @@ bool ob_controller_remove(ob_controller *c, const ob_change *change, size_t n, o
 	return change_all(c, OB_CONTROL_REMOVE, change, n, e);
 }
 
+bool ob_controller_set_torques(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_TORQUE, change, n, e);
+}
+
+bool ob_controller_push(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_PUSH, change, n, e);
+}
+
+bool ob_controller_drag(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_DRAG, change, n, e);
+}
+
+bool ob_controller_release(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_RELEASE, change, n, e);
+}
+
+bool ob_controller_set_frictions(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_FRICTION, change, n, e);
+}
+
+bool ob_controller_kill(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_KILL, change, n, e);
+}
+
 bool ob_controller_create(ob_controller *c, const char *text, uint32_t *ids, size_t max, size_t *n, ob_error *e)
 {
 	const size_t bytes = strlen(text);

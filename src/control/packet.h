@@ -32,6 +32,12 @@ typedef enum ob_control_command {
 	OB_CONTROL_REMOVE,
 	OB_CONTROL_CREATE, // payload: text of a scene; the answer has the ids
 	OB_CONTROL_MESSAGE, // payload: a change, then count words, each ended by 0
+	OB_CONTROL_TORQUE, // payload: count changes; likewise below
+	OB_CONTROL_PUSH,
+	OB_CONTROL_DRAG,
+	OB_CONTROL_RELEASE,
+	OB_CONTROL_FRICTION,
+	OB_CONTROL_KILL,
 	OB_CONTROL_COMMANDS
 } ob_control_command;
 

@@ -12,7 +12,6 @@
 #include "control/packet.h"
 #include "host/control.h"
 #include "host/host_state.h"
-#include "table/home.h"
 
 enum { WAITING = 16 };
 
@@ -82,12 +81,7 @@ static void carry_out(ob_host *h, packet *p, ssize_t n, ob_error *e)
 		ob_utf8_make_plain(r->def.passport.name);
 		r->def.path = NULL, r->def.force = NULL; // only a scene has them
 	}
-	if (!ob_request_check(h, r, e))
-		return;
-	if (r->kind != OB_REQUEST_MOVE)
-		ob_host_request(h, r, e);
-	else if (!ob_move_ask(h->u, r->id, r->worker))
-		ob_fail(e, "an earlier move takes effect at the next step: send this one again");
+	ob_host_ask(h, r, e);
 }
 
 static void end_call(int fd, const ob_error *e)

@@ -17,6 +17,7 @@
 #include "shape/shape.h"
 
 enum { IDLE_MS = 50, BATCH_MOST = 1 << 20 };
+static const uint32_t pulling = 1u << 31; // origin of the program's pulls; viewers count from 1
 static const double go_time = .02; // s that the universe runs between checks whether the program has left
 
 struct ob_control {
@@ -42,7 +43,7 @@ ob_control *ob_control_create(ob_error *e)
 	}
 	c->fd = -1;
 	c->batch = 1;
-	c->origin = 1u << 31; // viewers count from 1
+	c->origin = pulling;
 	ob_pace_begin(&c->pace, 1, false);
 	return c;
 }
@@ -94,11 +95,6 @@ static void flush(ob_host *h)
 	ob_host_go(h, ob_step_count(h->u));
 }
 
-static bool queue(ob_host *h, ob_request *r, ob_error *e)
-{
-	return ob_request_check(h, r, e) && ob_host_request(h, r, e);
-}
-
 static bool find_object(const ob_host *h, const ob_change *change, ob_request *r, ob_error *e)
 {
 	ob_passport p;
@@ -111,11 +107,26 @@ static bool find_object(const ob_host *h, const ob_change *change, ob_request *r
 	return true;
 }
 
+// Kinds of requests by commands that change objects.
+static const ob_request_kind changes[OB_CONTROL_COMMANDS] = {
+	[OB_CONTROL_FORCE] = OB_REQUEST_FORCE,     [OB_CONTROL_KICK] = OB_REQUEST_KICK,
+	[OB_CONTROL_STATE] = OB_REQUEST_STATE,     [OB_CONTROL_COLOUR] = OB_REQUEST_COLOUR,
+	[OB_CONTROL_REMOVE] = OB_REQUEST_REMOVE,   [OB_CONTROL_TORQUE] = OB_REQUEST_TORQUE,
+	[OB_CONTROL_PUSH] = OB_REQUEST_PUSH,       [OB_CONTROL_DRAG] = OB_REQUEST_DRAG,
+	[OB_CONTROL_RELEASE] = OB_REQUEST_RELEASE, [OB_CONTROL_FRICTION] = OB_REQUEST_FRICTION,
+	[OB_CONTROL_KILL] = OB_REQUEST_KILL,
+};
+
 static void read_change(const ob_change *change, ob_request *r)
 {
 	const double *v = change->value;
-	r->force = ob_v3(v[0], v[1], v[2]);
-	r->twist = ob_v3(v[3], v[4], v[5]);
+	const ob_vec3 first = ob_v3(v[0], v[1], v[2]), second = ob_v3(v[3], v[4], v[5]);
+	r->origin = pulling;
+	r->force = r->target = first;
+	r->twist = r->kind == OB_REQUEST_TORQUE ? first : second;
+	r->point = second;
+	r->frequency = v[6] == 0 ? OB_PULL_FREQUENCY : v[6];
+	r->friction = v[0];
 	r->state = (ob_state){ { { v[0], v[1], v[2] }, { v[3], v[4], v[5], v[6] } },
 			       { v[7], v[8], v[9] },
 			       { v[10], v[11], v[12] } };
@@ -141,7 +152,7 @@ static bool change_objects(ob_control *c, ob_host *h, ob_request_kind kind, ob_e
 		fine = find_object(h, &change, &all[i], e) && ob_request_check(h, &all[i], e);
 	}
 	for (uint32_t i = 0; i < p->count && fine; i++)
-		fine = ob_host_request(h, &all[i], e);
+		fine = ob_host_ask(h, &all[i], e);
 	free(all);
 	flush(h);
 	return fine;
@@ -175,7 +186,7 @@ static bool create(ob_control *c, ob_host *h, ob_error *e)
 			fine = ob_fail(e,
 				       "create: expected neither born, dies, path nor varying_force: a scene's objects "
 				       "have them");
-		fine = fine && queue(h, &r, e);
+		fine = fine && ob_host_ask(h, &r, e);
 	}
 	ob_scene_free(scene);
 	flush(h);
@@ -194,7 +205,7 @@ static bool send_message(ob_control *c, ob_host *h, ob_error *e)
 	for (size_t at = sizeof to; at < p->bytes; at += strlen((const char *)p->payload + at) + 1)
 		if (!ob_scene_put_value((const char *)p->payload + at, r.values, &r.bytes, sizeof r.values))
 			return ob_fail(e, "message: at most %zu bytes can be sent", sizeof r.values);
-	const bool fine = find_object(h, &to, &r, e) && queue(h, &r, e);
+	const bool fine = find_object(h, &to, &r, e) && ob_host_ask(h, &r, e);
 	flush(h);
 	return fine;
 }
@@ -223,11 +234,6 @@ static bool begin_run(ob_control *c, ob_error *e)
 // Carries out the command in c->packet. Errors change nothing, but for lists of objects to create.
 static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
 {
-	static const ob_request_kind change[OB_CONTROL_COMMANDS] = { [OB_CONTROL_FORCE] = OB_REQUEST_FORCE,
-								     [OB_CONTROL_KICK] = OB_REQUEST_KICK,
-								     [OB_CONTROL_STATE] = OB_REQUEST_STATE,
-								     [OB_CONTROL_COLOUR] = OB_REQUEST_COLOUR,
-								     [OB_CONTROL_REMOVE] = OB_REQUEST_REMOVE };
 	ob_control_answer *a = &c->answer;
 	const uint64_t number = c->packet.number;
 	switch (c->packet.command) {
@@ -244,6 +250,7 @@ static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
 	case OB_CONTROL_SNAPSHOT:
 		return (a->number = ob_host_keep_snapshot(h, e)) != 0;
 	case OB_CONTROL_RESTORE:
+		ob_pace_restart(&c->pace);
 		return ob_host_restore_snapshot(h, number, e);
 	case OB_CONTROL_FORGET:
 		return ob_host_forget_snapshot(h, number, e);
@@ -254,7 +261,7 @@ static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
 	default:
 		if (c->packet.command >= OB_CONTROL_COMMANDS)
 			return ob_fail(e, "this version of obsim has no command %u", c->packet.command);
-		return change_objects(c, h, change[c->packet.command], e);
+		return change_objects(c, h, changes[c->packet.command], e);
 	}
 }
 

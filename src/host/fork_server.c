@@ -27,7 +27,7 @@ struct ob_fork_server {
 
 // count 0: kill them all instead
 typedef struct fork_request {
-	uint32_t first, count;
+	uint32_t first, count, kill; // kill: 1, else fork
 } fork_request;
 
 // ---- the fork server's side
@@ -224,9 +224,9 @@ static void fork_simulators(server *s, fork_request r)
 	}
 }
 
-static void kill_simulators(const server *s)
+static void kill_simulators(const server *s, fork_request r)
 {
-	for (uint32_t w = 0; w < s->workers; w++) {
+	for (uint32_t w = r.first; w < s->workers && w - r.first < r.count; w++) {
 		if (s->pid[w] > 0)
 			kill(s->pid[w], SIGKILL);
 	}
@@ -257,7 +257,7 @@ static void reap(server *s)
 _Noreturn static void clean_up(const server *s)
 {
 	ob_universe_unlink(s->u);
-	kill_simulators(s);
+	kill_simulators(s, (fork_request){ .count = UINT32_MAX });
 	while (waitpid(-1, NULL, 0) > 0 || errno == EINTR)
 		;
 	_exit(EXIT_SUCCESS);
@@ -281,7 +281,7 @@ _Noreturn static void serve(server *s)
 		if (fds[0].revents) {
 			fork_request r;
 			if (recv(s->link, &r, sizeof r, MSG_DONTWAIT) == sizeof r)
-				r.count ? fork_simulators(s, r) : kill_simulators(s);
+				r.kill ? kill_simulators(s, r) : fork_simulators(s, r);
 			else if (fds[0].revents & (POLLHUP | POLLERR))
 				clean_up(s);
 		}
@@ -389,12 +389,12 @@ static bool send_request(ob_fork_server *s, fork_request r)
 
 bool ob_fork_server_fork(ob_fork_server *s, uint32_t first, uint32_t count)
 {
-	return send_request(s, (fork_request){ first, count });
+	return send_request(s, (fork_request){ first, count, 0 });
 }
 
-bool ob_fork_server_kill(ob_fork_server *s)
+bool ob_fork_server_kill(ob_fork_server *s, uint32_t first, uint32_t count)
 {
-	return send_request(s, (fork_request){ 0 });
+	return send_request(s, (fork_request){ first, count, 1 });
 }
 
 bool ob_fork_server_next_end(ob_fork_server *s, ob_worker_end *end)

@@ -7,7 +7,7 @@
 // (table/segment.h).
 //
 //   host ----- link (seqpacket) ----- fork server ---fork--> worker process 0, 1, 2 ...   (each dies with the fork server)
-//        workers first .. first+count  >                   (count 0: kill all)
+//        workers first .. first+count: fork, or kill  >
 //        <  ob_worker_end, one per worker that ended, whatever the cause
 //
 //   workers' standard error --- one socket ---> fork server ---> its own standard error, the host's
@@ -37,8 +37,8 @@ pid_t ob_fork_server_pid(const ob_fork_server *s);
 int ob_fork_server_fd(const ob_fork_server *s);
 // Requests workers first .. first+count-1. false: the fork server is gone.
 bool ob_fork_server_fork(ob_fork_server *s, uint32_t first, uint32_t count);
-// Kills all workers. Their ends are reported.
-bool ob_fork_server_kill(ob_fork_server *s);
+// Kills the workers first .. first+count-1. Their ends are reported. Any thread.
+bool ob_fork_server_kill(ob_fork_server *s, uint32_t first, uint32_t count);
 // Fetches one report, without waiting; false: none at the moment.
 bool ob_fork_server_next_end(ob_fork_server *s, ob_worker_end *end);
 // Ends the fork server and all its remaining workers. Kills it if it does not end within some seconds, or at once if it

@@ -208,7 +208,8 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_confi
 	ob_ode_init();
 	h->roster = ob_roster_create();
 	h->requests = ob_requests_create();
-	if (!h->requests || !h->roster)
+	h->operations = ob_requests_create();
+	if (!h->requests || !h->operations || !h->roster)
 		return ob_fail(e, "out of memory");
 	h->population = ob_population_create(scene, h->u, h->roster, e);
 	if (!h->population)
@@ -273,6 +274,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->on_death = config->on_death;
 	h->limit = config->limit;
 	h->control = config->control;
+	h->returns = config->returns;
 	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;
 	pthread_mutex_init(&h->failure_lock, NULL);
 	pthread_mutex_init(&h->interval.lock, NULL);
@@ -419,6 +421,7 @@ void ob_host_stop(ob_host *h)
 	ob_snapshots_finish(&h->snapshots);
 	ob_population_destroy(h->population);
 	ob_requests_destroy(h->requests);
+	ob_requests_destroy(h->operations);
 	ob_roster_destroy(h->roster);
 	pthread_mutex_destroy(&h->failure_lock);
 	pthread_mutex_destroy(&h->interval.lock);

@@ -59,6 +59,7 @@ typedef struct ob_host_config {
 	const ob_free_settings
 		*free; // settings of a free run (free/free.h); NULL: in lockstep. `objects` is set by the host
 	ob_request_log *log; // input from outside; NULL = none. It must outlive the host
+	bool returns; // visitors may put the run back (ob_host_operate)
 	struct ob_control *control; // takes programs that control the run (control.h); NULL = refuses them. Likewise
 	const ob_logged_requests *replay; // requests to carry out again, each in its place; NULL = none
 	const ob_saved_host *from; // start of the run, checked (ob_saved_universe_check); NULL = the scene's start
@@ -113,7 +114,13 @@ uint32_t ob_host_get_deaths(ob_host *h, ob_death out[OB_DEATHS_KEPT]);
 // id by then.
 bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e);
 bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation);
-// Requests of any kind, checked as by ob_host_request_add. Any thread.
+// Requests of visitors and other programs, of any kind: checks the request against the universe as it is now, completes
+// it, and carries it out or queues it. Roles are the caller's to check (role.h). Any thread.
+bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e);
+// Carries out requests to keep a snapshot and to go back to one. Between a wait and the next go; returns true if the
+// universe was put back, to an earlier or later step. The first call keeps the start, where go begins.
+bool ob_host_operate(ob_host *h);
+// Requests that change objects, checked as by ob_host_request_add. Any thread.
 bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e);
 // With a trace: records an activity of the calling thread, the one that starts and stops the host, since begin
 // (ob_clock_ns).

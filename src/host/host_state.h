@@ -56,7 +56,7 @@ struct ob_host {
 	ob_fork_server *fork_server;
 	ob_worker_group *group;
 	ob_roster *roster;
-	ob_requests *requests;
+	ob_requests *requests, *operations; // operations: on the run as a whole
 	ob_population *population;
 	ob_timeline *timeline; // NULL = not traced
 	ob_request_log *log; // NULL = none
@@ -68,6 +68,8 @@ struct ob_host {
 	ob_asked asked; // requests of other programs
 	ob_control *control; // see ob_host_config
 	ob_snapshots snapshots;
+	uint64_t start, kept; // snapshots for visitors; 0 = none
+	bool returns; // see ob_host_config
 	atomic_uint running_workers; // workers that have not ended
 	atomic_bool interrupted, failed, ending;
 	pthread_mutex_t failure_lock;

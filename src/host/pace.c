@@ -54,6 +54,13 @@ void ob_pace_set_paused(ob_pace *p, bool paused)
 	pthread_mutex_unlock(&p->lock);
 }
 
+void ob_pace_restart(ob_pace *p)
+{
+	pthread_mutex_lock(&p->lock);
+	tell(p);
+	pthread_mutex_unlock(&p->lock);
+}
+
 void ob_pace_allow(ob_pace *p, uint64_t steps)
 {
 	pthread_mutex_lock(&p->lock);

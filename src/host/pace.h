@@ -41,6 +41,8 @@ void ob_pace_set_rate(ob_pace *p, double rate);
 void ob_pace_set_paused(ob_pace *p, bool paused);
 void ob_pace_allow(ob_pace *p, uint64_t steps); // more, while it is paused
 
+void ob_pace_restart(ob_pace *p); // the universe was put back: the line begins anew
+
 // Step up to which a universe with "done" complete steps of step_length (s) may run. Waits for at most "patience" (s)
 // until that is more than "done". UINT64_MAX: no limit.
 uint64_t ob_pace_wait(ob_pace *p, uint64_t done, double step_length, double patience);

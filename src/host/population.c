@@ -7,11 +7,13 @@
 
 #include "base/log.h"
 #include "exchange/results.h"
+#include "free/free.h"
 #include "host/journal.h"
 #include "host/rcu_tsan.h"
 #include "scene/object_limits.h"
 #include "scene/random.h"
 #include "shape/shape.h"
+#include "step/now.h"
 #include "step/sim.h"
 
 // An entry of the timetable.
@@ -49,6 +51,8 @@ struct ob_population {
 	uint32_t first_free; // no slot below it is free
 	uint32_t created; // existing objects that scripts have created
 	ob_hulls hulls;
+	ob_pulls pulls;
+	uint64_t pulled; // step at whose beginning they have acted, and at whose end they will; 0: none
 	ob_journal journal; // requests since the population was kept
 	uint64_t reached; // steps that were complete before a restart
 	ob_request_log *log; // NULL: none
@@ -59,6 +63,8 @@ struct ob_kept_population {
 	slot *slots; // [capacity]
 	size_t next;
 	uint32_t first_free, created, kinematic, pushed, hulls;
+	ob_pulls pulls;
+	uint64_t pulled;
 };
 
 // ---- requests
@@ -231,6 +237,7 @@ static void remove_object(ob_population *p, uint32_t id)
 	s->kinematic = false;
 	ob_script_free_cell(p->u, id);
 	end_plan(p, id);
+	ob_pulls_drop(&p->pulls, id);
 	ob_sim_remove(p->u, id);
 	p->created -= s->created;
 	s->created = false;
@@ -366,18 +373,67 @@ static void carry_out_scripts(ob_population *p)
 	}
 }
 
+static bool is_pull(const ob_request *r)
+{
+	return r->kind == OB_REQUEST_TORQUE || r->kind == OB_REQUEST_PUSH || r->kind == OB_REQUEST_DRAG;
+}
+
+static ob_pull pull_of(const ob_request *r)
+{
+	ob_pull pull = { .id = r->id, .generation = r->generation, .origin = r->origin };
+	if (r->kind == OB_REQUEST_TORQUE) {
+		pull.kind = OB_PULL_TORQUE;
+		pull.value = r->twist;
+		return pull;
+	}
+	pull.kind = r->kind == OB_REQUEST_PUSH ? OB_PULL_PUSH : OB_PULL_DRAG;
+	pull.point = r->point;
+	pull.value = r->kind == OB_REQUEST_PUSH ? r->force : r->target;
+	pull.frequency = r->kind == OB_REQUEST_DRAG ? r->frequency : 0;
+	return pull;
+}
+
+// The requested state; "now" where a part is not set.
+static ob_state complete_state(const ob_state *now, const ob_state *asked)
+{
+	ob_state s = *asked;
+	s.pose.p = isnan(s.pose.p.x) ? now->pose.p : s.pose.p;
+	s.pose.q = isnan(s.pose.q.w) ? now->pose.q : s.pose.q;
+	s.v = isnan(s.v.x) ? now->v : s.v;
+	s.w = isnan(s.w.x) ? now->w : s.w;
+	return s;
+}
+
 bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_error *e)
 {
+	static const ob_state legal = { .pose.q.w = 1 };
 	const ob_passport *pass = ob_passport_of(p->u, r->id);
+	const ob_pull pull = pull_of(r);
+	const ob_state state = complete_state(&legal, &r->state);
 	const bool pushes = r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_KICK;
-	if (!pushes && r->kind != OB_REQUEST_STATE)
+	if (!pushes && !is_pull(r) && r->kind != OB_REQUEST_STATE && r->kind != OB_REQUEST_FRICTION)
 		return true;
 	if (r->kind != OB_REQUEST_FORCE && ob_universe_settings(p->u)->monolith)
 		return ob_fail(e, "the one ODE world keeps its bodies to itself: take object simulators");
+	if (is_pull(r))
+		return ob_free_settings_of(p->u)
+			       ? ob_fail(e, "in a free run nothing is pulled in each step: use --sync lockstep")
+			       : ob_pull_check(&pull, pass, e);
+	if (r->kind == OB_REQUEST_FRICTION)
+		return ob_friction_check(r->friction, e);
 	if (pushes && pass->flags & OB_OBJECT_PRESCRIBED)
 		return ob_fail(e, "object %u (%.*s) does not move by forces", r->id, OB_NAME_MAX, pass->name);
 	return pushes ? ob_push_check(pass, r->force, r->kind == OB_REQUEST_KICK ? r->twist : ob_v3(0, 0, 0), e)
-		      : ob_state_check(pass, &r->state, e);
+		      : ob_state_check(pass, &state, e);
+}
+
+// Sets an object's friction. Its contacts begin anew, so that those at rest on it are solved again.
+static void set_friction(const ob_population *p, uint32_t id, double friction, const ob_state *now)
+{
+	ob_passport pass = *ob_passport_of(p->u, id);
+	pass.friction = friction;
+	ob_write_passport(p->u, id, &pass);
+	ob_sim_place_anew(p->u, id, now);
 }
 
 // Carries out a request that changes the motion of an object that exists.
@@ -388,14 +444,24 @@ static void set_motion(ob_population *p, const ob_request *r)
 		ob_log_warn("a request was left out: %s", e.text); // valid when it came
 		return;
 	}
-	if (r->kind != OB_REQUEST_KICK)
+	const ob_pull pull = pull_of(r);
+	const ob_state now = ob_state_now(p->u, r->id, ob_newest_motion(p->u, r->id), ob_step_count(p->u)),
+		       state = complete_state(&now, &r->state);
+	if (is_pull(r)) {
+		if (!ob_pulls_set(&p->pulls, &pull))
+			ob_log_warn("object %u is not pulled: too many pulls act, or there is no memory", r->id);
+		return;
+	}
+	if (r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_STATE)
 		end_plan(p, r->id);
 	if (r->kind == OB_REQUEST_FORCE)
 		ob_sim_push(p->u, r->id, r->force, true);
 	else if (r->kind == OB_REQUEST_KICK)
 		ob_sim_kick(p->u, r->id, r->force, r->twist);
+	else if (r->kind == OB_REQUEST_FRICTION)
+		set_friction(p, r->id, r->friction, &now);
 	else
-		ob_sim_place_anew(p->u, r->id, &r->state);
+		ob_sim_place_anew(p->u, r->id, &state);
 }
 
 // Carries out a request for an object that exists.
@@ -492,6 +558,8 @@ static void carry_out_request(ob_population *p, const ob_request *r)
 {
 	if (r->kind == OB_REQUEST_ADD)
 		add_asked_for(p, r);
+	else if (r->kind == OB_REQUEST_RELEASE)
+		ob_pulls_release(&p->pulls, r->id, r->origin);
 	else if (r->id < ob_universe_capacity(p->u) && p->slots[r->id].generation == r->generation &&
 		 p->slots[r->id].use == SLOT_PRESENT)
 		change_on_request(p, r);
@@ -518,8 +586,27 @@ static void carry_out_requests(ob_population *p, uint64_t step, ob_requests *q)
 	ob_request_log_flush(p->log);
 }
 
+void ob_population_pull(ob_population *p)
+{
+	const uint64_t step = ob_step_count(p->u);
+	if (p->pulls.count == 0 || p->pulled == step + 1)
+		return;
+	p->pulled = step + 1;
+	ob_pulls_act(&p->pulls, p->u);
+}
+
+// Adds the impulses of pulls at the end of the step.
+static void end_pull(ob_population *p, uint64_t step)
+{
+	if (p->pulled == 0 || p->pulled > step)
+		return;
+	p->pulled = 0;
+	ob_pulls_act(&p->pulls, p->u);
+}
+
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 {
+	end_pull(p, step);
 	for (; p->next < p->event_count && p->events[p->next].step <= step; p->next++) {
 		event *due = &p->events[p->next];
 		const ob_object_def *def = &p->scene->object[due->id];
@@ -554,8 +641,10 @@ bool ob_population_is_checkpoint_due(const ob_population *p)
 
 void ob_kept_population_free(ob_kept_population *k)
 {
-	if (k)
+	if (k) {
 		free(k->slots);
+		ob_pulls_finish(&k->pulls);
+	}
 	free(k);
 }
 
@@ -566,10 +655,11 @@ ob_kept_population *ob_population_copy(const ob_population *p, ob_kept_populatio
 		k = calloc(1, sizeof *k);
 	if (k && !k->slots)
 		k->slots = malloc(bytes);
-	if (!k || !k->slots) {
-		free(k);
+	if (!k || !k->slots || !ob_pulls_copy(&k->pulls, &p->pulls)) {
+		ob_kept_population_free(k);
 		return NULL;
 	}
+	k->pulled = p->pulled;
 	memcpy(k->slots, p->slots, bytes);
 	k->next = p->next;
 	k->first_free = p->first_free;
@@ -598,6 +688,9 @@ static void put_back(ob_population *p, const ob_kept_population *k)
 	p->kinematic = k->kinematic;
 	p->pushed = k->pushed;
 	p->hulls.count = k->hulls; // hulls added later come again, unchanged
+	p->pulled = k->pulled;
+	if (!ob_pulls_copy(&p->pulls, &k->pulls))
+		ob_log_warn("out of memory: objects are no longer pulled as they were");
 	publish_roster(p);
 }
 
@@ -626,10 +719,18 @@ uint64_t ob_population_next_step(const ob_population *p)
 	// requests may wait for it
 	const uint64_t reached = p->reached > ob_step_count(p->u) ? p->reached : UINT64_MAX,
 		       then = again < reached ? again : reached;
-	return first < then ? first : then;
+	const uint64_t pull = p->pulls.count ? ob_step_count(p->u) + 1 : UINT64_MAX, soon = first < then ? first : then;
+	return pull < soon ? pull : soon;
 }
 
 // ---- saved
+
+// True of the scene's object, the first in its slot, if it has a path or a time-dependent force.
+static bool has_plan(const ob_population *p, uint32_t id)
+{
+	return id < p->scene->objects && p->slots[id].generation == 1 &&
+	       (p->scene->object[id].path || p->scene->object[id].force);
+}
 
 void ob_population_count_saved(const ob_population *p, ob_saved_population *out)
 {
@@ -638,17 +739,25 @@ void ob_population_count_saved(const ob_population *p, ob_saved_population *out)
 	// Slots that were used before the run was resumed count, too: their next objects are of later generations.
 	while (count > ids && count > p->scene->objects && !p->slots[count - 1].generation)
 		count--;
-	*out = (ob_saved_population){ .events = p->next, .count = count, .hulls = p->hulls.count - p->hulls.of_scene };
+	*out = (ob_saved_population){
+		.events = p->next, .count = count, .hulls = p->hulls.count - p->hulls.of_scene, .pulls = p->pulls.count
+	};
 }
 
 void ob_population_save(const ob_population *p, ob_saved_population *out)
 {
 	for (uint32_t id = 0; id < out->count; id++) {
 		const slot *s = &p->slots[id];
-		out->slot[id] = (ob_saved_slot){ s->generation, s->use, s->removal_scheduled, s->created, 0 };
+		out->slot[id] = (ob_saved_slot){ .generation = s->generation,
+						 .use = s->use,
+						 .removal_scheduled = s->removal_scheduled,
+						 .created = s->created,
+						 .unplanned = s->use == SLOT_PRESENT && has_plan(p, id) && !s->driven };
 	}
 	if (out->hulls)
 		memcpy(out->hull, p->hulls.corners, out->hulls * sizeof *out->hull);
+	if (out->pulls)
+		memcpy(out->pull, p->pulls.at, out->pulls * sizeof *out->pull);
 }
 
 // Applies the first events of the timetable to the slots, which are as planned at the start.
@@ -676,8 +785,8 @@ static bool check_slot(const ob_population *p, uint32_t id, const ob_saved_slot 
 {
 	const ob_passport *pass = ob_passport_of(p->u, id);
 	const bool present = id < ob_universe_ids(p->u) && pass->flags & OB_OBJECT_PRESENT;
-	return follows(&p->slots[id], s) && s->created <= present && present == (s->use == SLOT_PRESENT) &&
-	       (!present || pass->generation == s->generation);
+	return follows(&p->slots[id], s) && s->created <= present && s->unplanned <= present &&
+	       present == (s->use == SLOT_PRESENT) && (!present || pass->generation == s->generation);
 }
 
 static bool is_near(double a, double b)
@@ -717,16 +826,33 @@ static uint64_t step_at(double t, double step_length)
 }
 
 // Restores the path of an object. Only the scene's objects have one, each the first in its slot.
-static void load_path(ob_population *p, uint32_t id)
+static void load_path(ob_population *p, uint32_t id, bool unplanned)
 {
 	const double h = ob_universe_settings(p->u)->step_length;
 	slot *s = &p->slots[id];
 	if (id >= p->scene->objects || s->generation != 1)
 		return;
 	const ob_object_def *def = &p->scene->object[id];
-	s->driven = s->use == SLOT_PRESENT && (def->path || def->force);
+	s->driven = s->use == SLOT_PRESENT && (def->path || def->force) && !unplanned;
 	p->pushed += force_of(p, id) != NULL;
 	s->born = (uint32_t)step_at(p->scene->object[id].born, h);
+}
+
+static bool load_pulls(ob_population *p, const ob_saved_population *s, ob_error *e)
+{
+	for (uint32_t i = 0; i < s->pulls; i++) {
+		const ob_pull *pull = &s->pull[i];
+		const bool exists = pull->id < s->count && p->slots[pull->id].use == SLOT_PRESENT &&
+				    p->slots[pull->id].generation == pull->generation;
+		if (!exists || pull->kind > OB_PULL_DRAG)
+			return ob_fail(e, "pull %u makes no sense", i);
+		if (!(ob_passport_of(p->u, pull->id)->flags & OB_OBJECT_PRESCRIBED) && // else frozen
+		    !ob_pull_check(pull, ob_passport_of(p->u, pull->id), e))
+			return false;
+		if (!ob_pulls_set(&p->pulls, pull))
+			return ob_fail(e, "out of memory");
+	}
+	return true;
 }
 
 bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error *e)
@@ -745,14 +871,14 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 				       .removal_scheduled = from->removal_scheduled,
 				       .created = from->created };
 		p->created += from->created;
-		load_path(p, id);
+		load_path(p, id, from->unplanned);
 		p->slots[id].kinematic =
 			from->use == SLOT_PRESENT && ob_passport_of(p->u, id)->flags & OB_OBJECT_KINEMATIC;
 		p->kinematic += p->slots[id].kinematic;
 	}
 	p->next = s->events;
 	publish_roster(p);
-	return true;
+	return load_pulls(p, s, e);
 }
 
 // ---- the scene's timetable
@@ -811,6 +937,7 @@ void ob_population_destroy(ob_population *p)
 	free(p->events);
 	free(p->slots);
 	ob_hulls_finish(&p->hulls);
+	ob_pulls_finish(&p->pulls);
 	ob_kept_population_free(p->kept);
 	ob_journal_finish(&p->journal);
 	free(p);

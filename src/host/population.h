@@ -7,6 +7,7 @@
 #define OB_HOST_POPULATION_H
 
 #include "host/hulls.h"
+#include "host/pull.h"
 #include "host/request.h"
 #include "host/request_log.h"
 #include "host/roster.h"
@@ -40,8 +41,11 @@ bool ob_population_replay(ob_population *p, const ob_journal_entry *entry, size_
 void ob_population_set_log(ob_population *p, ob_request_log *log);
 // Carries out the timetable up to this step, then the requests. true: objects were added or removed.
 bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q);
-// Checks a request that sets a force, a state, or kicks, against the object as it is now, which exists. Others pass. Any
-// thread.
+// Adds the impulses of pulls (pull.h) at the beginning of a step, when the gate is about to open to it; update adds those at
+// its end. Again in the same step: nothing.
+void ob_population_pull(ob_population *p);
+// Checks a request that changes an object's motion or friction, against the object as it is now, which exists. Others
+// pass. Any thread.
 bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_error *e);
 
 // Copy of all that is not in the universe. k: one to overwrite, or NULL for a new one. NULL: out of memory, and k is freed.
@@ -66,7 +70,7 @@ typedef struct ob_saved_slot {
 	uint8_t use; // 0 = free, 1 = reserved: the timetable has another event for it, 2 = present
 	uint8_t removal_scheduled; // 1 = the timetable will remove its object
 	uint8_t created; // 1 = by a script
-	uint8_t zero;
+	uint8_t unplanned; // 1 = a request has ended its path, or its time-dependent force
 } ob_saved_slot;
 
 typedef struct ob_saved_population {
@@ -75,9 +79,11 @@ typedef struct ob_saved_population {
 	ob_saved_slot *slot; // [count]
 	uint32_t hulls; // hulls added since the run began
 	ob_hull_corners *hull; // [hulls]
+	uint32_t pulls;
+	ob_pull *pull; // [pulls]
 } ob_saved_population;
 
-// Fills in events, count and hulls, so that the caller can make the arrays; then fills the arrays.
+// Fills in events, count, hulls and pulls, so that the caller can make the arrays; then fills the arrays.
 void ob_population_count_saved(const ob_population *p, ob_saved_population *out);
 void ob_population_save(const ob_population *p, ob_saved_population *out);
 // Replaces the first update, after ob_universe_load. false and e: the data does not fit this scene and universe.

@@ -1,9 +1,11 @@
 // Requests of any thread to a run.
 #include <string.h>
 
+#include "free/free.h"
 #include "host/host_state.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"
+#include "table/home.h"
 
 static bool is_colour(const float *c)
 {
@@ -49,15 +51,51 @@ static bool check_move(const ob_universe *u, const ob_request *r, const ob_passp
 	       ob_fail(e, "there is no worker %u for objects: they are 0 to %u", r->worker, workers - 1);
 }
 
+static bool check_return(const ob_host *h, ob_error *e)
+{
+	if (!h->returns)
+		return ob_fail(e,
+			       "this run cannot be put back on request: obsim serve can, and a program that leads one "
+			       "by obsim control");
+	if (h->log)
+		return ob_fail(e, "this run logs its requests (--log-requests), so it cannot be put back");
+	if (ob_free_settings_of(h->u))
+		return ob_fail(e, "a free run cannot be put back: use --sync lockstep");
+	return !ob_universe_settings(h->u)->monolith ||
+	       ob_fail(e, "the one ODE world cannot be put back, as ODE does not show its whole state");
+}
+
+// Checks a request to the universe as a whole, or to the origin's pulls.
+static bool check_whole(const ob_host *h, const ob_request *r, ob_error *e)
+{
+	return r->kind == OB_REQUEST_RELEASE || check_return(h, e);
+}
+
+static bool check_kill(const ob_host *h, const ob_request *r, const ob_passport *p, ob_error *e)
+{
+	uint32_t worker;
+	if (!h->spawn->own_memory)
+		return ob_fail(
+			e, "simulators are threads of one process, which cannot be killed alone: start the run with "
+			   "--isolation process");
+	if (ob_universe_settings(h->u)->monolith)
+		return ob_fail(e, "the one ODE world is one simulator, without which the run ends");
+	return ob_universe_get_home(h->u, r->id, &worker) ||
+	       ob_fail(e, "object %u (%.*s) has no simulator: no force moves it, or it was not solved yet", r->id,
+		       OB_NAME_MAX, p->name);
+}
+
 bool ob_request_check(const ob_host *h, ob_request *r, ob_error *e)
 {
 	ob_passport p;
-	if (r->kind > OB_REQUEST_MOVE)
+	if (r->kind >= OB_REQUEST_KINDS)
 		return ob_fail(e, "unknown request");
 	if (r->kind != OB_REQUEST_MOVE && ob_universe_ranks(h->u) > 1)
 		return ob_fail(e, "on several ranks, objects can only be moved");
 	if (r->kind == OB_REQUEST_ADD)
 		return check_new(h, r, e);
+	if (r->kind >= OB_REQUEST_KEEP || r->kind == OB_REQUEST_RELEASE)
+		return check_whole(h, r, e);
 	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)
 		return ob_fail(e, "the object has gone");
 	if (r->kind == OB_REQUEST_COLOUR && !is_colour(r->colour))
@@ -66,6 +104,8 @@ bool ob_request_check(const ob_host *h, ob_request *r, ob_error *e)
 		return ob_fail(e, "object %u (%.*s) has no script to send a message to", r->id, OB_NAME_MAX, p.name);
 	if (r->kind == OB_REQUEST_MOVE)
 		return check_move(h->u, r, &p, e);
+	if (r->kind == OB_REQUEST_KILL)
+		return check_kill(h, r, &p, e);
 	return ob_population_check_change(h->population, r, e);
 }
 
@@ -87,6 +127,37 @@ bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e)
 {
 	return (r->kind != OB_REQUEST_ADD || ob_object_check(&r->def, e)) &&
 	       (request(h, r) || ob_fail(e, "out of memory"));
+}
+
+static bool move(ob_host *h, const ob_request *r, ob_error *e)
+{
+	return ob_move_ask(h->u, r->id, r->worker) ||
+	       ob_fail(e, "an earlier move takes effect at the next step: send this one again");
+}
+
+static bool kill_simulator(ob_host *h, const ob_request *r, ob_error *e)
+{
+	uint32_t worker;
+	return (ob_universe_get_home(h->u, r->id, &worker) && h->spawn->kill(h->group, worker)) ||
+	       ob_fail(e, "the simulator of object %u has gone", r->id);
+}
+
+bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e)
+{
+	if (!ob_request_check(h, r, e))
+		return false;
+	switch (r->kind) {
+	case OB_REQUEST_MOVE:
+		return move(h, r, e);
+	case OB_REQUEST_KILL:
+		return kill_simulator(h, r, e);
+	case OB_REQUEST_KEEP:
+	case OB_REQUEST_RETURN:
+	case OB_REQUEST_RESTART:
+		return ob_requests_push(h->operations, r) || ob_fail(e, "out of memory");
+	default:
+		return ob_host_request(h, r, e);
+	}
 }
 
 bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation)

@@ -12,19 +12,33 @@ typedef enum ob_request_kind {
 	OB_REQUEST_FORCE, // from now on, until another is set: by a request, a script, or the scene's timetable
 	OB_REQUEST_KICK, // at once: by an impulse and an angular impulse
 	OB_REQUEST_STATE, // the object goes on from another place, with other velocities
-	OB_REQUEST_MOVE, // its simulator moves to a worker: done at once, with several ranks, too (table/home.h)
+	OB_REQUEST_FRICTION, // its coefficient; its contacts begin anew
+	OB_REQUEST_TORQUE, // from now on, until another is set by the same origin; likewise below (pull.h)
+	OB_REQUEST_PUSH, // a force at a point of its body
+	OB_REQUEST_DRAG, // a spring from a point of its body to a target
+	OB_REQUEST_RELEASE, // ends what the same origin does by these three to the object; id UINT32_MAX: to all objects
+	OB_REQUEST_AT_ONCE, // the first that is no change of the universe's course, so that no log has it
+	OB_REQUEST_MOVE = OB_REQUEST_AT_ONCE, // its simulator moves to a worker: with several ranks, too (table/home.h)
+	OB_REQUEST_KILL, // the worker that simulates it is killed
+	OB_REQUEST_KEEP, // a snapshot of the whole universe replaces the one kept before
+	OB_REQUEST_RETURN, // the universe goes back to that snapshot, or to its start if there is none
+	OB_REQUEST_RESTART, // the universe goes back to its start
+	OB_REQUEST_KINDS
 } ob_request_kind;
 
 typedef struct ob_request {
 	uint32_t kind; // ob_request_kind
 	uint32_t id, generation; // of the object; unused for an object to add
-	uint32_t origin; // of an object to add: number of the viewer's connection; 0: none
+	uint32_t origin; // of an object to add, or a pull: number of the viewer's connection; 0: none
 	ob_object_def def; // to add
 	ob_hull_corners corners; // of a hull
 	float colour[4]; // linear
 	uint32_t worker; // target of the move
-	ob_state state; // to go on from
-	ob_vec3 force, twist; // N, or N s; N m s; world frame
+	ob_state state; // to go on from; a part whose first number is NaN stays as it is
+	ob_vec3 force, twist; // N, or N s; N m, or N m s; world frame
+	ob_vec3 point, target; // m: from the centre of mass, body frame; world frame
+	double frequency; // Hz, of a drag
+	double friction; // coefficient
 	uint32_t bytes; // of the message
 	unsigned char values[512]; // flat (scene/flat.h)
 } ob_request;

@@ -113,7 +113,7 @@ static bool grown(void **array, size_t element, uint32_t n)
 static bool makes_sense(const ob_request *r)
 {
 	ob_error e;
-	if (r->kind >= OB_REQUEST_MOVE || r->bytes > sizeof r->values)
+	if (r->kind >= OB_REQUEST_AT_ONCE || r->bytes > sizeof r->values)
 		return false;
 	return r->kind != OB_REQUEST_ADD || (!r->def.path && !r->def.force && !r->def.script && !r->def.state_bytes &&
 					     r->corners.count <= OB_HULL_CORNERS_MAX && ob_object_check(&r->def, &e));

@@ -47,6 +47,8 @@ static void begin_interval(ob_host *h)
 	if (!interval->halted)
 		ob_gate_set_pause_step(h->u, interval->end);
 	pthread_mutex_unlock(&interval->lock);
+	if (next > step && h->target > step)
+		ob_population_pull(h->population);
 	h->interval_first_step = step;
 	h->interval_start = ob_clock_wall();
 	if (ob_free_settings_of(h->u))

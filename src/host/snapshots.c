@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "base/log.h"
+#include "free/free.h"
 #include "host/host_state.h"
 #include "host/restart.h"
 
@@ -61,4 +63,36 @@ bool ob_host_forget_snapshot(ob_host *h, uint64_t number, ob_error *e)
 	if (s)
 		forget(s);
 	return s;
+}
+
+// ---- visitors' requests
+
+static bool operate(ob_host *h, const ob_request *r, ob_error *e)
+{
+	ob_error ignored;
+	const uint64_t old = h->kept, back = r->kind == OB_REQUEST_RETURN && old ? old : h->start;
+	if (r->kind != OB_REQUEST_KEEP)
+		return ob_host_restore_snapshot(h, back, e);
+	const uint64_t new = ob_host_keep_snapshot(h, e);
+	if (new &&old)
+		ob_host_forget_snapshot(h, old, &ignored);
+	h->kept = new ? new : old;
+	return false;
+}
+
+bool ob_host_operate(ob_host *h)
+{
+	ob_request r;
+	ob_error e = { "" };
+	bool returned = false;
+	if (h->returns && !h->log && !h->start && !ob_universe_settings(h->u)->monolith && !ob_free_settings_of(h->u))
+		h->start = ob_host_keep_snapshot(h, &e);
+	while (ob_requests_take(h->operations, &r)) {
+		returned |= operate(h, &r, &e);
+		if (*e.text)
+			ob_log_warn("a request was left out: %s", e.text);
+	}
+	if (returned && !h->failed)
+		ob_universe_set_state(h->u, OB_UNIVERSE_RUNNING); // it may have been at its end
+	return returned;
 }

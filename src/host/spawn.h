@@ -30,6 +30,8 @@ typedef struct ob_spawn {
 	bool (*restart)(ob_worker_group *g, ob_error *e);
 	// Starts one worker again, whose end was fetched, while the others go on; NULL: it cannot die alone.
 	bool (*revive)(ob_worker_group *g, uint32_t worker);
+	// Kills one worker, whose end is reported; NULL: it cannot die alone. Any thread.
+	bool (*kill)(ob_worker_group *g, uint32_t worker);
 	// CPU time of the worker in ns; 0 when it is gone.
 	uint64_t (*cpu)(const ob_worker_info *w);
 	// After ob_gate_stop: waits until all have left, at most timeout (s), and frees g. false: some have not left

@@ -39,7 +39,7 @@ static bool process_next_end(ob_worker_group *g, ob_worker_end *end)
 
 static void process_end(ob_worker_group *g)
 {
-	ob_fork_server_kill(g->fork_server);
+	ob_fork_server_kill(g->fork_server, 0, UINT32_MAX);
 }
 
 static bool process_restart(ob_worker_group *g, ob_error *e)
@@ -53,6 +53,11 @@ static bool process_revive(ob_worker_group *g, uint32_t worker)
 	const bool revived = ob_fork_server_fork(g->fork_server, worker, 1);
 	g->ended -= revived;
 	return revived;
+}
+
+static bool process_kill(ob_worker_group *g, uint32_t worker)
+{
+	return ob_fork_server_kill(g->fork_server, worker, 1);
 }
 
 static uint64_t process_cpu(const ob_worker_info *w)
@@ -104,6 +109,7 @@ const ob_spawn ob_spawn_processes = {
 	.end = process_end,
 	.restart = process_restart,
 	.revive = process_revive,
+	.kill = process_kill,
 	.cpu = process_cpu,
 	.join = process_join,
 	.leave_timeout = 1,

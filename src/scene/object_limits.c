@@ -53,14 +53,18 @@ static bool check_slenderness(const ob_passport *p, ob_error *e)
 	return within("size", " times as long as wide", 1, OB_SLENDERNESS_MOST, longest / least, e);
 }
 
+bool ob_friction_check(double friction, ob_error *e)
+{
+	return within("friction", "", 0, OB_FRICTION_MOST, friction, e);
+}
+
 static bool check_surface(const ob_passport *p, ob_error *e)
 {
 	for (int i = 0; i < 4; i++)
 		if (!within("colour", "", 0, 1, p->colour[i], e))
 			return false;
-	return within("friction", "", 0, OB_FRICTION_MOST, p->friction, e) &&
-	       within("restitution", "", 0, 1, p->restitution, e) && within("roughness", "", 0, 1, p->roughness, e) &&
-	       within("metal", "", 0, 1, p->metal, e);
+	return ob_friction_check(p->friction, e) && within("restitution", "", 0, 1, p->restitution, e) &&
+	       within("roughness", "", 0, 1, p->roughness, e) && within("metal", "", 0, 1, p->metal, e);
 }
 
 bool ob_passport_check(const ob_passport *p, ob_error *e)

@@ -4,6 +4,7 @@
 
 #include <libwebsockets.h>
 
+#include "host/role.h"
 #include "serve/command.h"
 #include "serve/message.h"
 
@@ -34,6 +35,8 @@ typedef struct ob_client {
 	bool contacts; // it shows them
 	uint32_t inspected; // id; UINT32_MAX: none
 	uint32_t number; // origin of its requests: from 1, of this connection only
+	ob_role role;
+	bool pulls; // it may hold on to objects
 	uint32_t frozen, first_frozen; // its objects that were frozen, of which it was not notified; id of the first
 	ob_allowance commands, creations;
 	char command[OB_COMMAND_BYTES_MAX + 1];

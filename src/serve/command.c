@@ -7,20 +7,39 @@
 #include <string.h>
 
 #include "base/utf8.h"
+#include "host/pull.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"
 
 static const char *const kinds[OB_DO_KINDS] = {
-	[OB_DO_CREATE] = "create",     [OB_DO_REMOVE] = "remove",   [OB_DO_PAUSE] = "pause",
-	[OB_DO_RESUME] = "resume",     [OB_DO_STEP] = "step",       [OB_DO_RATE] = "rate",
-	[OB_DO_CONTACTS] = "contacts", [OB_DO_INSPECT] = "inspect", [OB_DO_SIMULATORS] = "simulators",
+	[OB_DO_CREATE] = "create",
+	[OB_DO_REMOVE] = "remove",
+	[OB_DO_DRAG] = "drag",
+	[OB_DO_PUSH] = "push",
+	[OB_DO_TURN] = "turn",
+	[OB_DO_RELEASE] = "release",
+	[OB_DO_MESSAGE] = "message",
+	[OB_DO_EDIT] = "edit",
+	[OB_DO_KILL] = "kill",
+	[OB_DO_KEEP] = "keep",
+	[OB_DO_RETURN] = "return",
+	[OB_DO_RESTART] = "restart",
+	[OB_DO_PAUSE] = "pause",
+	[OB_DO_RESUME] = "resume",
+	[OB_DO_STEP] = "step",
+	[OB_DO_RATE] = "rate",
+	[OB_DO_CONTACTS] = "contacts",
+	[OB_DO_INSPECT] = "inspect",
+	[OB_DO_SIMULATORS] = "simulators",
 };
 
 enum {
 	DO,
 	SHAPE,
 	NAME,
-	SIZE,
+	TEXT,
+	WORDS,
+	SIZE = WORDS,
 	AT,
 	ATTITUDE,
 	VELOCITY,
@@ -31,6 +50,11 @@ enum {
 	RESTITUTION,
 	ROUGHNESS,
 	METAL,
+	POINT,
+	TARGET,
+	FORCE,
+	TORQUE,
+	FREQUENCY,
 	ID,
 	GENERATION,
 	STEPS,
@@ -39,11 +63,35 @@ enum {
 	FIELDS
 };
 
-static const char *const names[FIELDS] = { "do",         "shape",       "name",      "size",   "at",
-					   "attitude",   "velocity",    "spin",      "colour", "mass",
-					   "friction",   "restitution", "roughness", "metal",  "id",
-					   "generation", "steps",       "rate",      "on" };
-// Numbers of a field (0: a word), and their range; those of an object are limited as all objects are
+static const char *const names[FIELDS] = {
+	[DO] = "do",
+	[SHAPE] = "shape",
+	[NAME] = "name",
+	[TEXT] = "text",
+	[SIZE] = "size",
+	[AT] = "at",
+	[ATTITUDE] = "attitude",
+	[VELOCITY] = "velocity",
+	[SPIN] = "spin",
+	[COLOUR] = "colour",
+	[MASS] = "mass",
+	[FRICTION] = "friction",
+	[RESTITUTION] = "restitution",
+	[ROUGHNESS] = "roughness",
+	[METAL] = "metal",
+	[POINT] = "point",
+	[TARGET] = "target",
+	[FORCE] = "force",
+	[TORQUE] = "torque",
+	[FREQUENCY] = "frequency",
+	[ID] = "id",
+	[GENERATION] = "generation",
+	[STEPS] = "steps",
+	[RATE] = "rate",
+	[ON] = "on",
+};
+// Numbers of a field (0: a word), and their range. Those of an object are limited as all objects are, and of requests
+// by the host
 static const struct {
 	int count;
 	double low, high;
@@ -59,6 +107,11 @@ static const struct {
 	[RESTITUTION] = { 1, -DBL_MAX, DBL_MAX },
 	[ROUGHNESS] = { 1, -DBL_MAX, DBL_MAX },
 	[METAL] = { 1, -DBL_MAX, DBL_MAX },
+	[POINT] = { 3, -DBL_MAX, DBL_MAX },
+	[TARGET] = { 3, -DBL_MAX, DBL_MAX },
+	[FORCE] = { 3, -DBL_MAX, DBL_MAX },
+	[TORQUE] = { 3, -DBL_MAX, DBL_MAX },
+	[FREQUENCY] = { 1, -DBL_MAX, DBL_MAX },
 	[ID] = { 1, 0, 4294967294. },
 	[GENERATION] = { 1, 0, 4294967295. },
 	[STEPS] = { 1, 1, 1e6 },
@@ -71,7 +124,7 @@ typedef struct reading {
 	int depth; // of objects and lists
 	int field; // -1: unknown
 	unsigned given; // bits: fields
-	char word[3][OB_NAME_MAX]; // do, shape, name
+	char word[WORDS][OB_NAME_MAX];
 	double value[FIELDS][4];
 	int count[FIELDS];
 	bool on;
@@ -116,7 +169,7 @@ static char take_number(reading *r, const char *text)
 
 static char take_word(reading *r, const struct lejp_ctx *c, bool whole)
 {
-	if ((r->field != DO && r->field != SHAPE && r->field != NAME) || r->depth != 1)
+	if (r->field < 0 || r->field >= WORDS || r->depth != 1)
 		return fail(r, "a word was not expected here", r->field < 0 ? NULL : names[r->field]);
 	char *to = r->word[r->field];
 	size_t have = strlen(to), more = c->npos;
@@ -202,10 +255,24 @@ static bool refuse_shape(reading *r)
 	return fail(r, text, "shape") == 0;
 }
 
+static bool is_given(const reading *r, int field)
+{
+	return r->given & 1u << field;
+}
+
+static bool read_attitude(reading *r, ob_quat *out)
+{
+	const double *q = r->value[ATTITUDE];
+	if (!(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] > .5))
+		return fail(r, "expected a unit quaternion", "attitude") == 0;
+	*out = ob_quat_normalize((ob_quat){ q[0], q[1], q[2], q[3] });
+	return true;
+}
+
 static bool make_object(reading *r, ob_object_def *def)
 {
 	const ob_shape shape = ob_shape_named(r->word[SHAPE]);
-	const double *q = r->value[ATTITUDE], *c = r->value[COLOUR];
+	const double *c = r->value[COLOUR];
 	if (!is_offered(shape))
 		return refuse_shape(r);
 	*def = (ob_object_def){
@@ -222,11 +289,8 @@ static bool make_object(reading *r, ob_object_def *def)
 	};
 	for (int i = 0; i < 3 && r->given & 1u << COLOUR; i++)
 		def->passport.colour[i] = (float)c[i];
-	if (r->given & 1u << ATTITUDE) {
-		if (!(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] > .5))
-			return fail(r, "expected a unit quaternion", "attitude") == 0;
-		def->state.pose.q = ob_quat_normalize((ob_quat){ q[0], q[1], q[2], q[3] });
-	}
+	if (is_given(r, ATTITUDE) && !read_attitude(r, &def->state.pose.q))
+		return false;
 	// names appear in terminals and pages
 	for (const char *s = r->word[NAME]; *s;) {
 		size_t bytes;
@@ -240,11 +304,87 @@ static bool make_object(reading *r, ob_object_def *def)
 	return ob_object_def_check(def, r->e);
 }
 
+static bool refuse_kind(reading *r)
+{
+	char text[256] = "expected one of";
+	for (int i = 0; i < OB_DO_KINDS; i++)
+		if (kinds[i])
+			snprintf(text + strlen(text), sizeof text - strlen(text), " %s", kinds[i]);
+	return fail(r, text, "do") == 0;
+}
+
+// Changes of the object's state, colour and friction, a request each.
+static bool make_edit(reading *r, ob_command *c)
+{
+	const ob_request to = c->request[0];
+	const ob_vec3 same = { NAN, NAN, NAN };
+	c->requests = 0;
+	if (is_given(r, AT) || is_given(r, ATTITUDE) || is_given(r, VELOCITY) || is_given(r, SPIN)) {
+		ob_request *state = &c->request[c->requests++];
+		*state = to;
+		state->kind = OB_REQUEST_STATE;
+		state->state = (ob_state){ { is_given(r, AT) ? vec3(r, AT) : same, { NAN, 0, 0, 0 } },
+					   is_given(r, VELOCITY) ? vec3(r, VELOCITY) : same,
+					   is_given(r, SPIN) ? vec3(r, SPIN) : same };
+		if (is_given(r, ATTITUDE) && !read_attitude(r, &state->state.pose.q))
+			return false;
+	}
+	if (is_given(r, COLOUR)) {
+		ob_request *colour = &c->request[c->requests++];
+		*colour = to;
+		colour->kind = OB_REQUEST_COLOUR;
+		for (int i = 0; i < 4; i++)
+			colour->colour[i] = i < 3 ? (float)r->value[COLOUR][i] : 1;
+	}
+	if (is_given(r, FRICTION)) {
+		ob_request *friction = &c->request[c->requests++];
+		*friction = to;
+		friction->kind = OB_REQUEST_FRICTION;
+		friction->friction = r->value[FRICTION][0];
+	}
+	return c->requests > 0 ||
+	       fail(r, "expected some of at, attitude, velocity, spin, colour and friction", "edit") == 0;
+}
+
+// Makes the requests of a command that goes to the host.
+static bool make_requests(reading *r, ob_command *c)
+{
+	static const ob_request_kind asks[OB_DO_KINDS] = {
+		[OB_DO_CREATE] = OB_REQUEST_ADD,      [OB_DO_REMOVE] = OB_REQUEST_REMOVE,
+		[OB_DO_DRAG] = OB_REQUEST_DRAG,       [OB_DO_PUSH] = OB_REQUEST_PUSH,
+		[OB_DO_TURN] = OB_REQUEST_TORQUE,     [OB_DO_RELEASE] = OB_REQUEST_RELEASE,
+		[OB_DO_MESSAGE] = OB_REQUEST_MESSAGE, [OB_DO_KILL] = OB_REQUEST_KILL,
+		[OB_DO_KEEP] = OB_REQUEST_KEEP,       [OB_DO_RETURN] = OB_REQUEST_RETURN,
+		[OB_DO_RESTART] = OB_REQUEST_RESTART,
+	};
+	ob_request *q = &c->request[0];
+	c->requests = 1;
+	q->kind = asks[c->kind];
+	q->id = c->id;
+	q->generation = (uint32_t)r->value[GENERATION][0];
+	q->point = vec3(r, POINT);
+	q->target = vec3(r, TARGET);
+	q->force = vec3(r, FORCE);
+	q->twist = vec3(r, TORQUE);
+	q->frequency = is_given(r, FREQUENCY) ? r->value[FREQUENCY][0] : OB_PULL_FREQUENCY;
+	if (c->kind == OB_DO_EDIT)
+		return make_edit(r, c);
+	if (c->kind == OB_DO_MESSAGE)
+		return ob_scene_put_value(r->word[TEXT], q->values, &q->bytes, sizeof q->values);
+	return c->kind != OB_DO_CREATE || make_object(r, &q->def);
+}
+
 static bool make(reading *r, ob_command *c)
 {
 	static const unsigned needed[OB_DO_KINDS] = {
 		[OB_DO_CREATE] = 1u << SHAPE | 1u << SIZE | 1u << AT | 1u << MASS,
 		[OB_DO_REMOVE] = 1u << ID | 1u << GENERATION,
+		[OB_DO_DRAG] = 1u << ID | 1u << GENERATION | 1u << TARGET,
+		[OB_DO_PUSH] = 1u << ID | 1u << GENERATION | 1u << FORCE,
+		[OB_DO_TURN] = 1u << ID | 1u << GENERATION | 1u << TORQUE,
+		[OB_DO_MESSAGE] = 1u << ID | 1u << GENERATION | 1u << TEXT,
+		[OB_DO_EDIT] = 1u << ID | 1u << GENERATION,
+		[OB_DO_KILL] = 1u << ID | 1u << GENERATION,
 		[OB_DO_RATE] = 1u << RATE,
 		[OB_DO_CONTACTS] = 1u << ON,
 		[OB_DO_SIMULATORS] = 1u << ON,
@@ -252,24 +392,26 @@ static bool make(reading *r, ob_command *c)
 	static const unsigned allowed[OB_DO_KINDS] = {
 		[OB_DO_CREATE] = 1u << ATTITUDE | 1u << VELOCITY | 1u << SPIN | 1u << COLOUR | 1u << FRICTION |
 				 1u << RESTITUTION | 1u << ROUGHNESS | 1u << METAL | 1u << NAME,
+		[OB_DO_DRAG] = 1u << POINT | 1u << FREQUENCY,
+		[OB_DO_PUSH] = 1u << POINT,
+		[OB_DO_RELEASE] = 1u << ID,
+		[OB_DO_EDIT] = 1u << AT | 1u << ATTITUDE | 1u << VELOCITY | 1u << SPIN | 1u << COLOUR | 1u << FRICTION,
 		[OB_DO_STEP] = 1u << STEPS,
 		[OB_DO_INSPECT] = 1u << ID,
 	};
 	int kind = find_word(r->word[DO], kinds, OB_DO_KINDS);
 	if (!kind)
-		return fail(r, "expected create, remove, pause, resume, step, rate, contacts, simulators or inspect",
-			    "do") == 0;
+		return refuse_kind(r);
 	if (!needs(r, needed[kind] | 1u << DO, allowed[kind]))
 		return false;
 	*c = (ob_command){
 		.kind = (ob_command_kind)kind,
 		.id = r->given & 1u << ID ? (uint32_t)r->value[ID][0] : UINT32_MAX,
-		.generation = (uint32_t)r->value[GENERATION][0],
 		.steps = r->given & 1u << STEPS ? (uint32_t)r->value[STEPS][0] : 1,
 		.rate = r->value[RATE][0],
 		.on = r->on,
 	};
-	if (kind == OB_DO_CREATE && !make_object(r, &c->def))
+	if (kind <= OB_DO_RESTART && !make_requests(r, c))
 		c->kind = OB_DO_NOTHING;
 	return c->kind != OB_DO_NOTHING;
 }

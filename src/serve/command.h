@@ -4,6 +4,15 @@
 //                attitude (w x y z), velocity (m/s), spin (rad/s), colour (linear RGB), friction, restitution,
 //                roughness, metal, name
 //      remove    id, generation
+//      drag      id, generation, target (m); optionally point (m, body frame, from the centre of mass), frequency (Hz):
+//                a spring holds the point until the visitor sends release, or leaves
+//      push      id, generation, force (N); optionally point. Likewise
+//      turn      id, generation, torque (N m). Likewise
+//      release   optionally id: of one object, else of all that this visitor holds
+//      message   id, generation, text: to the object's script
+//      edit      id, generation, and some of at, attitude, velocity, spin, colour, friction
+//      kill      id, generation: the worker process that simulates the object
+//      keep      a snapshot of the universe;  return: to that, or to the start;  restart: at the start
 //      pause, resume
 //      step      steps (1), while it is paused
 //      rate      rate (s a s); 0: as fast as possible
@@ -14,12 +23,22 @@
 #ifndef OB_SERVE_COMMAND_H
 #define OB_SERVE_COMMAND_H
 
-#include "scene/scene.h"
+#include "host/request.h"
 
 typedef enum ob_command_kind {
 	OB_DO_NOTHING,
 	OB_DO_CREATE,
 	OB_DO_REMOVE,
+	OB_DO_DRAG,
+	OB_DO_PUSH,
+	OB_DO_TURN,
+	OB_DO_RELEASE,
+	OB_DO_MESSAGE,
+	OB_DO_EDIT,
+	OB_DO_KILL,
+	OB_DO_KEEP,
+	OB_DO_RETURN,
+	OB_DO_RESTART,
 	OB_DO_PAUSE,
 	OB_DO_RESUME,
 	OB_DO_STEP,
@@ -30,10 +49,13 @@ typedef enum ob_command_kind {
 	OB_DO_KINDS,
 } ob_command_kind;
 
+enum { OB_COMMAND_REQUESTS = 3 };
+
 typedef struct ob_command {
 	ob_command_kind kind;
-	ob_object_def def; // create
-	uint32_t id, generation; // remove, inspect
+	uint32_t requests;
+	ob_request request[OB_COMMAND_REQUESTS]; // [requests] to the host, in this order; origin 0
+	uint32_t id; // inspect
 	uint32_t steps; // step
 	double rate; // rate; 0: as fast as possible
 	bool on; // contacts

@@ -25,7 +25,8 @@ static void put_colour(ob_message *m, const char *name, const float c[3])
 	put_numbers(m, name, (double[]){ c[0], c[1], c[2] }, 3);
 }
 
-ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *info, const ob_content *mesh)
+ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
+			     const ob_content *mesh)
 {
 	const ob_scene *scene = c->scene;
 	const ob_look_def *look = &scene->look;
@@ -40,8 +41,8 @@ ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *
 	ob_message_put_json(m, c->version);
 	ob_message_print(m, ",\"isolation\":");
 	ob_message_put_json(m, info->isolation);
-	ob_message_print(m, ",\"workers\":%u,\"look_only\":%s,\"step_length\":%.17g", info->workers,
-			 c->look_only ? "true" : "false", info->step_length);
+	ob_message_print(m, ",\"workers\":%u,\"role\":\"%s\",\"look_only\":%s,\"step_length\":%.17g", info->workers,
+			 ob_role_name(role), role == OB_ROLE_WATCH ? "true" : "false", info->step_length);
 	put_vec3(m, "gravity", info->gravity);
 	put_colour(m, "sky_top", look->sky_top);
 	put_colour(m, "sky_horizon", look->sky_horizon);

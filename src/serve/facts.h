@@ -7,9 +7,10 @@
 #include "serve/message.h"
 #include "serve/serve.h"
 
-// {"welcome": title, isolation, gravity, look, cameras, paths of meshes ..}: the first message. mesh: contents of the
+// {"welcome": title, isolation, role, gravity, look, cameras, paths of meshes ..}: the first message. mesh: contents of the
 // scene's meshes, by their numbers, less 1; NULL: they are sent otherwise.
-ob_message *ob_facts_welcome(const ob_server_config *c, const ob_universe_info *info, const ob_content *mesh);
+ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
+			     const ob_content *mesh);
 // {"statistics": objects, awake, pairs, islands, step, viewers, ended ..}
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers);
 // {"workers": [[pid, rank, objects of the last step, CPU (s), object that it is busy with, or null], ..]}

@@ -17,9 +17,9 @@ ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace,
 	return s;
 }
 
-const char *ob_server_url(const ob_server *s)
+const char *ob_server_url(const ob_server *s, ob_role role)
 {
-	return ((const ob_server_base *)s)->part->url(s);
+	return ((const ob_server_base *)s)->part->url(s, role);
 }
 
 void ob_server_stop(ob_server *s)

@@ -8,7 +8,7 @@
 typedef struct ob_serve_part {
 	ob_part_head head;
 	ob_server *(*start)(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e);
-	const char *(*url)(const ob_server *s);
+	const char *(*url)(const ob_server *s, ob_role role);
 	void (*stop)(ob_server *s);
 } ob_serve_part;
 

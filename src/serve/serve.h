@@ -11,7 +11,10 @@
 // OB_SERVER_STUCK is dropped. Neither the universe nor other viewers wait for it.
 //
 // Access: on a loopback address, pages of this server alone, and programs of this machine; on any other address,
-// holders of the token. A page of another origin is refused, even with a name of its own for this address.
+// holders of a token. A page of another origin is refused, even with a name of its own for this address.
+//
+// Roles (host/role.h): on a loopback, programs of the same user operate, and others take part (peer.h); elsewhere each
+// role has a token. If look_only is set, all visitors watch.
 //
 // For a film there is no universe: the server serves only pages, and the film to holders of the token.
 //
@@ -21,6 +24,7 @@
 
 #include "host/host.h"
 #include "host/pace.h"
+#include "host/role.h"
 #include "serve/message.h"
 
 typedef struct ob_listen {
@@ -35,7 +39,7 @@ bool ob_listen_read(ob_listen *l, const char *text, ob_error *e);
 
 typedef struct ob_server_config {
 	ob_listen listen;
-	bool look_only; // viewers may change nothing
+	bool look_only; // all visitors watch
 	uint32_t viewers; // at most
 	const ob_scene *scene;
 	const char *version;
@@ -51,8 +55,9 @@ bool ob_serve_check(ob_error *e);
 
 // The host and the pace must outlive it; for a film both are NULL. NULL and e on failure.
 ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e);
-// Address of the page, with its token, if there is one.
-const char *ob_server_url(const ob_server *s);
+// Address of the page for visitors of a role, with its token, if there is one. The first is for all that is allowed;
+// "" for another: the server gives out no address of its own for that role.
+const char *ob_server_url(const ob_server *s, ob_role role);
 void ob_server_stop(ob_server *s); // NULL is allowed
 
 #endif

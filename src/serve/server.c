@@ -20,6 +20,7 @@
 #include "serve/film_page.h"
 #include "serve/http.h"
 #include "serve/part.h"
+#include "serve/peer.h"
 
 static const double interval = 1. / 60; // s, between two reads of the universe
 static const double share = .3; // limit of their share of the time
@@ -46,7 +47,7 @@ struct ob_server {
 	ob_server_config config;
 	ob_host *host;
 	ob_pace *pace;
-	char token[33], url[160];
+	char token[OB_ROLES][33], url[OB_ROLES][160]; // of each role; "" = none
 	int port; // the actual port
 	own_content *own_bytes; // storage of own
 	ob_content *own; // a film's page and the film itself, else the scene's meshes; ends with one without a path
@@ -184,11 +185,33 @@ static void look(lws_sorted_usec_list_t *tick)
 
 // ---- receiving
 
-static bool may(ob_server *s, ob_client *c)
+static bool may(ob_client *c, ob_role needed)
 {
-	if (s->config.look_only)
-		send_error(c, "viewers of this universe may change nothing");
-	return !s->config.look_only;
+	ob_error e;
+	if (ob_role_check(c->role, needed, &e))
+		return true;
+	send_error(c, e.text);
+	return false;
+}
+
+// Sends a visitor's request to the host.
+static void ask(ob_server *s, ob_client *c, ob_request *r)
+{
+	ob_error e;
+	r->origin = c->number;
+	c->pulls |= r->kind == OB_REQUEST_PUSH || r->kind == OB_REQUEST_DRAG || r->kind == OB_REQUEST_TORQUE;
+	if (!ob_host_ask(s->host, r, &e))
+		send_error(c, e.text);
+}
+
+// A visitor may remove objects of its own, and, as an operator, any.
+static void remove_object(ob_server *s, ob_client *c, ob_request *r)
+{
+	ob_roster_entry entry;
+	const bool own = ob_roster_find(ob_host_roster(s->host), r->id, &entry) && entry.generation == r->generation &&
+			 entry.origin == c->number;
+	if (own || may(c, OB_ROLE_OPERATE))
+		ob_host_request_remove(s->host, r->id, r->generation);
 }
 
 static void create(ob_server *s, ob_client *c, const ob_object_def *def)
@@ -203,7 +226,21 @@ static void create(ob_server *s, ob_client *c, const ob_object_def *def)
 		send_error(c, e.text);
 }
 
-static void carry_out(ob_server *s, ob_client *c, const ob_command *asked)
+// Requests about objects and the universe.
+static void carry_out_requests(ob_server *s, ob_client *c, ob_command *asked)
+{
+	for (uint32_t i = 0; i < asked->requests; i++) {
+		ob_request *r = &asked->request[i];
+		if (r->kind == OB_REQUEST_REMOVE)
+			remove_object(s, c, r);
+		else if (r->kind != OB_REQUEST_ADD && may(c, ob_role_for(r->kind)))
+			ask(s, c, r);
+		else if (r->kind == OB_REQUEST_ADD && may(c, OB_ROLE_TAKE_PART))
+			create(s, c, &r->def);
+	}
+}
+
+static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 {
 	switch (asked->kind) {
 	case OB_DO_CONTACTS:
@@ -220,15 +257,10 @@ static void carry_out(ob_server *s, ob_client *c, const ob_command *asked)
 	default:
 		break;
 	}
-	if (!may(s, c))
+	carry_out_requests(s, c, asked);
+	if (asked->requests || !may(c, OB_ROLE_OPERATE))
 		return;
 	switch (asked->kind) {
-	case OB_DO_CREATE:
-		create(s, c, &asked->def);
-		break;
-	case OB_DO_REMOVE:
-		ob_host_request_remove(s->host, asked->id, asked->generation);
-		break;
 	case OB_DO_PAUSE:
 	case OB_DO_RESUME:
 		ob_pace_set_paused(s->pace, asked->kind == OB_DO_PAUSE);
@@ -279,18 +311,47 @@ static int receive(ob_server *s, ob_client *c, const char *bytes, size_t size)
 
 // ---- connections
 
-static bool has_token(const ob_server *s, struct lws *wsi)
+static bool is_token(const char *token, const char *value)
+{
+	unsigned differ = 0;
+	if (!*token || strlen(value) != strlen(token))
+		return false;
+	for (size_t i = 0; token[i]; i++) // takes constant time, wherever they differ
+		differ |= (unsigned)(token[i] ^ value[i]);
+	return differ == 0;
+}
+
+// Finds the role of the visitor's token. false: it has none.
+static bool find_role(const ob_server *s, struct lws *wsi, ob_role *role)
 {
 	char text[64];
-	unsigned differ = 0;
-	if (s->config.listen.loopback)
-		return true;
 	const char *value = lws_get_urlarg_by_name(wsi, "token=", text, sizeof text);
-	if (!value || strlen(value) != strlen(s->token))
-		return false;
-	for (size_t i = 0; s->token[i]; i++) // takes constant time, wherever they differ
-		differ |= (unsigned)(s->token[i] ^ value[i]);
-	return differ == 0;
+	bool found = false;
+	*role = OB_ROLE_WATCH;
+	for (ob_role r = OB_ROLE_WATCH; value && r < OB_ROLES; r++) {
+		if (!is_token(s->token[r], value))
+			continue;
+		*role = r;
+		found = true;
+	}
+	return found;
+}
+
+static bool has_token(const ob_server *s, struct lws *wsi)
+{
+	ob_role role;
+	return s->config.listen.loopback || find_role(s, wsi, &role);
+}
+
+static ob_role role_of(const ob_server *s, struct lws *wsi)
+{
+	ob_role role = OB_ROLE_WATCH;
+	if (s->config.look_only)
+		return role;
+	if (s->config.listen.loopback)
+		return ob_peer_is_ours(lws_get_socket_fd(wsi)) ? OB_ROLE_OPERATE : OB_ROLE_TAKE_PART;
+	find_role(s, wsi, &role);
+	return role;
 }
 
 // Before the answer to the handshake. Other than 0: refused, with an answer.
@@ -368,6 +429,7 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 	ob_universe_info info;
 	double now = ob_clock_wall();
 	*c = (ob_client){ .wsi = wsi,
+			  .role = role_of(s, wsi),
 			  .next = s->clients,
 			  .taken_at = now,
 			  .inspected = UINT32_MAX,
@@ -379,7 +441,7 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 	ob_door_move(wsi, OB_AT_VIEWER, now);
 	setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
 	ob_universe_get_info(ob_host_universe(s->host), &info);
-	send_one(c, ob_facts_welcome(&s->config, &info, s->own));
+	send_one(c, ob_facts_welcome(&s->config, c->role, &info, s->own));
 	send_one(c, ob_feed_whole(s->feed, &pace));
 	send_one(c, ob_facts_statistics(s->host, s->count));
 }
@@ -394,6 +456,10 @@ static void leave(ob_server *s, ob_client *c)
 		}
 	}
 	ob_client_queue_clear(&c->queue);
+	ob_error e;
+	ob_request lets_go = { .kind = OB_REQUEST_RELEASE, .id = UINT32_MAX, .origin = c->number };
+	if (c->pulls)
+		ob_host_ask(s->host, &lets_go, &e);
 }
 
 static int write_some(ob_server *s, ob_client *c)
@@ -492,15 +558,21 @@ static void note_complaint(int level, const char *line)
 	complaint[strcspn(complaint, "\n")] = 0;
 }
 
-static bool make_token(ob_server *s, ob_error *e)
+// The most that a visitor may do.
+static ob_role most_of(const ob_server *s)
+{
+	return s->config.look_only ? OB_ROLE_WATCH : OB_ROLE_OPERATE;
+}
+
+static bool make_tokens(ob_server *s, ob_error *e)
 {
 	unsigned char random[16];
-	if (s->config.listen.loopback)
-		return true;
-	if (getrandom(random, sizeof random, 0) != sizeof random)
-		return ob_fail(e, "no random numbers for a token: %s", strerror(errno));
-	for (size_t i = 0; i < sizeof random; i++)
-		snprintf(s->token + 2 * i, 3, "%02x", random[i]);
+	for (ob_role r = OB_ROLE_WATCH; !s->config.listen.loopback && r <= most_of(s); r++) {
+		if (getrandom(random, sizeof random, 0) != sizeof random)
+			return ob_fail(e, "no random numbers for a token: %s", strerror(errno));
+		for (size_t i = 0; i < sizeof random; i++)
+			snprintf(s->token[r] + 2 * i, 3, "%02x", random[i]);
+	}
 	return true;
 }
 
@@ -569,8 +641,10 @@ static bool open_context(ob_server *s, ob_error *e)
 		return ob_fail(e, "--listen %s:%d: %s", listen->address, listen->port,
 			       *complaint ? complaint : "the server cannot listen there");
 	s->port = lws_get_vhost_listen_port(host);
-	snprintf(s->url, sizeof s->url, listen->six ? "http://[%s]:%d/%s%s" : "http://%s:%d/%s%s",
-		 s->config.listen.address, s->port, s->config.listen.loopback ? "" : "#token=", s->token);
+	for (ob_role r = OB_ROLE_WATCH; r <= most_of(s); r++)
+		if (!listen->loopback || r == most_of(s))
+			snprintf(s->url[r], sizeof s->url[r], listen->six ? "http://[%s]:%d/%s%s" : "http://%s:%d/%s%s",
+				 listen->address, s->port, listen->loopback ? "" : "#token=", s->token[r]);
 	return true;
 }
 
@@ -639,7 +713,7 @@ static ob_server *start_server(const ob_server_config *c, ob_host *h, ob_pace *p
 	s->pace = pace;
 	pthread_mutex_init(&s->lock, NULL);
 	s->feed = h ? ob_feed_create(ob_host_universe(h), ob_host_roster(h)) : NULL;
-	bool ready = make_token(s, e) && prepare_own(s, e) && open_context(s, e) &&
+	bool ready = make_tokens(s, e) && prepare_own(s, e) && open_context(s, e) &&
 		     (s->feed || c->film || ob_fail(e, "out of memory"));
 	if (ready) {
 		if (s->feed)
@@ -661,9 +735,9 @@ static ob_server *start_server(const ob_server_config *c, ob_host *h, ob_pace *p
 	return NULL;
 }
 
-static const char *url_of(const ob_server *s)
+static const char *url_of(const ob_server *s, ob_role role)
 {
-	return s->url;
+	return role == OB_ROLE_OPERATE ? s->url[most_of(s)] : most_of(s) == OB_ROLE_WATCH ? "" : s->url[role];
 }
 
 static void stop_server(ob_server *s)

@@ -74,6 +74,8 @@ static void make(ob_checkpoint_file *f)
 	r.settings = s->run;
 	ob_host *h = start(s, &r.settings, NULL, &e);
 	CHECK(h);
+	ob_request drag = { .kind = OB_REQUEST_DRAG, .id = 3, .generation = 1, .target = { 0, 0, 3 }, .frequency = 3 };
+	CHECK(ob_host_ask(h, &drag, &e));
 	ob_host_go(h, 17);
 	CHECK(ob_host_wait(h, &e));
 	CHECK(ob_saved_run_make(&r, f, h, "test", &e));

@@ -82,9 +82,22 @@ static void change(ob_controller *c, uint64_t step, uint32_t *created)
 	ob_error e = { "" };
 	size_t n = 0;
 	const ob_change force = { 3, 0, { 5, 0, 30 } }, kick = { 4, 0, { 0, 2, 3, .01, 0, .02 } },
-			state = { 5, 0, { .3, .2, 2, 1, 0, 0, 0, 1, 0, 0, 0, 0, 3 } }, gone = { 6, 0, { 0 } };
+			state = { 5, 0, { .3, .2, 2, 1, 0, 0, 0, 1, 0, 0, 0, 0, 3 } }, gone = { 6, 0, { 0 } },
+			torque = { 7, 0, { 0, .02, .01 } }, push = { 8, 0, { 3, 0, 9, 0, .05, 0 } },
+			drag = { 9, 0, { .1, .2, .8, 0, 0, .1 } }, ice = { 0, 0, { .01 } },
+			faster = { 10, 0, { NAN, 0, 0, NAN, 0, 0, 0, 0, 1, 2, NAN } };
 	bool fine = true;
-	if (step == 40)
+	if (step == 20)
+		fine = ob_controller_set_torques(c, &torque, 1, &e) && ob_controller_push(c, &push, 1, &e);
+	else if (step == 30)
+		fine = ob_controller_drag(c, &drag, 1, &e);
+	else if (step == 50)
+		fine = ob_controller_release(c, &push, 1, &e);
+	else if (step == 70)
+		fine = ob_controller_set_frictions(c, &ice, 1, &e);
+	else if (step == 100)
+		fine = ob_controller_set_states(c, &faster, 1, &e) && ob_controller_release(c, &drag, 1, &e);
+	else if (step == 40)
 		fine = ob_controller_set_forces(c, &force, 1, &e);
 	else if (step == 60)
 		fine = ob_controller_kick(c, &kick, 1, &e);
@@ -120,11 +133,23 @@ static void make_detour(ob_controller *c, const ob_universe *u, uint64_t *seed)
 		CHECK(ob_controller_forget(c, snapshot, &e));
 }
 
-static void kill_a_worker(const ob_universe *u)
+// Kills the worker of the first object that has one.
+static void kill_a_worker(const ob_universe *u, ob_controller *c)
 {
-	ob_worker_info w;
-	if (ob_universe_get_worker(u, 0, &w) && w.pid > 0 && w.pid != getpid())
-		kill(w.pid, SIGKILL);
+	ob_error e = { "" };
+	uint32_t worker;
+	ob_change of = { .id = 1 };
+	while (of.id < BALLS && !ob_universe_get_home(u, of.id, &worker))
+		of.id++;
+	CHECK(of.id == BALLS || ob_controller_kill(c, &of, 1, &e));
+	ob_universe_info before, now;
+	ob_universe_get_info(u, &before);
+	for (int i = 0; i < 100 * WAIT_S && of.id < BALLS; i++) {
+		ob_universe_get_info(u, &now);
+		if (now.deaths > before.deaths)
+			return;
+		pause_ms(10);
+	}
 }
 
 // seed: of the detours; 0: none
@@ -146,7 +171,7 @@ static uint64_t live(ob_isolation isolation, uint32_t workers, uint64_t seed, bo
 			make_detour(c, u, &seed);
 		change(c, step, created);
 		if (kills && step % 50 == 0)
-			kill_a_worker(u);
+			kill_a_worker(u, c);
 		CHECK(ob_controller_step(c, 10, &e));
 	}
 	hash = hash_of(u);
@@ -238,10 +263,55 @@ static void test_refused(const ob_universe *u, ob_controller *c)
 	refuse(ob_controller_set_forces(c, &huge, 1, &e), &e, "force: expected");
 	refuse(ob_controller_set_states(c, &turned, 1, &e), &e, "unit quaternion");
 	refuse(ob_controller_create(c, "boks {}", id, 2, &n, &e), &e, "unknown name");
+	const ob_change away = { 1, 0, { 0, 0, 1, 9, 0, 0 } }, nowhere = { 1, 0, { NAN } },
+			wild = { 1, 0, { 0, 0, 1, 0, 0, 0, 1e9 } }, rough = { 1, 0, { -1 } };
+	refuse(ob_controller_push(c, &away, 1, &e), &e, "point: expected one of the object");
+	refuse(ob_controller_drag(c, &nowhere, 1, &e), &e, "target: expected");
+	refuse(ob_controller_drag(c, &wild, 1, &e), &e, "frequency: expected");
+	refuse(ob_controller_drag(c, &ground, 1, &e), &e, "does not move by forces");
+	refuse(ob_controller_set_torques(c, &huge, 1, &e), &e, "twist: expected");
+	refuse(ob_controller_set_frictions(c, &rough, 1, &e), &e, "friction: expected");
+	ob_universe_info info;
+	ob_universe_get_info(u, &info);
+	if (strcmp(info.isolation, "thread") == 0)
+		refuse(ob_controller_kill(c, &wild, 1, &e), &e, "simulators are threads");
+	else
+		refuse(ob_controller_kill(c, &ground, 1, &e), &e, "has no simulator");
 	refuse(ob_controller_message(c, 1, (const char *const[]){ "hop" }, 1, &e), &e, "no script");
 	const ob_change mixed[] = { { 1, 0, { 0, 0, 5 } }, none };
 	refuse(ob_controller_kick(c, mixed, 2, &e), &e, "there is no object 77"); // and neither is kicked
 	CHECK(hash_of(u) == before && ob_controller_step(c, 0, &e) && hash_of(u) == before);
+}
+
+static ob_state state_of(const ob_universe *u, uint32_t id, const ob_controller *c)
+{
+	ob_motion m;
+	CHECK(ob_universe_get_motion(u, id, &m));
+	return ob_motion_at(&m, ob_v3(0, 0, 0), ob_controller_time(c));
+}
+
+// Closed forms: a torque on a ball in free flight, a push that holds it against gravity, and the sag of a drag, g / w^2.
+static void test_pulls(const ob_universe *u, ob_controller *c)
+{
+	ob_error e = { "" };
+	ob_passport p;
+	CHECK(ob_universe_get_passport(u, 12, &p));
+	const double w = 2 * M_PI * 2, inertia = p.inertia.x;
+	const ob_change free = { 12, 0, { 30, 30, 20, 1 } }, torque = { 12, 0, { 0, inertia, 0 } },
+			hold = { 12, 0, { 0, 0, 9.81 * p.mass } }, drag = { 12, 0, { 31, 30, 20, 0, 0, 0, 2 } };
+	CHECK(ob_controller_set_states(c, &free, 1, &e) && ob_controller_set_torques(c, &torque, 1, &e) &&
+	      ob_controller_push(c, &hold, 1, &e) && ob_controller_step(c, 50, &e));
+	ob_state s = state_of(u, 12, c);
+	CHECK_NEAR(s.w.y, .5, 1e-12);
+	CHECK_NEAR(s.v.z, 0, 1e-12);
+	CHECK_NEAR(s.pose.p.z, 20, 1e-9);
+	CHECK(ob_controller_release(c, &free, 1, &e) && ob_controller_step(c, 10, &e));
+	CHECK_NEAR(state_of(u, 12, c).v.z, -.981, 1e-9);
+	CHECK(ob_controller_drag(c, &drag, 1, &e) && ob_controller_step(c, 400, &e));
+	s = state_of(u, 12, c);
+	CHECK_NEAR(s.pose.p.x, 31, 1e-6);
+	CHECK_NEAR(s.pose.p.z, 20 - 9.81 / (w * w), .1 * 9.81 / (w * w));
+	CHECK(ob_controller_release(c, &drag, 1, &e));
 }
 
 // Packets of random bytes, many of them valid at the beginning.
@@ -262,7 +332,9 @@ static void test_nonsense(const ob_universe *u)
 		for (size_t k = 0; k < bytes; k++)
 			p.payload[k] = (unsigned char)draw(&seed);
 		memcpy(p.magic, OB_CONTROL_MAGIC, sizeof p.magic);
-		p.command = draw(&seed) % 5 ? OB_CONTROL_FORCE + (uint32_t)draw(&seed) % 8 : (uint32_t)draw(&seed);
+		p.command = draw(&seed) % 5
+				    ? OB_CONTROL_FORCE + (uint32_t)draw(&seed) % (OB_CONTROL_KILL - OB_CONTROL_FORCE)
+				    : (uint32_t)draw(&seed);
 		p.command = p.command == OB_CONTROL_STEP || p.command == OB_CONTROL_RUN ? OB_CONTROL_PAUSE : p.command;
 		p.count = draw(&seed) % 2 ? (uint32_t)(bytes / sizeof(ob_change)) : (uint32_t)draw(&seed);
 		p.bytes = draw(&seed) % 4 ? (uint32_t)bytes : (uint32_t)draw(&seed);
@@ -290,12 +362,13 @@ static void test_session(ob_isolation isolation)
 		test_states(u, c);
 		test_wait(ob_universe_name(u), c);
 		test_refused(u, c);
+		test_pulls(u, c);
 		CHECK(ob_controller_run(c, INFINITY, &e));
-		for (int i = 0; i < 10 * WAIT_S && ob_controller_pause(c, &e) && ob_controller_steps(c) < 40; i++) {
+		for (int i = 0; i < 10 * WAIT_S && ob_controller_pause(c, &e) && ob_controller_steps(c) < 600; i++) {
 			CHECK(ob_controller_run(c, INFINITY, &e));
 			pause_ms(100);
 		}
-		CHECK(ob_controller_steps(c) >= 40);
+		CHECK(ob_controller_steps(c) >= 600);
 	}
 	ob_controller_close(c);
 	end(&r);

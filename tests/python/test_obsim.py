@@ -237,6 +237,39 @@ class Wrong(Case):
         self.says('no snapshots', u.snapshot)
         self.says('to itself', u['ball'].kick, (0, 0, 1))
 
+    def test_pulls(self):
+        """Pushed, turned, dragged: the closed forms; and what was let go falls."""
+        u = self.run_()
+        ball = u['ball']
+        ball.position = 20, 20, 10
+        ball.push((0, 0, 9.81 * ball.mass))
+        ball.torque = 0, 0, ball.inertia[2]
+        u.step(50)
+        numpy.testing.assert_allclose(ball.angular_velocity, [0, 0, .5], atol=1e-12)
+        numpy.testing.assert_allclose(ball.position, [20, 20, 10], atol=1e-9)
+        ball.release()
+        ball.drag((19, 20, 12))
+        u.step(200)
+        numpy.testing.assert_allclose(ball.position, [19, 20, 12], atol=.04)
+        self.says('point: expected', ball.drag, (0, 0, 0), (9, 0, 0))
+        ball.release()
+        u.step(1)
+        ball.velocity = 1, 0, 0
+        numpy.testing.assert_allclose(ball.position, [19, 20, 12], atol=.04)
+        ball.friction = .25
+        self.assertEqual(ball.friction, .25)
+        self.says('isolation process', ball.kill)
+
+    def test_killed_simulator(self):
+        u = self.run_({'isolation': 'process', 'workers': 2})
+        other = self.run_()
+        u.step(30)
+        u['box#3'].kill()
+        u.step(30)
+        other.step(60)
+        self.assertEqual(u.deaths, 1)
+        self.assertTrue((u.position == other.position).all())
+
     def test_killed(self):
         u = self.run_()
         os.kill(u._process.pid, signal.SIGKILL)

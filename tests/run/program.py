@@ -95,7 +95,7 @@ def checkpoint_areas(file):
 	(checkpoint/file.h, checkpoint/saved_run.c)."""
 	with open(file, "rb") as f:
 		table = f.read(4096)[128:]
-	lines = [struct.unpack_from("=4Q", table, 32 * i) for i in range(18)]
+	lines = [struct.unpack_from("=4Q", table, 32 * i) for i in range(19)]
 	return [(element, count, checksum) for i, (element, count, _, checksum) in enumerate(lines) if i not in (0, 4)]
 
 

@@ -62,8 +62,22 @@ class Send(program.Case):
 		self.send(self.name, "move", "listener", "2", code=1, saying="there is no worker 2 for objects: they are 0 to 1")
 		self.send(self.name, "move", "listener", "x", code=1, saying='expected the number of a worker, got "x"')
 		self.send(self.name, "move", "0", "1", code=1, saying="has no simulator")
+		self.send(self.name, "drag", "new", "0", "3", "2", "0", "0", ".2")
+		self.send(self.name, "push", "new", "0", "0", "1")
+		self.send(self.name, "torque", "new", "0", "0", ".1")
+		self.send(self.name, "release", "new")
+		for verb in "place", "velocity", "force", "kick":
+			self.send(self.name, verb, "new", "0", "-1", "-.5")
+		self.send(self.name, "friction", "new", ".1")
+		self.send(self.name, "friction", "new", "-1", code=1, saying="friction: expected")
+		self.send(self.name, "drag", "0", "0", "3", "2", code=1, saying="does not move by forces")
+		self.send(self.name, "drag", "new", "0", "3", "x", code=1, saying='three numbers after the object, got "x"')
+		self.send(self.name, "kill", "new", code=1, saying="--isolation process")
+		for verb in "keep", "return", "restart":
+			self.send(self.name, verb, code=1, saying="obsim serve can")
 		self.send("nobody", "remove", "x", code=1, saying="nobody")
-		for words, saying in ((), "no universe given"), ((self.name,), "create, remove, colour, message or move"), \
+		for words, saying in ((), "no universe given"), ((self.name,), "create, remove, colour, message"), \
+				((self.name, "drag", "new", "1", "2"), "drag OBJECT X Y Z"), \
 				((self.name, "remov", "x"), "did you mean remove"), ((self.name, "remove"), "remove OBJECT"):
 			self.send(*words, code=2, saying=saying)
 		self.run_.terminate()

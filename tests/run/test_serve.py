@@ -203,6 +203,13 @@ class Serve(Case):
 	def test_token(self):
 		token = self.start("--listen", "0.0.0.0:0")
 		self.assertEqual(len(token), 32)
+		roles = {"operate": token}
+		for _ in range(2):
+			role, url = self.run_.stdout.readline().split(": ")
+			roles[role.removeprefix("To ")] = url.strip().rpartition("=")[2]
+		self.assertEqual((len(set(roles.values())), set(roles)), (3, {"operate", "take part", "watch"}))
+		for role, its in roles.items():
+			self.check_role(self.viewer(path="/universe?token=" + its), role)
 		for path in "/universe", "/universe?token=", "/universe?token=" + "0" * 32, "/universe?token=" + token[:-1]:
 			with self.assertRaisesRegex(Refused, "403"):
 				Viewer(self.port, path)
@@ -212,6 +219,57 @@ class Serve(Case):
 		with self.assertRaisesRegex(Refused, "403"):
 			Viewer(self.port, "/universe?token=" + token, headers=["Origin: http://stranger.example"])
 		self.end()
+
+	def check_role(self, v, role):
+		"""What each role may do, and no more."""
+		self.assertEqual(v.told["welcome"]["role"], role)
+		moving = next(i for i, o in v.objects.items() if not o["static"])
+		to = {"id": moving, "generation": v.objects[moving]["generation"]}
+		for least, command in ("take part", {"do": "push", "force": [0, 0, .1], **to}), ("take part", {"do": "release"}), \
+				("operate", {"do": "edit", "friction": .3, **to}), ("operate", {"do": "pause"}), ("operate", {"do": "resume"}):
+			v.told.pop("error", None)
+			v.told.pop("details", None)
+			v.send(**command)
+			v.send(do="inspect", id=moving) # answered after it
+			v.until(lambda: "details" in v.told)
+			allowed = role == "operate" or role == least
+			self.assertEqual("error" not in v.told, allowed, (role, command, v.told.get("error")))
+		if role != "watch":
+			v.send(do="create", shape="box", size=[.2, .2, .2], at=[4, 0, 1], mass=5, name=role)
+			v.until(lambda: any(o["name"] == role for o in v.objects.values()))
+			own = next(i for i, o in v.objects.items() if o["name"] == role)
+			v.send(do="remove", id=own, generation=v.objects[own]["generation"])
+			v.until(lambda: own not in v.objects)
+
+	def test_change(self):
+		"""Dragged, edited, killed, kept, put back: all viewers see it."""
+		self.serve("--isolation", "process", "--workers", "objects", "-D", "n=8", scene="falling_boxes")
+		v, other = self.viewer(), self.viewer()
+		self.assertEqual(v.told["welcome"]["role"], "operate") # a program of the same user
+		i = max(i for i, o in v.objects.items() if not o["static"])
+		to = {"id": i, "generation": v.objects[i]["generation"]}
+		v.send(do="drag", target=[5, 5, 3], **to)
+		other.until(lambda: max(abs(a - b) for a, b in zip(other.objects[i]["p"], (5, 5, 3))) < .1)
+		v.send(do="inspect", id=i)
+		v.until(lambda: "details" in v.told)
+		simulator = v.told["details"]["pid"]
+		v.send(do="kill", **to)
+		v.until(lambda: v.told["details"].get("pid") not in (simulator, None))
+		v.send(do="keep")
+		v.send(do="edit", at=[-7, 0, 9], velocity=[0, 0, 3], colour=[1, 0, 0], friction=.1, **to)
+		other.until(lambda: other.objects[i]["p"][0] < 0)
+		v.send(do="return")
+		other.until(lambda: abs(other.objects[i]["p"][0] - 5) < .1)
+		v.close() # and lets go
+		other.until(lambda: other.objects[i]["p"][2] < 2)
+		other.send(do="create", shape="box", size=[.2, .2, .2], at=[4, 0, 1], mass=5, name="guest")
+		other.until(lambda: any(o["name"] == "guest" for o in other.objects.values()))
+		before = other.told["statistics"]["step"]
+		other.send(do="restart")
+		other.until(lambda: other.told["statistics"]["step"] < before)
+		other.until(lambda: not any(o["name"] == "guest" for o in other.objects.values()))
+		other.until(lambda: other.objects[i]["p"][0] < 4)
+		self.end(saying="was killed by SIGKILL")
 
 	def test_look_only(self):
 		self.serve("--readonly")

@@ -1,6 +1,7 @@
 // Commands of viewers: their meaning, and refusal of all other input.
 #include "check.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,22 +24,36 @@ static void test_meaning(void)
 		    "\"colour\":[1,0,0.5],\"friction\":0.25,\"restitution\":0.5,\"attitude\":[0,0,0,1],\"name\":"
 		    "\"B\\u00e4r\"}",
 		    &c));
-	const ob_passport *p = &c.def.passport;
+	const ob_passport *p = &c.request[0].def.passport;
 	CHECK(c.kind == OB_DO_CREATE && p->shape == OB_SHAPE_BOX && p->size.y == 1 && p->size.z == 1.5 && p->mass == 7);
-	CHECK(c.def.state.pose.p.y == -2 && c.def.state.v.z == -1 && c.def.state.pose.q.z == 1 && p->colour[2] == .5f);
-	CHECK(p->friction == .25 && p->restitution == .5 && strcmp(p->name, "B\xc3\xa4r") == 0 && isinf(c.def.dies));
+	CHECK(c.request[0].def.state.pose.p.y == -2 && c.request[0].def.state.v.z == -1 &&
+	      c.request[0].def.state.pose.q.z == 1 && p->colour[2] == .5f);
+	CHECK(p->friction == .25 && p->restitution == .5 && strcmp(p->name, "B\xc3\xa4r") == 0 &&
+	      isinf(c.request[0].def.dies));
 	CHECK(reads("{\"do\":\"create\",\"shape\":\"sphere\",\"size\":[1,0,0],\"at\":[0,0,9],\"mass\":1}", &c));
-	CHECK(strcmp(c.def.passport.name, "sphere") == 0 && c.def.passport.friction == .5 && c.def.state.pose.q.w == 1);
+	CHECK(strcmp(c.request[0].def.passport.name, "sphere") == 0 && c.request[0].def.passport.friction == .5 &&
+	      c.request[0].def.state.pose.q.w == 1);
 	// small numbers as written by a page
 	CHECK(reads("{\"do\":\"create\",\"shape\":\"sphere\",\"size\":[1,0,0],\"at\":[-0.000123456789012345678,1e-7,"
 		    "1.25E+2],\"mass\":0.30000000000000000000000001e1,\"name\":\"\\\"0.000000000000000000000012345\"}",
 		    &c));
-	CHECK_NEAR(c.def.state.pose.p.x, -0.000123456789012345678, 1e-16);
-	CHECK(c.def.state.pose.p.y == 1e-7 && c.def.state.pose.p.z == 125 && c.def.passport.mass == 3);
-	CHECK(strcmp(c.def.passport.name, "\"0.000000000000000000000012345") == 0);
+	CHECK_NEAR(c.request[0].def.state.pose.p.x, -0.000123456789012345678, 1e-16);
+	CHECK(c.request[0].def.state.pose.p.y == 1e-7 && c.request[0].def.state.pose.p.z == 125 &&
+	      c.request[0].def.passport.mass == 3);
+	CHECK(strcmp(c.request[0].def.passport.name, "\"0.000000000000000000000012345") == 0);
 	CHECK(reads(" {\"do\":\"remove\", \"id\":12, \"generation\":3} ", &c));
-	CHECK(c.kind == OB_DO_REMOVE && c.id == 12 && c.generation == 3);
-	CHECK(reads("{\"do\":\"pause\"}", &c) && c.kind == OB_DO_PAUSE);
+	CHECK(c.kind == OB_DO_REMOVE && c.requests == 1 && c.request[0].id == 12 && c.request[0].generation == 3);
+	CHECK(reads("{\"do\":\"drag\",\"id\":12,\"generation\":3,\"target\":[1,2,3],\"point\":[0.1,0,0]}", &c));
+	const ob_request *q = &c.request[0];
+	CHECK(q->kind == OB_REQUEST_DRAG && q->id == 12 && q->target.z == 3 && q->point.x == .1 && q->frequency == 3);
+	CHECK(reads("{\"do\":\"edit\",\"id\":12,\"generation\":3,\"velocity\":[1,2,3],\"friction\":0.1}", &c));
+	CHECK(c.requests == 2 && q->kind == OB_REQUEST_STATE && isnan(q->state.pose.p.x) && isnan(q->state.pose.q.w));
+	CHECK(q->state.v.y == 2 && isnan(q->state.w.x) && c.request[1].kind == OB_REQUEST_FRICTION);
+	CHECK(c.request[1].friction == .1 && c.request[1].id == 12);
+	CHECK(reads("{\"do\":\"release\"}", &c) && q->kind == OB_REQUEST_RELEASE && q->id == UINT32_MAX);
+	CHECK(reads("{\"do\":\"message\",\"id\":12,\"generation\":3,\"text\":\"hop\"}", &c) && q->bytes > 3);
+	CHECK(reads("{\"do\":\"restart\"}", &c) && q->kind == OB_REQUEST_RESTART && c.requests == 1);
+	CHECK(reads("{\"do\":\"pause\"}", &c) && c.kind == OB_DO_PAUSE && c.requests == 0);
 	CHECK(reads("{\"do\":\"step\"}", &c) && c.kind == OB_DO_STEP && c.steps == 1);
 	CHECK(reads("{\"do\":\"step\",\"steps\":25}", &c) && c.steps == 25);
 	CHECK(reads("{\"do\":\"rate\",\"rate\":0.25}", &c) && c.rate == .25);
@@ -71,6 +86,13 @@ static void test_nonsense(void)
 		"{\"do\":\"remove\",\"id\":1}",
 		"{\"do\":\"remove\",\"id\":-1,\"generation\":1}",
 		"{\"do\":\"remove\",\"id\":1e99,\"generation\":1}",
+		"{\"do\":\"drag\",\"id\":1,\"generation\":1}",
+		"{\"do\":\"drag\",\"id\":1,\"generation\":1,\"target\":[1,2]}",
+		"{\"do\":\"edit\",\"id\":1,\"generation\":1}",
+		"{\"do\":\"edit\",\"id\":1,\"generation\":1,\"attitude\":[0,0,0,0]}",
+		"{\"do\":\"edit\",\"id\":1,\"generation\":1,\"mass\":1}",
+		"{\"do\":\"message\",\"id\":1,\"generation\":1,\"text\":7}",
+		"{\"do\":\"kill\",\"id\":1}",
 		"{\"do\":\"step\",\"steps\":0}",
 		"{\"do\":\"rate\",\"rate\":-1}",
 		"{\"do\":\"contacts\",\"on\":1}",
@@ -129,7 +151,8 @@ static void test_bytes(void)
 		memcpy(copy, text, n);
 		copy[n] = 0;
 		if (ob_command_read(&c, copy, n, &e) && c.kind == OB_DO_CREATE)
-			CHECK(isfinite(c.def.state.v.x) && memchr(c.def.passport.name, 0, OB_NAME_MAX));
+			CHECK(isfinite(c.request[0].def.state.v.x) &&
+			      memchr(c.request[0].def.passport.name, 0, OB_NAME_MAX));
 		free(copy);
 	}
 	char *long_one = malloc(OB_COMMAND_BYTES_MAX + 2);

@@ -85,10 +85,11 @@ export class Panel extends EventTarget {
 	welcome(w) {
 		$('#title').textContent = w.title;
 		document.title = `${w.title} – obsim`;
+		const operates = w.role === 'operate';
 		for (const what of ['pause', 'step', 'make', 'remove', 'throw'])
 			for (const button of document.querySelectorAll(`[data-do=${what}]`))
-				button.disabled = w.look_only;
-		$('#rate').disabled = w.look_only;
+				button.disabled = w.look_only || (!operates && (what === 'pause' || what === 'step'));
+		$('#rate').disabled = !operates;
 		this.looksOnly = w.look_only;
 		this.isolation = w.isolation;
 		this.pool = `one of ${w.workers} ${w.isolation === 'process' ? 'processes' : 'threads'}`;
