@@ -48,6 +48,26 @@ bool ob_controller_snapshot(ob_controller *c, uint64_t *snapshot, ob_error *e);
 bool ob_controller_restore(ob_controller *c, uint64_t snapshot, ob_error *e);
 bool ob_controller_forget(ob_controller *c, uint64_t snapshot, ob_error *e);
 
+// Begins again, as the scene makes it of a seed (NULL: the same as before) and of parameters, "name=value" as -D has them,
+// which replace those of the same names. The universe is a new one of the same name: attach it again. Snapshots are lost.
+bool ob_controller_reset(ob_controller *c, const uint64_t *seed, const char *const *parameters, size_t n, ob_error *e);
+// Writes the state into a checkpoint file, from which obsim run and obsim control go on (--resume). path: as the host's
+// process finds it.
+bool ob_controller_save(ob_controller *c, const char *path, ob_error *e);
+
+// Contact of two objects that began or ended in a step.
+typedef struct ob_contact_event {
+	uint32_t a, b; // ids, a < b
+	uint32_t step; // number of steps that were then complete
+	uint32_t begins; // 1, or 0: it ended
+} ob_contact_event;
+
+// Notes all contacts that begin and end from now on, or no longer. The run then pauses after each step.
+bool ob_controller_subscribe_contacts(ob_controller *c, bool on, ob_error *e);
+// Takes the oldest events, at most max; n: how many; lost: events that found no room, a million before they are taken.
+bool ob_controller_take_contacts(ob_controller *c, ob_contact_event *out, size_t max, size_t *n, uint64_t *lost,
+				 ob_error *e);
+
 // Changes n objects: constant external force from now on (value: x y z, N); impulse and angular impulse (N s, N m s);
 // state to go on from (position m, attitude w x y z, velocity m/s, angular velocity rad/s; a part whose first number is NaN
 // stays as it is), also of static and kinematic objects, whose path ends; colour (linear r g b a, 0 to 1).
@@ -64,6 +84,8 @@ bool ob_controller_push(ob_controller *c, const ob_change *change, size_t n, ob_
 bool ob_controller_drag(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 bool ob_controller_release(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 bool ob_controller_set_frictions(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+// Velocity of the surface of static and kinematic objects, as of a belt (x y z, m/s, body frame).
+bool ob_controller_set_surface_velocities(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 // Kills the worker processes that simulate these objects (value unused): a fault, after which the run goes on to the same
 // bits. Refused where simulators are threads.
 bool ob_controller_kill(ob_controller *c, const ob_change *change, size_t n, ob_error *e);

@@ -29,6 +29,7 @@ from obsim._native import Error
 __all__ = ['Error', 'Object', 'Run', 'Universe', 'attach', 'names', 'run']
 
 CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
+CONTACT_EVENT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('step', 'u4'), ('begins', 'u4')])
 CHANGE = numpy.dtype([('id', 'u4'), ('generation', 'u4'), ('value', 'f8', 13)])
 _PRESENT, _STATIC, _FROZEN, _KINEMATIC = 1, 2, 4, 8
 _SAME = numpy.nan
@@ -115,6 +116,16 @@ class Object:
         self._universe.set_torques([self._id], [newton_metres])
 
     torque = property(None, _set_torque, doc='N m: a torque, from now on; to set.')
+
+    @property
+    def surface_velocity(self):
+        """Of a static or kinematic object: m/s, body frame."""
+        p = self._passport()
+        return _vector(p.force) if p.flags & (_STATIC | _KINEMATIC) else numpy.zeros(3) # they share memory
+
+    @surface_velocity.setter
+    def surface_velocity(self, velocity):
+        self._universe.set_surface_velocities([self._id], [velocity])
 
     @property
     def friction(self):
@@ -272,28 +283,29 @@ class Universe:
         raise Error('this universe is read only: obsim.run starts one that can be changed')
 
     step = reset = set_states = set_forces = set_colours = kick = send = remove = create = snapshot = restore = _refuse
-    set_torques = set_frictions = push = drag = release = kill = _refuse
+    save = watch_contacts = contact_events = set_torques = set_frictions = set_surface_velocities = push = drag = release = kill = _refuse
 
 
 class Run(Universe):
     """A universe that this program leads. It ends with close, with the end of a with statement, or with this program."""
 
-    def __init__(self, scene, options, program, parameters):
-        self._command = [program or _native.find_program(), 'control', str(scene)]
+    def __init__(self, scene, options, program, parameters, resume=None):
+        self._command = [program or _native.find_program(), 'control', *([str(scene)] if scene else []),
+                         *(['--resume', str(resume)] if resume else [])]
         self._options, self._parameters = dict(options or {}), parameters
-        self._begin(None)
+        self._begin()
 
-    def _words(self, seed):
+    def _words(self):
         words = [word for name, value in self._parameters.items() for word in ('-D', f'{name}={_text(value)}')]
-        for name, value in {**self._options, **({} if seed is None else {'seed': seed})}.items():
+        for name, value in self._options.items():
             option = '--' + name.replace('_', '-')
             words += [option] if value is True else [] if value is False else [f'{option}={value}']
         return words
 
-    def _begin(self, seed):
-        name = self._options.get('name') or f'python-{os.getpid()}-{next(_numbers)}'
+    def _begin(self):
+        self._name = name = self._options.get('name') or f'python-{os.getpid()}-{next(_numbers)}'
         self._messages = tempfile.TemporaryFile()
-        words = [*self._command, *self._words(seed), *([] if 'name' in self._options else ['--name', name])]
+        words = [*self._command, *self._words(), *([] if 'name' in self._options else ['--name', name])]
         self._process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=self._messages,
                                          start_new_session=True)
         self._controller = None
@@ -351,13 +363,39 @@ class Run(Universe):
     def pause(self):
         self._call('ob_controller_pause')
 
-    def reset(self, seed=None):
-        """Begins again: in the same state, or, with a seed, as the scene makes it of that. Snapshots are lost then."""
-        if seed is None and self._start is not None:
+    def reset(self, seed=None, **parameters):
+        """Begins again: in the same state, or as the scene makes it of a seed, and of parameters in place of those of the
+        same names. Snapshots are lost then, and objects from before must be looked up again."""
+        if seed is None and not parameters and self._start is not None:
             self.restore(self._start)
             return
-        self.close()
-        self._begin(seed)
+        words = [f'{name}={_text(value)}'.encode() for name, value in parameters.items()]
+        self._call('ob_controller_reset', None if seed is None else ctypes.byref(ctypes.c_uint64(seed)),
+                   (ctypes.c_char_p * len(words))(*words), len(words))
+        self._detach()
+        super().__init__(self._name)
+        self._start = self.snapshot() if self._options.get('arch') != 'monolith' else None
+
+    def save(self, path):
+        """Writes the state into a checkpoint file, from which obsim.run(resume=path) and obsim run --resume go on."""
+        self._call('ob_controller_save', os.fsencode(os.path.abspath(path)))
+
+    # -- contacts
+
+    def watch_contacts(self, on=True):
+        """Notes the contacts that begin and end in each step from now on, for contact_events."""
+        self._call('ob_controller_subscribe_contacts', on)
+
+    def contact_events(self):
+        """Takes what was noted, oldest first: a structured array of ids a < b, the step, begins (or it ended)."""
+        parts, n, lost = [], ctypes.c_size_t(), ctypes.c_uint64()
+        while not parts or len(parts[-1]) == len(events):
+            events = numpy.empty(1 << 14, CONTACT_EVENT)
+            self._call('ob_controller_take_contacts', events.ctypes.data, len(events), ctypes.byref(n), ctypes.byref(lost))
+            if lost.value:
+                raise Error(f'{lost.value} contact events were lost: take them more often')
+            parts.append(events[:n.value])
+        return numpy.concatenate(parts)
 
     # -- snapshots
 
@@ -414,6 +452,10 @@ class Run(Universe):
     def set_frictions(self, ids, coefficient):
         """Coulomb coefficients. The contacts of these objects begin anew."""
         self._change('ob_controller_set_frictions', ids, (coefficient, 1))
+
+    def set_surface_velocities(self, ids, velocity):
+        """Velocities of the surfaces of static and kinematic objects, as of belts (m/s, body frame)."""
+        self._change('ob_controller_set_surface_velocities', ids, (velocity, 3))
 
     def kill(self, ids):
         """Kills the worker processes that simulate these objects."""
@@ -474,7 +516,8 @@ def _stop(process, messages):
     messages.close()
 
 
-def run(scene, options=None, program=None, **parameters):
+def run(scene=None, options=None, program=None, resume=None, **parameters):
     """Starts a scene, a path or the name of one that comes with obsim, and takes control of it. Keyword arguments are the
-    scene's parameters; options are those of obsim control, as {'workers': 2, 'isolation': 'process', 'harden': True}."""
-    return Run(scene, options, program, parameters)
+    scene's parameters; options are those of obsim control, as {'workers': 2, 'isolation': 'process', 'harden': True}. resume: a checkpoint
+    file to go on from, in place of a scene."""
+    return Run(scene, options, program, parameters, resume)

@@ -88,6 +88,12 @@ _functions = {
     'ob_controller_release': (ctypes.c_bool, _change),
     'ob_controller_set_frictions': (ctypes.c_bool, _change),
     'ob_controller_kill': (ctypes.c_bool, _change),
+    'ob_controller_set_surface_velocities': (ctypes.c_bool, _change),
+    'ob_controller_reset': (ctypes.c_bool, [_pointer, ctypes.POINTER(_u64), _pointer, _size, _pointer]),
+    'ob_controller_save': (ctypes.c_bool, [_pointer, ctypes.c_char_p, _pointer]),
+    'ob_controller_subscribe_contacts': (ctypes.c_bool, [_pointer, ctypes.c_bool, _pointer]),
+    'ob_controller_take_contacts': (ctypes.c_bool, [_pointer, _pointer, _size, ctypes.POINTER(_size), ctypes.POINTER(_u64),
+                                                    _pointer]),
     'ob_controller_create': (ctypes.c_bool, [_pointer, ctypes.c_char_p, _pointer, _size, ctypes.POINTER(_size), _pointer]),
     'ob_controller_message': (ctypes.c_bool, [_pointer, _u32, _pointer, _size, _pointer]),
 }

@@ -128,7 +128,8 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_CHECKPOINT] = { NULL, "checkpoint", "FILE",
 				   "what the run needs to go on, replaced as it goes, and at its end", RUN, 0 },
 	[OB_OPTION_EVERY] = { NULL, "every", "S", "simulated seconds from one checkpoint to the next (1)", RUN, 0 },
-	[OB_OPTION_RESUME] = { NULL, "resume", "FILE", "go on from a checkpoint, instead of a scene", RUN, 0 },
+	[OB_OPTION_RESUME] = { NULL, "resume", "FILE", "go on from a checkpoint, instead of a scene", RUN | CONTROL,
+			       0 },
 	[OB_OPTION_REPLAY] = { NULL, "replay", "FILE", "show what was recorded, instead of a scene", RUN | SERVE, 0 },
 
 	[OB_OPTION_LOG_REQUESTS] = { NULL, "log-requests", "FILE",

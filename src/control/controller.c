@@ -191,6 +191,11 @@ bool ob_controller_set_frictions(ob_controller *c, const ob_change *change, size
 	return change_all(c, OB_CONTROL_FRICTION, change, n, e);
 }
 
+bool ob_controller_set_surface_velocities(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_SURFACE, change, n, e);
+}
+
 bool ob_controller_kill(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
 {
 	return change_all(c, OB_CONTROL_KILL, change, n, e);
@@ -212,19 +217,60 @@ bool ob_controller_create(ob_controller *c, const char *text, uint32_t *ids, siz
 	return true;
 }
 
+// Adds words to the payload, each with the 0 that ends it.
+static bool add_words(ob_control_packet *p, const char *const *word, size_t n, const char *what, ob_error *e)
+{
+	p->count = (uint32_t)n;
+	for (size_t i = 0; i < n; i++) {
+		const size_t size = strlen(word[i]) + 1;
+		if (size > sizeof p->payload - p->bytes)
+			return ob_fail(e, "%s: expected at most %zu bytes in all", what, sizeof p->payload);
+		memcpy(p->payload + p->bytes, word[i], size);
+		p->bytes += (uint32_t)size;
+	}
+	return true;
+}
+
 bool ob_controller_message(ob_controller *c, uint32_t id, const char *const *words, size_t n, ob_error *e)
 {
 	const ob_change to = { .id = id };
 	ob_control_packet *p = command(c, OB_CONTROL_MESSAGE);
-	p->count = (uint32_t)n;
 	memcpy(p->payload, &to, sizeof to);
 	p->bytes = sizeof to;
-	for (size_t i = 0; i < n; i++) {
-		const size_t size = strlen(words[i]) + 1;
-		if (size > sizeof p->payload - p->bytes)
-			return ob_fail(e, "message: its words are too long");
-		memcpy(p->payload + p->bytes, words[i], size);
-		p->bytes += (uint32_t)size;
+	return add_words(p, words, n, "message", e) && call(c, e);
+}
+
+bool ob_controller_reset(ob_controller *c, const uint64_t *seed, const char *const *parameters, size_t n, ob_error *e)
+{
+	ob_control_packet *p = command(c, OB_CONTROL_RESET);
+	p->value = seed != NULL;
+	p->number = seed ? *seed : 0;
+	return add_words(p, parameters, n, "parameters", e) && call(c, e);
+}
+
+bool ob_controller_save(ob_controller *c, const char *path, ob_error *e)
+{
+	return add_words(command(c, OB_CONTROL_SAVE), &path, 1, "path", e) && call(c, e);
+}
+
+bool ob_controller_subscribe_contacts(ob_controller *c, bool on, ob_error *e)
+{
+	return call_number(c, OB_CONTROL_SUBSCRIBE, on, e);
+}
+
+bool ob_controller_take_contacts(ob_controller *c, ob_contact_event *out, size_t max, size_t *n, uint64_t *lost,
+				 ob_error *e)
+{
+	enum { EACH = OB_CONTROL_IDS / 4 };
+	*n = 0;
+	*lost = 0;
+	for (size_t some = EACH; some == EACH && *n < max; *n += some) {
+		const size_t most = max - *n < EACH ? max - *n : EACH;
+		if (!call_number(c, OB_CONTROL_EVENTS, most, e))
+			return false;
+		some = c->answer.count < most ? c->answer.count : most;
+		memcpy(out + *n, c->answer.event, some * sizeof *out);
+		*lost += c->answer.number;
 	}
-	return call(c, e);
+	return true;
 }

@@ -38,6 +38,11 @@ typedef enum ob_control_command {
 	OB_CONTROL_RELEASE,
 	OB_CONTROL_FRICTION,
 	OB_CONTROL_KILL,
+	OB_CONTROL_SURFACE,
+	OB_CONTROL_RESET, // value: 1 = number is a seed; payload: count words "name=value", each ended by 0
+	OB_CONTROL_SAVE, // payload: path of a checkpoint file, ended by 0
+	OB_CONTROL_SUBSCRIBE, // number: 1 = to contacts that begin and end, 0 = no longer
+	OB_CONTROL_EVENTS, // the answer has some of them, oldest first, and in number how many were lost
 	OB_CONTROL_COMMANDS
 } ob_control_command;
 
@@ -56,7 +61,10 @@ typedef struct ob_control_answer {
 	uint64_t step, number;
 	double time; // s, simulated
 	uint32_t count, zero;
-	uint32_t id[OB_CONTROL_IDS];
+	union {
+		uint32_t id[OB_CONTROL_IDS];
+		ob_contact_event event[OB_CONTROL_IDS / 4];
+	};
 } ob_control_answer;
 
 #endif

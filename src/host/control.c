@@ -11,7 +11,9 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/log.h"
 #include "control/packet.h"
+#include "host/contact_events.h"
 #include "host/host_state.h"
 #include "host/pace.h"
 #include "shape/shape.h"
@@ -27,6 +29,9 @@ struct ob_control {
 	uint64_t first, target, batch; // step that the current command began at and waits for; steps a go
 	double went; // s, wall, of the last go
 	bool stepping, running; // a command waits for steps; the run goes on by itself
+	ob_control_turn turn; // by the caller, in the current command
+	ob_contact_events *events; // NULL: the program has not subscribed
+	uint64_t looked; // step at which contacts were looked at
 	ob_pace pace; // then
 	uint32_t origin; // of the objects that the last command has created
 	ob_control_packet packet;
@@ -59,6 +64,7 @@ void ob_control_destroy(ob_control *c)
 	close(c->taken[1]);
 	if (c->fd >= 0)
 		close(c->fd);
+	ob_contact_events_destroy(c->events);
 	ob_pace_end(&c->pace);
 	free(c);
 }
@@ -83,7 +89,7 @@ static void answer(ob_control *c, ob_host *h)
 void ob_control_end(ob_control *c, const char *why)
 {
 	ob_fail(&c->answer.error, "%s", why);
-	if (c->fd >= 0 && c->stepping)
+	if (c->fd >= 0 && (c->stepping || c->turn == OB_CONTROL_RESETS))
 		send(c->fd, &c->answer, sizeof c->answer, MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
@@ -114,7 +120,7 @@ static const ob_request_kind changes[OB_CONTROL_COMMANDS] = {
 	[OB_CONTROL_REMOVE] = OB_REQUEST_REMOVE,   [OB_CONTROL_TORQUE] = OB_REQUEST_TORQUE,
 	[OB_CONTROL_PUSH] = OB_REQUEST_PUSH,       [OB_CONTROL_DRAG] = OB_REQUEST_DRAG,
 	[OB_CONTROL_RELEASE] = OB_REQUEST_RELEASE, [OB_CONTROL_FRICTION] = OB_REQUEST_FRICTION,
-	[OB_CONTROL_KILL] = OB_REQUEST_KILL,
+	[OB_CONTROL_KILL] = OB_REQUEST_KILL,       [OB_CONTROL_SURFACE] = OB_REQUEST_SURFACE,
 };
 
 static void read_change(const ob_change *change, ob_request *r)
@@ -127,6 +133,7 @@ static void read_change(const ob_change *change, ob_request *r)
 	r->point = second;
 	r->frequency = v[6] == 0 ? OB_PULL_FREQUENCY : v[6];
 	r->friction = v[0];
+	r->surface_velocity = first;
 	r->state = (ob_state){ { { v[0], v[1], v[2] }, { v[3], v[4], v[5], v[6] } },
 			       { v[7], v[8], v[9] },
 			       { v[10], v[11], v[12] } };
@@ -210,6 +217,67 @@ static bool send_message(ob_control *c, ob_host *h, ob_error *e)
 	return fine;
 }
 
+// Checks that the payload holds as many words as it says, each ended by 0.
+static bool has_words(const ob_control_packet *p, ob_error *e)
+{
+	uint32_t words = 0;
+	for (uint32_t i = 0; i < p->bytes; i++)
+		words += p->payload[i] == 0;
+	return (words == p->count && (p->bytes == 0 || p->payload[p->bytes - 1] == 0)) ||
+	       ob_fail(e, "the words of the command are not whole");
+}
+
+// Leaves the command to the caller of ob_control_next.
+static bool hand_on(ob_control *c, ob_control_turn turn, ob_error *e)
+{
+	if (!has_words(&c->packet, e))
+		return false;
+	if (turn == OB_CONTROL_SAVES && c->packet.count != 1)
+		return ob_fail(e, "save: expected a path");
+	c->turn = turn;
+	return true;
+}
+
+static bool subscribe(ob_control *c, const ob_host *h, ob_error *e)
+{
+	ob_contact_events_destroy(c->events);
+	c->events = c->packet.number ? ob_contact_events_create(h->u) : NULL;
+	c->looked = ob_step_count(h->u);
+	return c->events || !c->packet.number || ob_fail(e, "out of memory");
+}
+
+static bool take_events(ob_control *c, ob_error *e)
+{
+	enum { EACH = OB_CONTROL_IDS / 4 };
+	ob_control_answer *a = &c->answer;
+	if (!c->events)
+		return ob_fail(e, "no contacts are noted: subscribe first");
+	a->count = (uint32_t)ob_contact_events_take(c->events, a->event,
+						    c->packet.number < EACH ? c->packet.number : EACH, &a->number);
+	return true;
+}
+
+// After a wait: notes contacts of a step that has ended.
+static void look_at_contacts(ob_control *c, const ob_host *h)
+{
+	const uint64_t now = ob_step_count(h->u);
+	if (!c->events || now == c->looked)
+		return;
+	if (!ob_contact_events_look(c->events, h->u, now < c->looked))
+		ob_log_warn("out of memory: contacts are no longer noted");
+	c->looked = now;
+}
+
+static bool restore(ob_control *c, ob_host *h, uint64_t number, ob_error *e)
+{
+	ob_pace_restart(&c->pace);
+	const bool fine = ob_host_restore_snapshot(h, number, e);
+	if (fine && c->events)
+		ob_contact_events_look(c->events, h->u, true);
+	c->looked = ob_step_count(h->u);
+	return fine;
+}
+
 static bool begin_steps(ob_control *c, const ob_host *h, uint64_t last, ob_error *e)
 {
 	const uint64_t now = ob_step_count(h->u), left = last - now;
@@ -250,14 +318,21 @@ static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
 	case OB_CONTROL_SNAPSHOT:
 		return (a->number = ob_host_keep_snapshot(h, e)) != 0;
 	case OB_CONTROL_RESTORE:
-		ob_pace_restart(&c->pace);
-		return ob_host_restore_snapshot(h, number, e);
+		return restore(c, h, number, e);
 	case OB_CONTROL_FORGET:
 		return ob_host_forget_snapshot(h, number, e);
 	case OB_CONTROL_CREATE:
 		return create(c, h, e);
 	case OB_CONTROL_MESSAGE:
 		return send_message(c, h, e);
+	case OB_CONTROL_RESET:
+		return hand_on(c, OB_CONTROL_RESETS, e);
+	case OB_CONTROL_SAVE:
+		return hand_on(c, OB_CONTROL_SAVES, e);
+	case OB_CONTROL_SUBSCRIBE:
+		return subscribe(c, h, e);
+	case OB_CONTROL_EVENTS:
+		return take_events(c, e);
 	default:
 		if (c->packet.command >= OB_CONTROL_COMMANDS)
 			return ob_fail(e, "this version of obsim has no command %u", c->packet.command);
@@ -282,7 +357,7 @@ static void take_command(ob_control *c, ob_host *h, uint64_t last, ssize_t n)
 		ob_fail(&c->answer.error, "the command makes no sense to this version of obsim");
 	else if (!carry_out(c, h, last, &e))
 		c->answer.error = e;
-	if (!c->stepping)
+	if (!c->stepping && c->turn == OB_CONTROL_GOES_ON)
 		answer(c, h);
 }
 
@@ -314,28 +389,64 @@ static uint64_t some_steps(ob_control *c, uint64_t now)
 		c->batch *= 2;
 	else if (now != c->first && took > 2 * go_time && c->batch > 1)
 		c->batch /= 2;
+	if (c->events)
+		return now + 1;
 	return c->target - now < c->batch ? c->target : now + c->batch;
 }
 
-bool ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64_t *step)
+const char *ob_control_words(const ob_control *c, uint32_t *count, const uint64_t **seed)
+{
+	*count = c->packet.count;
+	*seed = c->packet.value != 0 ? &c->packet.number : NULL;
+	return (const char *)c->packet.payload;
+}
+
+void ob_control_reply(ob_control *c, ob_host *h, const ob_error *why)
+{
+	if (why)
+		c->answer.error = *why;
+	c->turn = OB_CONTROL_GOES_ON;
+	answer(c, h);
+}
+
+// Begins with a new host: nothing of the old one holds any more.
+static void begin_anew(ob_control *c, ob_host *h)
+{
+	ob_contact_events *old = c->events;
+	c->stepping = c->running = false;
+	c->batch = 1;
+	c->events = old ? ob_contact_events_create(h->u) : NULL;
+	c->looked = ob_step_count(h->u);
+	ob_contact_events_destroy(old);
+	ob_pace_restart(&c->pace);
+	ob_control_reply(c, h, NULL);
+}
+
+ob_control_turn ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64_t *step)
 {
 	const double length = ob_universe_settings(h->u)->step_length;
 	uint64_t now = ob_step_count(h->u);
+	if (c->turn == OB_CONTROL_RESETS)
+		begin_anew(c, h);
+	c->turn = OB_CONTROL_GOES_ON;
+	look_at_contacts(c, h);
 	if (c->stepping && now >= c->target) {
 		c->stepping = false;
 		answer(c, h);
 	}
 	const bool stands = !c->stepping && (!c->running || now >= last);
 	if (!listen_for(c, h, last, stands ? IDLE_MS : 0))
-		return false;
+		return OB_CONTROL_LEFT;
 	now = ob_step_count(h->u); // a snapshot may have been restored
 	*step = now;
+	if (c->turn != OB_CONTROL_GOES_ON)
+		return c->turn;
 	if (c->stepping) {
 		*step = some_steps(c, now);
 	} else if (c->running && now < last) {
 		const uint64_t due = ob_pace_wait(&c->pace, now, length, .001);
-		*step = due == UINT64_MAX ? now + 1 : due;
+		*step = due == UINT64_MAX || (c->events && due > now) ? now + 1 : due;
 		*step = *step < last ? *step : last;
 	}
-	return true;
+	return OB_CONTROL_GOES_ON;
 }

@@ -19,14 +19,27 @@
 typedef struct ob_host ob_host;
 typedef struct ob_control ob_control;
 
+// Next action of the caller of ob_control_next.
+typedef enum ob_control_turn {
+	OB_CONTROL_LEFT, // the program has left: ends the run
+	OB_CONTROL_GOES_ON,
+	OB_CONTROL_SAVES, // saves the run to the path of ob_control_words, and answers
+	OB_CONTROL_RESETS, // begins the run anew, with the parameters of ob_control_words, in a new host; or refuses
+} ob_control_turn;
+
 ob_control *ob_control_create(ob_error *e);
 void ob_control_destroy(ob_control *c); // the host has been stopped; NULL is allowed
 
 // Takes over a caller's socket. false and e: another program controls the run.
 bool ob_control_take(ob_control *c, int fd, ob_error *e);
 // After a wait: answers what is done, carries out commands, and returns the step to go to: the current one while there is
-// nothing to do, after a short wait. false: the program has left.
-bool ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64_t *step);
+// nothing to do, after a short wait.
+ob_control_turn ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64_t *step);
+// Words of the command that the caller is to carry out, each ended by 0; count: how many. seed, for a reset: NULL = the same.
+const char *ob_control_words(const ob_control *c, uint32_t *count, const uint64_t **seed);
+// Answers that command. why: NULL = done; else the run is as before. A reset that succeeds is answered by the next
+// ob_control_next, for the new host.
+void ob_control_reply(ob_control *c, ob_host *h, const ob_error *why);
 // Tells the program why the run has ended.
 void ob_control_end(ob_control *c, const char *why);
 

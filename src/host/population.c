@@ -411,7 +411,8 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 	const ob_pull pull = pull_of(r);
 	const ob_state state = complete_state(&legal, &r->state);
 	const bool pushes = r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_KICK;
-	if (!pushes && !is_pull(r) && r->kind != OB_REQUEST_STATE && r->kind != OB_REQUEST_FRICTION)
+	if (!pushes && !is_pull(r) && r->kind != OB_REQUEST_STATE && r->kind != OB_REQUEST_FRICTION &&
+	    r->kind != OB_REQUEST_SURFACE)
 		return true;
 	if (r->kind != OB_REQUEST_FORCE && ob_universe_settings(p->u)->monolith)
 		return ob_fail(e, "the one ODE world keeps its bodies to itself: take object simulators");
@@ -419,6 +420,8 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 		return ob_free_settings_of(p->u)
 			       ? ob_fail(e, "in a free run nothing is pulled in each step: use --sync lockstep")
 			       : ob_pull_check(&pull, pass, e);
+	if (r->kind == OB_REQUEST_SURFACE)
+		return ob_surface_velocity_check(pass, r->surface_velocity, e);
 	if (r->kind == OB_REQUEST_FRICTION)
 		return ob_friction_check(r->friction, e);
 	if (pushes && pass->flags & OB_OBJECT_PRESCRIBED)
@@ -427,13 +430,16 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 		      : ob_state_check(pass, &state, e);
 }
 
-// Sets an object's friction. Its contacts begin anew, so that those at rest on it are solved again.
-static void set_friction(const ob_population *p, uint32_t id, double friction, const ob_state *now)
+// Sets an object's friction or surface velocity. Its contacts begin anew, so that those at rest on it are solved again.
+static void set_surface(const ob_population *p, const ob_request *r, const ob_state *now)
 {
-	ob_passport pass = *ob_passport_of(p->u, id);
-	pass.friction = friction;
-	ob_write_passport(p->u, id, &pass);
-	ob_sim_place_anew(p->u, id, now);
+	ob_passport pass = *ob_passport_of(p->u, r->id);
+	if (r->kind == OB_REQUEST_FRICTION)
+		pass.friction = r->friction;
+	else
+		pass.surface_velocity = r->surface_velocity;
+	ob_write_passport(p->u, r->id, &pass);
+	ob_sim_place_anew(p->u, r->id, now);
 }
 
 // Carries out a request that changes the motion of an object that exists.
@@ -458,8 +464,8 @@ static void set_motion(ob_population *p, const ob_request *r)
 		ob_sim_push(p->u, r->id, r->force, true);
 	else if (r->kind == OB_REQUEST_KICK)
 		ob_sim_kick(p->u, r->id, r->force, r->twist);
-	else if (r->kind == OB_REQUEST_FRICTION)
-		set_friction(p, r->id, r->friction, &now);
+	else if (r->kind == OB_REQUEST_FRICTION || r->kind == OB_REQUEST_SURFACE)
+		set_surface(p, r, &now);
 	else
 		ob_sim_place_anew(p->u, r->id, &state);
 }

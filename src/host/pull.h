@@ -30,7 +30,7 @@ typedef struct ob_pull {
 } ob_pull;
 
 enum { OB_PULLS_MAX = 10000 };
-#define OB_PULL_FREQUENCY 3. // Hz: of a hand, unless it says otherwise
+#define OB_PULL_FREQUENCY 3. // Hz, a hand's, unless it says otherwise
 
 typedef struct ob_pulls {
 	ob_pull *at; // [count], in the order in which they act

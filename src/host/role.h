@@ -1,4 +1,4 @@
-// Roles: what a visitor of a universe may do, whichever way the request comes: the socket of `obsim send` and of programs
+// Roles: permissions of visitors of a universe, whichever way the request comes: the socket of `obsim send` and of programs
 // that control a run, the page, or a script that talks to the server.
 //
 //   watch       reads: objects, motions, contacts, figures

@@ -67,12 +67,19 @@ static bool check_surface(const ob_passport *p, ob_error *e)
 	       within("roughness", "", 0, 1, p->roughness, e) && within("metal", "", 0, 1, p->metal, e);
 }
 
+bool ob_surface_velocity_check(const ob_passport *p, ob_vec3 v, ob_error *e)
+{
+	if (!(p->flags & OB_OBJECT_PRESCRIBED))
+		return ob_fail(e, "surface_velocity: expected a static or kinematic object");
+	return within3("surface_velocity", " m/s", OB_SPEED_MOST, v, e);
+}
+
 bool ob_passport_check(const ob_passport *p, ob_error *e)
 {
 	if (!check_size(p, e) || !check_surface(p, e))
 		return false;
 	if (p->flags & OB_OBJECT_PRESCRIBED)
-		return within3("surface_velocity", " m/s", OB_SPEED_MOST, p->surface_velocity, e);
+		return ob_surface_velocity_check(p, p->surface_velocity, e);
 	return check_slenderness(p, e) && within("mass", " kg", OB_MASS_LEAST, OB_MASS_MOST, p->mass, e) &&
 	       within3("force", " N", ob_force_most(p), p->force, e);
 }

@@ -28,6 +28,7 @@ bool ob_object_def_check(const ob_object_def *def, ob_error *e);
 bool ob_state_check(const ob_passport *p, const ob_state *s, ob_error *e);
 bool ob_push_check(const ob_passport *p, ob_vec3 force, ob_vec3 twist, ob_error *e);
 bool ob_friction_check(double friction, ob_error *e);
+bool ob_surface_velocity_check(const ob_passport *p, ob_vec3 v, ob_error *e); // and the object is static or kinematic
 // The same, and its name ends; e names the object, too.
 bool ob_object_check(const ob_object_def *def, ob_error *e);
 // The same for the properties that a checkpoint has of an object.

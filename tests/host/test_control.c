@@ -33,7 +33,7 @@ static void *lead(void *argument)
 	do {
 		ob_host_go(r->host, step);
 		r->failed = !ob_host_wait(r->host, &e);
-	} while (!r->failed && ob_control_next(r->control, r->host, 100000, &step));
+	} while (!r->failed && ob_control_next(r->control, r->host, 100000, &step) == OB_CONTROL_GOES_ON);
 	if (r->failed)
 		ob_control_end(r->control, e.text);
 	return NULL;

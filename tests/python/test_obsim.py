@@ -141,6 +141,64 @@ class Steps(Case):
         self.assertFalse((u.angular_velocity == start['angular_velocity']).all())
         u.reset(seed=1)
         self.assertTrue((u.angular_velocity == start['angular_velocity']).all())
+        pid = u._process.pid
+        u.reset(n=5, speed=2)
+        self.assertEqual((len(u), u._process.pid), (8, pid))
+        numpy.testing.assert_allclose(u['box#1'].angular_velocity[1:], [2, 1])
+        self.says('unknown parameter', u.reset, nonsense=1)
+        u.step(30)
+        after = u.states()
+        u.reset(n=5, speed=2)
+        u.step(30)
+        self.assertTrue((u.position == after['position']).all())
+        u.reset()
+        self.assertEqual((u.steps, len(u)), (0, 8))
+
+    def test_file(self):
+        """A saved run goes on to the same bits, pulls included, also after a reset."""
+        path = self.scene + '.ck'
+        u = self.run_()
+        u.reset(seed=5, n=6)
+        u['ball'].drag((0, 0, 3))
+        u.step(20)
+        u.save(path)
+        u.step(40)
+        other = obsim.run(resume=path, options={'isolation': 'process'})
+        self.addCleanup(other.close)
+        self.assertEqual(other.steps, 20)
+        other.step(40)
+        self.assertTrue(all((v == other.states()[k]).all() for k, v in u.states().items()))
+        self.says('No such file', u.save, '/nowhere/x.ck')
+
+    def test_contact_events(self):
+        """A ball touches the ground once, leaves it when it is lifted, and events of a future that was undone stay away."""
+        u = self.run_(n=0)
+        ball = u['ball']
+        ball.position = 3, 0, .3
+        self.says('subscribe first', u.contact_events)
+        u.watch_contacts()
+        u.step(50)
+        begun = u.contact_events()
+        self.assertEqual([(e['a'], e['b'], e['begins']) for e in begun], [(0, ball.id, 1)])
+        self.assertAlmostEqual(begun[0]['step'], (2 * .1 / 9.81) ** .5 / .01, delta=2)
+        s = u.snapshot()
+        ball.position = 3, 0, 3
+        u.step(3)
+        self.assertEqual([e['begins'] for e in u.contact_events()], [0])
+        u.restore(s)
+        u.step(3)
+        self.assertEqual(len(u.contact_events()), 0)
+        u.watch_contacts(False)
+
+    def test_belt(self):
+        """A belt carries what lies on it."""
+        u = self.run_(n=0)
+        made, = u.create('box { size = { .2, .2, .2 }, at = { 6, 0, 1.15 } }')
+        u['lift'].surface_velocity = .2, 0, 0
+        u.step(150)
+        numpy.testing.assert_allclose(made.velocity, [.2, 0, 0], atol=.01)
+        numpy.testing.assert_allclose(u['lift'].surface_velocity, [.2, 0, 0])
+        self.says('static or kinematic', setattr, made, 'surface_velocity', (1, 0, 0))
 
     def test_lone_flight(self):
         """Closed form: an object flies as it was set."""
@@ -292,6 +350,10 @@ class Documents(unittest.TestCase):
         with open(os.path.join(root, 'docs/control.md'), encoding='utf-8') as f:
             blocks = re.findall(r'```python\n(.*?)```', f.read(), re.S)
         self.assertTrue(blocks)
+        folder = tempfile.TemporaryDirectory() # they write files
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder.name)
         for block in blocks:
             exec(compile(block, 'docs/control.md', 'exec'), {}) # pylint: disable=exec-used
 

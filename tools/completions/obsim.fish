@@ -78,7 +78,7 @@ complete -c obsim -n $run -l trace -r -F -d 'what each worker did when, for ui.p
 complete -c obsim -n $run -l checkpoint -r -F -d 'what the run needs to go on'
 complete -c obsim -n $run -l every -x -d 'simulated seconds between checkpoints'
 complete -c obsim -n $run -l replay-requests -r -F -d 'carry out what serve has logged'
-complete -c obsim -n $run -l resume -r -F -d 'go on from a checkpoint'
+complete -c obsim -n '__fish_seen_subcommand_from run control' -l resume -r -F -d 'go on from a checkpoint'
 complete -c obsim -n $run -l fault -x -a 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p= nopages:p= abort:p=' -d 'simulators that fail'
 complete -c obsim -n $run -l frames -x -a '(__fish_complete_directories)' -d 'write PNG files'
 complete -c obsim -n $run -l video -r -F -d 'write a video'
