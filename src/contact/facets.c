@@ -479,7 +479,7 @@ void ob_spots_reduce(ob_spots *s)
 {
 	if (s->n <= 4)
 		return;
-	int keep[4] = { 0, -1, -1, -1 };
+	int keep[4] = { 0, 0, -1, -1 }; // the first two also where no distance is a number
 	double far = -1, left = 0, right = 0;
 	for (int k = 1; k < s->n; k++)
 		if (s->gap[k] < s->gap[keep[0]] - as_low * s->same)

@@ -315,6 +315,38 @@ static void test_unknown_shapes(void)
 	CHECK(!ob_manifold_find(&plane, &plane, 1, &m));
 }
 
+// Numbers of a simulator that has stored anywhere: infinities, no numbers, sizes below 0. No search reads or writes beyond
+// its arrays, as the sanitizers would tell, and there are 0 .. 4 points.
+static void test_senseless(void)
+{
+	static const double senseless[] = { NAN, INFINITY, -INFINITY, 1e300, -1e300, 1e-300, 0, -1 };
+	enum { WORDS = sizeof senseless / sizeof *senseless, PAIRS = 200000 };
+	uint64_t seed = 10;
+	bool fine = true;
+	for (int i = 0; i < PAIRS; i++) {
+		ob_placed of[2];
+		for (int k = 0; k < 2; k++) {
+			const ob_shape shape = OB_SHAPE_SPHERE + (ob_shape)(5 * uniform(&seed));
+			ob_placed *p = &of[k];
+			*p = random_placed(&seed, shape, 1);
+			p->v = random_vector(&seed, 1), p->w = random_vector(&seed, 1);
+			p->rest_depth = 1e-3, p->far_future = 1;
+			double *const number[] = { &p->size.x,     &p->size.y, &p->size.z,    &p->p.x,
+						   &p->r.m[0][0],  &p->v.x,    &p->v.z,       &p->w.x,
+						   &p->w.y,        &p->w.z,    &p->r.m[2][1], &p->rest_depth,
+						   &p->far_future, &p->a.z };
+			for (int change = (int)(4 * uniform(&seed)); change > 0; change--) {
+				double *to = number[(size_t)(sizeof number / sizeof *number * uniform(&seed))];
+				*to = senseless[(int)(WORDS * uniform(&seed))];
+			}
+		}
+		ob_manifold m = { .valid_path = INFINITY };
+		ob_manifold_find(&of[0], &of[1], .01, &m);
+		fine &= m.points >= 0 && m.points <= 4;
+	}
+	CHECK(fine);
+}
+
 int main(void)
 {
 	test_sphere_with_sphere_and_plane();
@@ -328,5 +360,6 @@ int main(void)
 	test_box_separation();
 	test_box_separation_tight();
 	test_unknown_shapes();
+	test_senseless();
 	return check_end();
 }
