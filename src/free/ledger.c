@@ -188,7 +188,7 @@ bool ob_ledger_deposit(ob_free_sim *s, const ob_free_scratch *x, ob_free_neighbo
 		       const ob_motion *end, double h)
 {
 	ob_account *own = find(s, n->id);
-	const bool touches = end && n->contact.kept && !(end->flags & OB_MOTION_FREE);
+	const bool touches = end && !(end->flags & OB_MOTION_FREE); // even if they have parted within the step
 	if (!touches) {
 		n->load = n->twist = ob_v3(0, 0, 0);
 		if (!own)

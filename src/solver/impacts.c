@@ -632,11 +632,33 @@ static void velocity_after(const ob_island_work *w, uint32_t row, double t, doub
 	memcpy(out, (double[6]){ x.v.x, x.v.y, x.v.z, x.w.x, x.w.y, x.w.z }, 6 * sizeof *out);
 }
 
-// Ends the load of a contact that the impact opens: from the instant t on the drift of the set's bodies excludes it. A
-// body on the other side, which is not set back, has had its share.
-static void end_load(ob_island_work *w, const ob_contact *c, double t)
+// True if a load that has acted until the impact has changed the velocity of the other body, but not yet this one's. A
+// body that is set back has had its share by its drift, if that includes loads.
+static bool lacks_load(const ob_island_work *w, uint32_t row, uint32_t other)
 {
 	const ob_impacts *x = &w->impacts;
+	const bool by_drift = in_set(x, row) && (w->body[row].loaded || !in_set(x, other));
+	return w->body[other].loaded && !by_drift;
+}
+
+// Adds a share of a change to a body's velocity: at the partial substep's start, or after the impact.
+static void give_velocity(ob_island_work *w, uint32_t row, double share, const double *change)
+{
+	ob_impacts *x = &w->impacts;
+	double *v = w->v[row];
+	if (in_set(x, row)) {
+		ob_impact_body *body = &x->body[x->slot[row]];
+		body->v = ob_madd(body->v, share, ob_row_linear(change));
+		body->w = ob_madd(body->w, share, ob_row_angular(change));
+		return;
+	}
+	for (int i = 0; i < 6; i++)
+		v[i] += share * change[i];
+}
+
+// Ends the load of a contact that the impact opens: from the instant t on the drift of the set's bodies excludes it.
+static void end_load(ob_island_work *w, const ob_contact *c, double t)
+{
 	ob_batch *b = &w->batch[c->lane / OB_LANES];
 	const uint32_t l = c->lane % OB_LANES, side[2] = { c->a, c->b };
 	lanes load[OB_ROWS] = { 0 };
@@ -660,15 +682,15 @@ static void end_load(ob_island_work *w, const ob_contact *c, double t)
 	}
 	ob_batch_apply_impulses(b, load, w->delta);
 	for (int k = 0; k < 2; k++) {
-		double *brought = w->delta[side[k]], *to = w->drift[side[k]], *v = w->v[side[k]];
-		const bool set_back = in_set(x, side[k]);
-		for (int i = 0; i < 6 && moves(w, side[k]); i++) {
-			to[i] -= w->body[side[k]].loaded ? brought[i] : 0;
-			v[i] += set_back || !w->body[side[1 - k]].loaded ? 0 : t / w->h * brought[i];
-		}
+		double *brought = w->delta[side[k]], *drift = w->drift[side[k]];
+		for (int i = 0; i < 6 && moves(w, side[k]); i++)
+			drift[i] -= w->body[side[k]].loaded ? brought[i] : 0;
+		if (moves(w, side[k]) && lacks_load(w, side[k], side[1 - k]))
+			give_velocity(w, side[k], t / w->h, brought);
 		w->body[side[k]].hit = moves(w, side[k]) ? ob_max(t, DBL_MIN) : 0;
-		memset(brought, 0, sizeof *w->delta);
 	}
+	for (int k = 0; k < 2; k++)
+		memset(w->delta[side[k]], 0, sizeof *w->delta);
 }
 
 static void end_loads(ob_island_work *w, uint32_t row, double t)
