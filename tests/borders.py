@@ -54,7 +54,7 @@ ARROWS = {
     'record': 'measure mesh scene table settings shape motion base',
     'paper': 'host measure render reference plot experiment scene table settings ranks base',
     'serve': 'record measure mesh host scene table settings shape motion base',
-    'cli': 'shape free/free.h serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
+    'cli': 'shape free/free.h free/schedule.h serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
 }
 BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
          'paper': ['paper_texts.h'],

@@ -89,6 +89,10 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 				"free: seconds ahead of a neighbour (pace max: two steps; else none)", RUN, 0 },
 	[OB_OPTION_JITTER] = { NULL, "jitter", "P", "free: share by which lengths of steps vary (0)", RUN, 0 },
 	[OB_OPTION_DELAY] = { NULL, "delay", "S", "free: seconds until a publication is seen (0)", RUN, 0 },
+	[OB_OPTION_RECORD_SCHEDULE] = { NULL, "record-schedule", "FILE",
+					"free: record who stepped when, and read what, to repeat the run", RUN, 0 },
+	[OB_OPTION_REPLAY_SCHEDULE] = { NULL, "replay-schedule", "FILE", "repeat a free run to the bit, in one thread",
+					RUN, 0 },
 
 	[OB_OPTION_LISTEN] = { "The server", "listen", "ADDR:PORT",
 			       "where viewers come to; port 0 is a free one (127.0.0.1:8080)", SERVE, 0 },

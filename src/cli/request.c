@@ -100,10 +100,9 @@ static bool is_stdout(const char *path)
 
 static bool check_outputs(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id files[] = {
-		OB_OPTION_FRAMES, OB_OPTION_VIDEO, OB_OPTION_RAW,   OB_OPTION_RECORD,
-		OB_OPTION_SERIES, OB_OPTION_JSON,  OB_OPTION_TRACE, OB_OPTION_CHECKPOINT
-	};
+	static const ob_option_id files[] = { OB_OPTION_FRAMES, OB_OPTION_VIDEO,      OB_OPTION_RAW,
+					      OB_OPTION_RECORD, OB_OPTION_SERIES,     OB_OPTION_JSON,
+					      OB_OPTION_TRACE,  OB_OPTION_CHECKPOINT, OB_OPTION_RECORD_SCHEDULE };
 	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
 		const char *path = a->value[files[i]], *option = name_of(files[i]);
 		if (!path)

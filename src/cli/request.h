@@ -59,6 +59,8 @@ typedef struct ob_run_request {
 	bool free_command; // the command can run free
 	const char *of_free, *of_lockstep; // an option that was given, and is for one of the two alone; NULL = none
 	ob_free_settings free; // of a free run
+	const char *record_schedule, *replay_schedule; // paths; NULL = not requested
+	uint64_t schedule_digest; // of all that decides a free run, but for its settings and its schedule
 } ob_run_request;
 
 // false and e on malformed numbers, values out of range, contradictions, or missing directories.

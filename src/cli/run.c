@@ -17,6 +17,7 @@
 #include "cli/report.h"
 #include "cli/version.h"
 #include "free/free.h"
+#include "free/schedule.h"
 #include "base/interrupt.h"
 #include "ranks/ranks.h"
 #include "record/record.h"
@@ -39,6 +40,7 @@ typedef struct run {
 	uint64_t steps; // to do, from the start of the run
 	uint64_t every, kept; // every: steps between checkpoints; kept: step of the last one; UINT64_MAX = none yet
 	uint64_t frames;
+	bool whole; // it came to its end
 	double begun; // s
 	double own_cpu, drawing_cpu; // CPU time of this thread (s): when stepping began; while it drew
 	ob_timeline_sums trace;
@@ -496,6 +498,7 @@ static int carry_out(run *r)
 		code = ob_command_fail(OB_EXIT_FAILED, "interrupted: the files hold what was done so far");
 	else if (!done)
 		code = ob_command_fail(ob_host_broke_invariant(r->host) ? OB_EXIT_BROKEN : OB_EXIT_FAILED, e.text);
+	r->whole = done && closed;
 	// a sink that broke the run reports its error again when it is closed
 	if (!closed && (done || interrupted))
 		code = ob_command_fail(OB_EXIT_FAILED, e_close.text);
@@ -614,9 +617,14 @@ int ob_command_run(const ob_arguments *a)
 
 	signal(SIGPIPE, SIG_IGN); // a reader that leaves is an error of the sink, with a message
 	ob_interrupt_watch(); // before there is anything to clean up after Ctrl-C
-	r.host = ob_host_start(r.scene, &config, &e);
+	const char *schedule = r.request.record_schedule;
+	const bool begun =
+		!schedule || ob_free_schedule_create(schedule, &r.request.free, r.request.schedule_digest, &e);
+	r.host = begun ? ob_host_start(r.scene, &config, &e) : NULL;
 	int code = r.host ? carry_out(&r) : ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_host_stop(r.host);
+	if (schedule && r.whole && !ob_free_schedule_end(schedule, &e))
+		code = ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_interrupt_release();
 	finish(&r);
 	return code;

@@ -104,7 +104,7 @@ bool ob_ledger_receive(ob_free_sim *s, const ob_free_scratch *x, const ob_free_n
 	ob_motion m;
 	ob_ledger_head head;
 	bool found;
-	if (!ob_free_read_account(x->u, n->id, newest_seen(s, x), s->id, &m, &in, &head, &found))
+	if (!ob_free_schedule_read_account(x->schedule, x->u, n->id, newest_seen(s, x), s->id, &m, &in, &head, &found))
 		return false;
 	if (!found || in.generation != s->generation) {
 		if (own && own->closed)
@@ -142,8 +142,8 @@ bool ob_ledger_look(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neig
 {
 	const ob_account *own = find(s, n->id);
 	ob_ledger_head head;
-	seen->version = ob_free_read_account(x->u, n->id, newest_seen(s, x), s->id, &seen->motion, &seen->account,
-					     &head, &seen->known);
+	seen->version = ob_free_schedule_read_account(x->schedule, x->u, n->id, newest_seen(s, x), s->id, &seen->motion,
+						      &seen->account, &head, &seen->known);
 	if (!seen->version)
 		return false;
 	if (!seen->known || !own || seen->account.epoch != own->epoch || seen->account.generation != s->generation) {

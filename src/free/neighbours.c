@@ -80,17 +80,20 @@ static void add(ob_free_sim *s, ob_free_scratch *x, uint32_t id, ob_free_kind ki
 	n->hull = ob_hull_of(x->u, &n->passport);
 }
 
+static bool is_there(const ob_free_neighbour *n, const ob_universe *u)
+{
+	uint32_t generation;
+	return ob_free_kind_of(u, n->id, &generation) != OB_FREE_ABSENT && generation == n->generation;
+}
+
 // Drops neighbours that are gone or far. One that has mail is kept until the account is settled.
 static void drop_far(ob_free_sim *s, const ob_free_scratch *x)
 {
 	float box[6];
-	uint32_t generation;
 	for (uint32_t i = s->neighbours; i-- > 0;) {
 		const ob_free_neighbour *n = &s->neighbour[i];
 		ob_free_read_bounds(x->u, n->id, box);
-		const bool there =
-			ob_free_kind_of(x->u, n->id, &generation) != OB_FREE_ABSENT && generation == n->generation;
-		if (!there || !(overlaps(s, box) || has_account(s, n->id)))
+		if (!is_there(n, x->u) || !(overlaps(s, box) || has_account(s, n->id)))
 			s->neighbour[i] = s->neighbour[--s->neighbours];
 	}
 }
@@ -115,11 +118,43 @@ static int by_id(const void *a, const void *b)
 	return x < y ? -1 : x > y;
 }
 
+static void sort(ob_free_sim *s)
+{
+	if (s->neighbours)
+		qsort(s->neighbour, s->neighbours, sizeof *s->neighbour, by_id);
+}
+
+// Takes the neighbours that the simulator found when the run was recorded.
+static void replay(ob_free_sim *s, ob_free_scratch *x)
+{
+	const uint32_t *id;
+	uint32_t n, generation;
+	if (!ob_free_schedule_neighbours(x->schedule, &id, &n))
+		return;
+	for (uint32_t i = s->neighbours; i-- > 0;) {
+		bool found = false;
+		for (uint32_t k = 0; k < n; k++)
+			found |= id[k] == s->neighbour[i].id;
+		if (!found || !is_there(&s->neighbour[i], x->u))
+			s->neighbour[i] = s->neighbour[--s->neighbours];
+	}
+	for (uint32_t k = 0; k < n; k++)
+		if (id[k] < ob_universe_ids(x->u) && find(s, id[k]) == s->neighbours) {
+			const ob_free_kind kind = ob_free_kind_of(x->u, id[k], &generation);
+			add(s, x, id[k], kind, generation);
+		}
+	sort(s);
+}
+
 void ob_free_neighbours_update(ob_free_sim *s, ob_free_scratch *x, double h)
 {
 	const bool all = renew_bounds(s, x, h);
 	const uint32_t ids = ob_universe_ids(x->u), groups = (ids + OB_FREE_GROUP - 1) / OB_FREE_GROUP;
 	bool any = all;
+	if (ob_free_schedule_replays(x->schedule)) {
+		replay(s, x);
+		return;
+	}
 	for (uint32_t g = 0; g < groups; g++) {
 		const uint32_t moved = ob_free_group(x->u, g), first = g * OB_FREE_GROUP;
 		if (!all && moved == s->group[g])
@@ -131,6 +166,10 @@ void ob_free_neighbours_update(ob_free_sim *s, ob_free_scratch *x, double h)
 	if (!any)
 		return;
 	drop_far(s, x);
-	if (s->neighbours)
-		qsort(s->neighbour, s->neighbours, sizeof *s->neighbour, by_id);
+	sort(s);
+	if (!x->schedule)
+		return;
+	ob_free_schedule_note_neighbour(x->schedule, OB_NO_OBJECT);
+	for (uint32_t i = 0; i < s->neighbours; i++)
+		ob_free_schedule_note_neighbour(x->schedule, s->neighbour[i].id);
 }

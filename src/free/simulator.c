@@ -28,6 +28,7 @@ bool ob_free_sim_begin(ob_free_sim *s, const ob_universe *u, uint32_t id)
 	if (ob_free_settings_of(u)->coupling == OB_COUPLING_LEDGER)
 		s->present = ob_free_read_ledger(u, id, &s->motion, &s->ledger);
 	ob_free_get_counts(u, id, &s->counts);
+	s->anew = true;
 	s->time = s->base = s->motion.t0;
 	s->random = ob_free_settings_of(u)->seed + 0x632be59bd9b4e019u * (1 + id) + s->counts.updates;
 	return true;
@@ -64,7 +65,9 @@ static void advance_time(ob_free_sim *s, const ob_free_scratch *x, double next)
 
 bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 {
-	const double next = ob_free_sim_next(s, x), h = next - s->time;
+	ob_free_planned_step planned;
+	const bool replays = ob_free_schedule_replays(x->schedule) && ob_free_schedule_next(x->schedule, &planned);
+	const double next = replays ? planned.end : ob_free_sim_next(s, x), h = next - s->time;
 	x->sim = s;
 	x->run.step_length = h;
 	const uint64_t version = ob_universe_get_passport_version(x->u, s->id);
@@ -87,7 +90,10 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 		return false;
 	}
 	s->motion = m;
-	ob_free_publish(x->u, s->id, &m, x->free->coupling == OB_COUPLING_LEDGER ? &s->ledger : NULL);
+	const ob_ledger *ledger = x->free->coupling == OB_COUPLING_LEDGER ? &s->ledger : NULL;
+	ob_free_schedule_put(x->schedule, x->u, s->id, &m, ledger, s->anew);
+	s->anew = false;
+	ob_free_publish(x->u, s->id, &m, ledger);
 	advance_time(s, x, next);
 	ob_free_put_counts(x->u, s->id, &s->counts);
 	return true;

@@ -15,6 +15,7 @@
 
 #include <math.h>
 
+#include "free/schedule.h"
 #include "solver/solver.h"
 #include "table/free.h"
 
@@ -46,6 +47,7 @@ typedef struct ob_free_seen {
 typedef struct ob_free_sim {
 	uint32_t id, generation;
 	bool present, failed;
+	bool anew; // it has not stepped since it began
 	double time; // s, own
 	double base; // s: steps are counted from here, so that their lengths do not add up rounding
 	uint64_t since_base;
@@ -71,6 +73,7 @@ typedef struct ob_free_sim {
 typedef struct ob_free_scratch {
 	ob_universe *u;
 	const ob_free_settings *free;
+	ob_free_schedule *schedule; // NULL: none
 	ob_run_settings run; // the island solver's: its step is the running simulator's
 	double boundary; // s, between boundaries of the host
 	ob_solver solver;

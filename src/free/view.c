@@ -130,9 +130,9 @@ static bool read_neighbour(ob_free_sim *s, ob_free_scratch *x, const ob_free_nei
 		return true;
 	}
 	const double asked = s->time - x->free->delay;
-	out->version = has_ledger(x)
-			       ? ob_ledger_look(s, x, n, out)
-			       : ob_free_read(x->u, n->id, asked, &out->motion, x->free->delay > 0 ? NULL : &next);
+	out->version = has_ledger(x) ? ob_ledger_look(s, x, n, out)
+				     : ob_free_schedule_read(x->schedule, x->u, n->id, asked, &out->motion,
+							     x->free->delay > 0 ? NULL : &next);
 	if (!out->version)
 		return false;
 	count_reading(s, asked, out->motion.t0);

@@ -61,6 +61,7 @@ static void finish(worker *w)
 	for (uint32_t i = 0; w->sim && i < w->sims; i++)
 		ob_free_sim_finish(&w->sim[i]);
 	free(w->sim);
+	ob_free_schedule_close(w->scratch.schedule);
 	ob_free_scratch_finish(&w->scratch);
 }
 
@@ -117,20 +118,39 @@ static void work(worker *w)
 	}
 }
 
+// Makes the next step of a replayed schedule, once the host has come so far.
+static void replay(worker *w)
+{
+	ob_free_planned_step step;
+	if (!ob_free_schedule_next(w->scratch.schedule, &step) || step.end > w->until * w->scratch.boundary) {
+		ob_free_wait_for_host(w->u, w->until);
+		return;
+	}
+	ob_free_sim *s = &w->sim[step.id]; // there is one worker
+	if (!step.anew || ob_free_sim_begin(s, w->u, step.id))
+		ob_free_sim_step(s, &w->scratch);
+	ob_free_schedule_take(w->scratch.schedule);
+}
+
 bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
 {
 	worker w;
-	bool fine = begin(&w, u, number);
+	bool fine = begin(&w, u, number) || ob_fail(e, "worker %u: no memory", number);
+	fine = fine && ob_free_schedule_open(&w.scratch.schedule, u, e);
+	const bool replays = ob_free_schedule_replays(w.scratch.schedule);
 	while (fine && !ob_gate_stopped(u)) {
 		const uint32_t until = ob_free_until(u);
 		if (until != w.until) {
 			w.until = until;
-			fine = adopt(&w);
+			fine = adopt(&w) || ob_fail(e, "worker %u: no memory", number);
 		}
-		if (fine)
+		if (fine && replays)
+			replay(&w);
+		else if (fine)
 			work(&w);
+		fine = fine && ob_free_schedule_is_fine(w.scratch.schedule, e);
 	}
 	*ob_worker_counters(u, number) = w.scratch.solver.counters;
 	finish(&w);
-	return fine || ob_fail(e, "worker %u: no memory", number);
+	return fine;
 }

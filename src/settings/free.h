@@ -24,7 +24,8 @@ typedef struct ob_free_settings {
 	uint32_t coupling; // ob_coupling
 	uint32_t heavy; // OB_COUPLING_OWN: 1 = neighbours count as infinitely heavy, 0 = as heavy as they are
 	uint32_t objects; // of the scene: they are dealt to workers in blocks
-	uint32_t zero;
+	uint32_t replays; // 1 = the schedule is replayed, 0 = it is recorded
+	char schedule[256]; // path of the schedule's file (free/schedule.h); "" = none
 } ob_free_settings;
 
 #endif

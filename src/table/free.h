@@ -95,7 +95,7 @@ typedef struct ob_free_control {
 	uint64_t begun_ns; // clock at which own time 0 was due; 0 = not yet
 } ob_free_control;
 
-static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 192, "free run");
+static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 448, "free run");
 static_assert(sizeof(ob_account) == 160 && sizeof(ob_ledger) == 32 + OB_LEDGER_ACCOUNTS * 160, "mail");
 
 // NULL: the run is in lockstep.

@@ -34,6 +34,7 @@ _obsim()
 	--coupling) mapfile -t COMPREPLY < <(compgen -W 'own ledger' -- "$word") ;;
 	--max-lag) mapfile -t COMPREPLY < <(compgen -W 'none .001 .01' -- "$word") ;;
 	--jitter) mapfile -t COMPREPLY < <(compgen -W '.1 .3' -- "$word") ;;
+	--record-schedule | --replay-schedule) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 	--delay) mapfile -t COMPREPLY < <(compgen -W '.001 .01' -- "$word") ;;
 	--quality) mapfile -t COMPREPLY < <(compgen -W 'draft fine' -- "$word") ;;
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts caption aabb,contacts' -- "$word") ;;

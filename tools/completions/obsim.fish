@@ -70,6 +70,8 @@ complete -c obsim -n $run -l sync -x -a 'lockstep free' -d 'step together or at 
 complete -c obsim -n $run -l update-rate -x -a '60 240 960' -d 'steps of a simulator a second'
 complete -c obsim -n $run -l coupling -x -a 'own ledger' -d 'who computes a contact'
 complete -c obsim -n $run -l max-lag -x -a 'none .001 .01' -d 'seconds ahead of a neighbour'
+complete -c obsim -n $run -l record-schedule -r -F -d 'record a free run, to repeat it'
+complete -c obsim -n $run -l replay-schedule -r -F -d 'repeat a recorded free run'
 complete -c obsim -n $run -l jitter -x -a '.1 .3' -d 'share by which lengths of steps vary'
 complete -c obsim -n $run -l delay -x -a '.001 .01' -d 'seconds until a publication is seen'
 complete -c obsim -n '__fish_seen_subcommand_from run compare' -l json -r -F -d 'the report as JSON'
