@@ -283,7 +283,7 @@ class Universe:
         raise Error('this universe is read only: obsim.run starts one that can be changed')
 
     step = reset = set_states = set_forces = set_colours = kick = send = remove = create = snapshot = restore = _refuse
-    save = watch_contacts = contact_events = set_torques = set_frictions = set_surface_velocities = push = drag = release = kill = _refuse
+    save = picture = watch_contacts = contact_events = set_torques = set_frictions = set_surface_velocities = push = drag = release = kill = _refuse
 
 
 class Run(Universe):
@@ -379,6 +379,20 @@ class Run(Universe):
     def save(self, path):
         """Writes the state into a checkpoint file, from which obsim.run(resume=path) and obsim run --resume go on."""
         self._call('ob_controller_save', os.fsencode(os.path.abspath(path)))
+
+    def picture(self, width=640, height=360, camera=None, quality='draft'):
+        """The present state as the renderer draws it: an array (height, width, 3) of red, green and blue, 0 to 255. Another
+        process draws it, from a saved state, in about half a second."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'state.ck')
+            self.save(path)
+            h, now = self.step_length, self.steps
+            words = [self._command[0], 'run', '--resume', path, '--duration', repr((now + 1.5) * h), '--fps', repr(1 / h),
+                     '--raw', '-', '--workers', '1', '--size', f'{width}x{height}', '--quality', quality, *(['--camera', camera] if camera else [])]
+            done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+        if done.returncode != 0 or len(done.stdout) < 3 * width * height:
+            raise Error(done.stderr.decode('utf-8', 'replace').strip().splitlines()[-1] if done.stderr else 'no picture')
+        return numpy.frombuffer(done.stdout, numpy.uint8, 3 * width * height).reshape(height, width, 3)
 
     # -- contacts
 

@@ -41,6 +41,10 @@ class Environment:
         return (self._observe(u), float(self._reward(u)), bool(self._ended and self._ended(u)),
                 self._limit is not None and self._made >= self._limit, {'time': u.time})
 
+    def render(self, **how):
+        """The state as a picture, an array (height, width, 3) of 0 to 255; arguments are as for Run.picture."""
+        return self.universe.picture(**how)
+
     def close(self):
         self.universe.close()
 
