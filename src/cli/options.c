@@ -21,6 +21,7 @@ enum {
 	SEND = OB_COMMAND_SEND,
 	EXPORT = OB_COMMAND_EXPORT,
 	CONTROL = OB_COMMAND_CONTROL,
+	SCENES = OB_COMMAND_SCENES,
 	STEPPED = RUN | SERVE | CONTROL
 };
 
@@ -171,7 +172,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
 
 	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end",
-			     STEPPED | COMPARE | TOP | LAB | PAPER | INSPECT | SEND | EXPORT, 'h' },
+			     STEPPED | COMPARE | TOP | LAB | PAPER | INSPECT | SEND | EXPORT | SCENES, 'h' },
 };
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
@@ -355,6 +356,7 @@ static const struct {
 	  "Runs a scene that people look at, and change, from their browsers." },
 	{ OB_COMMAND_CONTROL, "obsim control SCENE.lua [OPTION ...]",
 	  "Runs a scene that a program leads step by step: Python, or C." },
+	{ OB_COMMAND_SCENES, "obsim scenes", "Lists the scenes that come with obsim: obsim run NAME." },
 	{ OB_COMMAND_COMPARE, "obsim compare SCENE.lua [OPTION ...]",
 	  "Runs a scene as one world, as threads and as processes, and prints one table." },
 	{ OB_COMMAND_TOP, "obsim top [NAME] [OPTION ...]",

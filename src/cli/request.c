@@ -9,10 +9,10 @@
 #include <unistd.h>
 
 #include "base/cpu.h"
-#include "base/own_file.h"
 #include "base/spelling.h"
 #include "cli/free_request.h"
 #include "cli/quantity.h"
+#include "cli/shipped.h"
 #include "plot/plot.h"
 #include "record/record.h"
 
@@ -197,7 +197,8 @@ static bool read_stills(ob_frames_request *f, const ob_arguments *a, ob_error *e
 		if (f->stills == OB_STILLS_MAX)
 			return ob_fail(e, "--still: expected at most %d times", OB_STILLS_MAX);
 		snprintf(number, sizeof number, "%.*s", (int)n, list);
-		if (!ob_number_real(name_of(OB_OPTION_STILL), number, 0, 1e9, t, e))
+		*t = 0;
+		if (strcmp(number, "0") != 0 && !ob_number_real(name_of(OB_OPTION_STILL), number, 0, 1e9, t, e))
 			return false;
 		if (f->stills > 0 && !(*t > t[-1]))
 			return ob_fail(e, "--still %s: expected growing times, as .5,2", a->value[OB_OPTION_STILL]);
@@ -469,17 +470,6 @@ static bool read_pace(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	return true;
 }
 
-// Path of a scene: the file with this name, or the scene of this name that comes with obsim. Valid until the next call.
-static const char *find_scene(const char *name)
-{
-	static char path[PATH_MAX];
-	char file[NAME_MAX];
-	if (!name || strchr(name, '/') || access(name, F_OK) == 0 ||
-	    snprintf(file, sizeof file, "%s.lua", name) >= (int)sizeof file)
-		return name;
-	return ob_own_file_find(path, OB_SCENES_FROM_PROGRAM, OB_SCENES_FROM_BUILD, file) ? path : name;
-}
-
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
 	static const char *const verbs[] = { [OB_COMMAND_RUN] = "run",
@@ -493,7 +483,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		return ob_fail(e, "no scene given: obsim %s falling_boxes", verbs[a->command]);
 	const char *isolation = a->value[OB_OPTION_ISOLATION], *measure = a->value[OB_OPTION_MEASURE];
 	*r = (ob_run_request){
-		.scene = find_scene(a->operand),
+		.scene = ob_shipped_find(a->operand),
 		.resume = resume,
 		.scene_options = { .defines = a->define, .define_count = a->defines },
 		.name = a->value[OB_OPTION_NAME],

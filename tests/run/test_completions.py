@@ -10,7 +10,7 @@ import unittest
 import program
 
 FILES = os.environ["COMPLETIONS"]
-COMMANDS = ["run", "serve", "control", "export", "compare", "top", "lab", "paper", "inspect", "send"]
+COMMANDS = ["run", "serve", "control", "export", "compare", "top", "lab", "paper", "inspect", "send", "scenes"]
 
 
 def options(command):

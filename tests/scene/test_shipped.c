@@ -65,6 +65,13 @@ static void check_count(const char *name, const char *define, uint32_t objects, 
 	ob_scene_free(s);
 }
 
+static void check_objects(const char *name, uint32_t objects)
+{
+	ob_scene *s = load(name, NULL, 0);
+	CHECK(s && s->objects == objects);
+	ob_scene_free(s);
+}
+
 static void check_seeds(const char *name, bool random)
 {
 	ob_scene *a = load(name, NULL, 5), *b = load(name, NULL, 5), *c = load(name, NULL, 6);
@@ -121,7 +128,7 @@ static int files(void)
 int main(int argc, char **argv)
 {
 	folder = argc > 2 ? argv[2] : "scenes";
-	CHECK(files() == 15);
+	CHECK(files() == 20);
 	check_count("falling_boxes", NULL, 101, true);
 	check_count("falling_boxes", "n=1", 2, true);
 	check_count("falling_boxes", "n=1000", 1001, true);
@@ -138,6 +145,15 @@ int main(int argc, char **argv)
 	check_count("thin_wall", NULL, 2, false);
 	check_count("sparse", NULL, 201, true);
 	check_count("shapes", NULL, 52, false);
+	check_count("dominoes", NULL, 402, false);
+	check_count("dominoes", "n=50", 52, false);
+	check_objects("tower", 227); // shots come from beyond the picture
+	check_count("warehouse", NULL, 77, false);
+	check_objects("plaza", 138);
+	check_count("avalanche", "n=500", 756, false);
+	check_seeds("dominoes", false);
+	check_seeds("plaza", true);
+	check_seeds("avalanche", true);
 	check_count("flock", NULL, 67, false);
 	check_count("flock", "n=200", 207, false);
 #ifdef MESHES

@@ -13,7 +13,7 @@ _obsim()
 	COMPREPLY=()
 	[[ $command:$previous == @(lab|paper|inspect):--json ]] && previous= # a flag there
 	if ((COMP_CWORD == 1)); then
-		mapfile -t COMPREPLY < <(compgen -W 'run serve control export compare top send inspect lab paper help --help --version' -- "$word")
+		mapfile -t COMPREPLY < <(compgen -W 'run serve control export compare top send inspect lab paper scenes help --help --version' -- "$word")
 		return
 	fi
 	case $previous in
@@ -51,7 +51,7 @@ _obsim()
 		--camera | --interval | --repeats | --seeds | --limit | --objects) ;;
 	*)
 		case $command:$word in
-		help:*) mapfile -t COMPREPLY < <(compgen -W 'run serve control export compare top send inspect lab paper' -- "$word") ;;
+		help:*) mapfile -t COMPREPLY < <(compgen -W 'run serve control export compare top send inspect lab paper scenes' -- "$word") ;;
 		*:-*) mapfile -t COMPREPLY < <(compgen -W "$(_obsim_options "$program" "$command")" -- "$word") ;;
 		paper:*) ;;
 		inspect:* | export:*) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;

@@ -21,10 +21,11 @@ complete -c obsim -n __fish_use_subcommand -a lab -d 'run hard cases with severa
 complete -c obsim -n __fish_use_subcommand -a paper -d 'run the paper again and judge its claims'
 complete -c obsim -n __fish_use_subcommand -a send -d 'ask a running universe for something'
 complete -c obsim -n __fish_use_subcommand -a inspect -d 'say what a checkpoint holds'
+complete -c obsim -n __fish_use_subcommand -a scenes -d 'list the scenes that come with obsim'
 complete -c obsim -n __fish_use_subcommand -a help -d 'help of a command'
 complete -c obsim -n __fish_use_subcommand -l version -d 'version, commit, libraries'
 complete -c obsim -s h -l help -d 'print help'
-complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve control export compare top send inspect lab paper'
+complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve control export compare top send inspect lab paper scenes'
 
 set -l both '__fish_seen_subcommand_from run compare serve control'
 complete -c obsim -n $both -a '(__fish_complete_suffix .lua)'

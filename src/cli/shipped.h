@@ -1,0 +1,14 @@
+// The scenes that come with obsim: found by name, in the folder that is installed or in that of a build tree.
+#ifndef OB_CLI_SHIPPED_H
+#define OB_CLI_SHIPPED_H
+
+#include <limits.h>
+#include <stdbool.h>
+
+// Path of a scene: the file with this name, or the scene of this name that comes with obsim; NULL for NULL. Valid until
+// the next call.
+const char *ob_shipped_find(const char *name);
+// Finds their folder. false: it is not beside the program.
+bool ob_shipped_folder(char path[PATH_MAX]);
+
+#endif
