@@ -140,10 +140,46 @@ class Viewer(server.Case):
 		b.wait("document.querySelector('#details dl').textContent.includes('reads')")
 		pictures.append(self.still(b))
 		self.assertEqual(len(set(pictures)), 4)
+		b.run("document.querySelector('[data-do=restart]').click()")
+		b.wait("obsim.universe.told < 1")
+		b.wait("obsim.universe.told > .5")
+		b.run("document.querySelector('[data-do=kill]').click()") # while boxes land
+		b.wait("document.querySelector('#notice').textContent.includes('SIGKILL')")
+		self.keep(b, "killed.png")
 		b.wait("document.querySelector('#notice').textContent.includes('The run has ended')")
 		self.assertIn(program.report(program.scene("falling_boxes"), "-D", "n=8", "--duration", "6")["state_hash"],
 			b.run("return document.querySelector('#notice').textContent"))
 		self.keep(b, "simulators.png")
+		self.assertEqual(b.console(), [])
+		self.end(saying="was killed by SIGKILL")
+
+	def test_hand(self):
+		"""A visitor drags a picked box, edits and pushes it; another sees it."""
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("ground {}\ncamera 'main' { eye = { 0, -6, .5 }, target = { 0, 0, .5 } }\n"
+				"box { size = { 1, 1, 1 }, at = { 0, 0, .5 }, name = 'crate', script = [[ function on_message(_, what) self:colour(what) end ]] }\n")
+		self.serve_file(self.path("scene.lua"))
+		b, witness = self.open(), self.viewer()
+		at = "obsim.universe.pose([...obsim.universe.objects.values()].find((o) => o.name === 'crate')).p"
+		middle = b.run("const r = document.querySelector('#picture').getBoundingClientRect(); return [r.width / 2, r.height / 2]")
+		b.click(*middle)
+		b.wait("document.querySelector('#details h2').textContent === 'crate'")
+		forward = b.run("return obsim.camera.forward")
+		b.pointer(("move", *middle), ("down", 0), ("move", middle[0], middle[1] - 150))
+		b.wait(f"{at}[2] > 1.2")
+		b.pointer(("up", 0))
+		b.wait(f"{at}[2] < .51")
+		self.assertEqual(b.run("return obsim.camera.forward"), forward)
+		b.run("obsim.panel.edit('at', '1 0 .5')")
+		b.wait(f"{at}[0] > .9")
+		b.run("const f = document.querySelector('#talk'); f.elements.text.value = '#00ff00'; f.requestSubmit()")
+		b.wait("[...obsim.universe.objects.values()].some((o) => o.name === 'crate' && o.colour[1] > .9)")
+		b.run("document.querySelector('[data-hold=push]').dispatchEvent(new Event('pointerdown'))")
+		b.wait(f"{at}[1] > .3")
+		b.run("document.querySelector('[data-hold=push]').dispatchEvent(new Event('pointerup'))")
+		i = next(i for i, o in witness.objects.items() if not o["static"])
+		witness.send(do="inspect", id=i)
+		witness.until(lambda: witness.told.get("details", {}).get("p", [0, 0, 0])[1] > .3)
 		self.assertEqual(b.console(), [])
 		self.end()
 

@@ -174,9 +174,11 @@ export class Camera {
 	}
 }
 
-// Mouse, touch and keys. onClick(x, y): a press without motion, in CSS pixels.
-export function control(canvas, camera, onClick) {
+// Mouse, touch and keys. onClick(x, y): a press without motion, in CSS pixels. onGrab(x, y, always): true if the pointer
+// holds an object from there on; hand.move(x, y) and hand.end() follow.
+export function control(canvas, camera, onClick, onGrab, hand) {
 	const fingers = new Map();
+	let holds = false;
 	let way = 0, mode = 'orbit', spread = 0;
 	const span = () => {
 		const [a, b] = [...fingers.values()];
@@ -197,6 +199,9 @@ export function control(canvas, camera, onClick) {
 		way = fingers.size > 1 ? 1e9 : 0;
 		mode = e.button === 2 || e.shiftKey ? 'translate' : e.altKey || e.button === 1 ? 'turn' : 'orbit';
 		spread = fingers.size === 2 ? span().size : 0;
+		if (holds)
+			hand.end();
+		holds = fingers.size === 1 && e.button === 0 && mode === 'orbit' && onGrab(e.clientX, e.clientY, e.ctrlKey || e.metaKey);
 	});
 	canvas.addEventListener('pointermove', (e) => {
 		const at = fingers.get(e.pointerId);
@@ -212,11 +217,16 @@ export function control(canvas, camera, onClick) {
 			mode = 'translate';
 			move(after.x - before.x, after.y - before.y);
 			camera.zoom(spread > 0 ? before.size / Math.max(1, after.size) : 1);
+		} else if (holds) {
+			hand.move(e.clientX, e.clientY);
 		} else if (fingers.size === 1) {
 			move(dx, dy);
 		}
 	});
 	const up = (e) => {
+		if (holds)
+			hand.end();
+		holds = false;
 		if (fingers.delete(e.pointerId) && way < 5 && e.type === 'pointerup' && e.button === 0)
 			onClick(e.clientX, e.clientY);
 		if (fingers.size === 1)

@@ -8,6 +8,7 @@ import { Universe } from './universe.js';
 import { turned } from './motion.js';
 import { colourBy } from './colouring.js';
 import { Workers } from './workers.js';
+import { Hand } from './hand.js';
 
 const THROWN = 12; // m/s
 const PICKED = [1, 0.7, 0.33, 1];
@@ -20,7 +21,7 @@ const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const recording = document.querySelector('meta[name=recording]').content;
-const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers();
+const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera);
 let drawing, look, cameras = [], shownCamera = 0, picked = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '';
 
 // ---- the picture
@@ -51,7 +52,7 @@ function overlay(list, view) {
 		else if (!isEndless(b.shape) && (panel.on.boxes || b.frozen))
 			out.push(...boxSegments(b, edgeColour(b)));
 	}
-	return panel.on.simulators ? out.concat(readings(list)) : out;
+	return out.concat(hand.segments(list), panel.on.simulators ? readings(list) : []);
 }
 
 // Follows the picked object with the viewpoint, if requested.
@@ -81,7 +82,7 @@ function frame(now) {
 	const view = camera.view(width, height);
 	// An unchanged picture is not drawn again: a paused universe costs nothing.
 	const { on } = panel, seen = [universe.time, universe.news, drawing.looks.size, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
-		on.contacts, on.simulators, workers.key, read].join();
+		on.contacts, on.simulators, workers.key, read, hand.held?.target].join();
 	if (seen !== shown)
 		drawing.draw(list, view, look, overlay(list, view));
 	shown = seen;
@@ -147,9 +148,13 @@ function hit(b, from, ray) {
 	return { s: enter, normal: turned(b.q, [0, 1, 2].map((k) => (k === axis ? -Math.sign(r[k]) : 0))) };
 }
 
+function rayAt(x, y) {
+	const box = canvas.getBoundingClientRect();
+	return { from: camera.eye, ray: camera.ray(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height, box.width, box.height) };
+}
+
 function pointAt(x, y) {
-	const box = canvas.getBoundingClientRect(), from = camera.eye;
-	const ray = camera.ray(2 * (x - box.left) / box.width - 1, 1 - 2 * (y - box.top) / box.height, box.width, box.height);
+	const { from, ray } = rayAt(x, y);
 	let best = null;
 	for (const b of bodies()) {
 		const at = hit(b, from, ray);
@@ -190,6 +195,15 @@ function click(x, y) {
 	return undefined;
 }
 
+// Takes hold of the picked object, or, where asked, of any.
+function grab(x, y, any) {
+	const { best, place } = pointAt(x, y), body = best?.body;
+	if (panel.looksOnly || recording || panel.on.make || !body || body.fixed || isEndless(body.shape) || !(any || body.id === picked))
+		return false;
+	hand.grab(body, place);
+	return true;
+}
+
 function throwOne() {
 	const { command } = panel.wanted, from = camera.eye, f = camera.forward;
 	const ahead = Math.max(...command.size) * 2 + 0.5;
@@ -215,6 +229,13 @@ panel.addEventListener('simulators', (e) => {
 	askSimulators();
 });
 workers.addEventListener('colours', askSimulators);
+panel.addEventListener('restart', () => universe.send({ do: 'restart' }));
+for (const what of ['edit', 'message'])
+	panel.addEventListener(what, (e) => {
+		const o = universe.objects.get(picked);
+		if (o)
+			universe.send({ do: what, id: o.id, generation: o.generation, ...e.detail });
+	});
 panel.addEventListener('kill', () => {
 	const o = universe.objects.get(picked);
 	if (o)
@@ -247,7 +268,21 @@ document.addEventListener('keydown', (e) => {
 	if (panel.key(e.key) || moveByKey(camera, e.key))
 		e.preventDefault();
 });
-control(canvas, camera, click);
+control(canvas, camera, click, grab, {
+	move: (x, y) => {
+		const { from, ray } = rayAt(x, y);
+		hand.move(from, ray);
+	},
+	end: () => hand.let(),
+});
+for (const [event, what] of [['pointerdown', 'push'], ['pointerup', 'let'], ['pointerleave', 'let']])
+	document.querySelector('[data-hold=push]').addEventListener(event, () => {
+		const o = universe.objects.get(picked);
+		if (o && what === 'push')
+			hand.push(o, panel.mass);
+		else if (o)
+			universe.send({ do: 'release', id: o.id });
+	});
 
 // ---- messages
 
@@ -318,5 +353,5 @@ async function begin() {
 }
 
 // For tests and the console
-window.obsim = { universe, camera, panel, workers, pick, frames: () => frames, drawing: () => drawing };
+window.obsim = { universe, camera, panel, workers, hand, pick, frames: () => frames, drawing: () => drawing };
 begin().catch((error) => panel.notice(error.message, 0));

@@ -5,7 +5,7 @@ const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, meta
 	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08], 0.62, 0], steel: [7800, 0.4, 0.3, [0.56, 0.57, 0.58], 0.32, 1],
 	rubber: [1100, 0.9, 0.7, [0.09, 0.09, 0.11], 0.8, 0], ice: [917, 0.03, 0.1, [0.55, 0.72, 0.83], 0.1, 0],
 };
-const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c: 'contacts', v: 'view', m: 'simulators', f: 'follow', '?': 'help', t: 'throw', Delete: 'remove',
+const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c: 'contacts', v: 'view', m: 'simulators', f: 'follow', '?': 'help', t: 'throw', r: 'restart', Delete: 'remove',
 	Escape: 'leave' };
 
 const MARKS_MOST = 400; // on the time bar
@@ -13,6 +13,7 @@ const MORE = new Set(['friction', 'restitution', 'island of', 'substeps']); // d
 
 const $ = (selector) => document.querySelector(selector);
 const number = (x, digits = 3) => (Math.abs(x) < 5e-4 ? '0' : Number(x.toPrecision(digits)).toString());
+const linear = (x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
 const vector = (v) => v.map((x) => number(x)).join('  ');
 
 export class Panel extends EventTarget {
@@ -27,6 +28,14 @@ export class Panel extends EventTarget {
 		});
 		$('#rate').addEventListener('change', (e) => this.tell('rate', Number(e.target.value)));
 		$('#time').addEventListener('input', (e) => this.tell('seek', Number(e.target.value)));
+		$('#talk').addEventListener('submit', (e) => {
+			e.preventDefault();
+			const { text } = e.target.elements;
+			if (text.value)
+				this.tell('message', { text: text.value });
+			text.value = '';
+		});
+		$('#edit').addEventListener('change', (e) => this.edit(e.target.name, e.target.value));
 		for (const input of document.querySelectorAll('#maker input')) {
 			const show = () => { input.nextElementSibling.value = `${Number(input.value)} m`; };
 			input.addEventListener('input', show);
@@ -67,6 +76,27 @@ export class Panel extends EventTarget {
 		return undefined;
 	}
 
+	// A changed field of the picked object.
+	edit(name, text) {
+		const numbers = text.trim().split(/[\s,]+/).map(Number);
+		if (name === 'colour')
+			this.tell('edit', { colour: [1, 3, 5].map((i) => linear(parseInt(text.slice(i, i + 2), 16) / 255)) });
+		else if (numbers.length !== (name === 'friction' ? 1 : 3) || numbers.some((x) => !Number.isFinite(x)))
+			this.notice(`${name}: expected ${name === 'friction' ? 'a number' : 'three numbers, as 0 0 1.5'}`);
+		else
+			this.tell('edit', { [name]: name === 'friction' ? numbers[0] : numbers });
+	}
+
+	// Fills in the fields to edit, but for one that is being written.
+	fillEdit(d) {
+		const fields = $('#edit').querySelectorAll('input');
+		$('#edit').hidden = d.gone || !(d.mass > 0) || !this.operates;
+		for (const field of fields) {
+			if (field !== document.activeElement && field.name !== 'colour')
+				field.value = d.gone ? '' : field.name === 'friction' ? number(d.friction) : vector(field.name === 'at' ? d.p : d.v);
+		}
+	}
+
 	// Object to create, without its place: { shape, size, mass, colour .. } of a command, and its height over the
 	// place.
 	get wanted() {
@@ -85,10 +115,10 @@ export class Panel extends EventTarget {
 	welcome(w) {
 		$('#title').textContent = w.title;
 		document.title = `${w.title} – obsim`;
-		const operates = w.role === 'operate';
-		for (const what of ['pause', 'step', 'make', 'remove', 'throw'])
+		const operates = this.operates = w.role === 'operate';
+		for (const what of ['pause', 'step', 'restart', 'make', 'remove', 'throw'])
 			for (const button of document.querySelectorAll(`[data-do=${what}]`))
-				button.disabled = w.look_only || (!operates && (what === 'pause' || what === 'step'));
+				button.disabled = w.look_only || (!operates && ['pause', 'step', 'restart'].includes(what));
 		$('#rate').disabled = !operates;
 		this.looksOnly = w.look_only;
 		this.isolation = w.isolation;
@@ -109,8 +139,8 @@ export class Panel extends EventTarget {
 		document.body.classList.add('film');
 		for (const what of ['pause', 'step', 'back'])
 			$(`[data-do=${what}]`).disabled = $(`[data-do=${what}]`).hidden = false;
-		this.off = new Set(['make', 'throw', 'contacts', 'remove']);
-		for (const what of ['make', 'contacts', 'remove'])
+		this.off = new Set(['make', 'throw', 'contacts', 'remove', 'restart']);
+		for (const what of ['make', 'contacts', 'remove', 'restart'])
 			$(`[data-do=${what}]`).hidden = true;
 		for (const part of document.querySelectorAll('#film, .film'))
 			part.hidden = false;
@@ -168,7 +198,11 @@ export class Panel extends EventTarget {
 			facts.push(['simulator', `worker ${d.home}, pid ${d.pid}`], ['CPU used', `${d.cpu_s.toFixed(2)} s`], ['reads', d.reads === undefined ? 'many' : `${d.reads.length} others`]);
 		else if (d.island !== undefined && d.mass > 0)
 			facts.push(['simulator', this.pool]);
+		this.mass = d.mass;
 		this.offerKill(d);
+		this.fillEdit(d);
+		$('#talk').hidden = d.gone || !d.script || this.looksOnly;
+		$('[data-hold=push]').hidden = d.gone || !(d.mass > 0) || this.looksOnly;
 		$('#details dl').replaceChildren(...facts.flatMap(([name, value]) => {
 			const dt = document.createElement('dt'), dd = document.createElement('dd');
 			dt.className = dd.className = MORE.has(name) ? 'more' : '';
@@ -181,7 +215,7 @@ export class Panel extends EventTarget {
 	// Offers to kill the process that simulates the picked object, with the names of all objects in it.
 	offerKill(d) {
 		const button = $('[data-do=kill]'), why = $('#details .why'), shared = d.shares ?? [];
-		button.hidden = d.gone || d.home === undefined || this.looksOnly;
+		button.hidden = d.gone || d.home === undefined || !this.operates;
 		button.disabled = this.isolation !== 'process';
 		button.textContent = `Kill worker ${d.home}`;
 		why.hidden = button.hidden;
