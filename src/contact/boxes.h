@@ -396,7 +396,7 @@ static void boxes(const ob_placed *a, const ob_placed *b, double margin, ob_mani
 	frame_pair_init(&f, a, b);
 	find_face_gaps(&f, &s);
 	s.largest_edge = -INFINITY;
-	if (s.largest_face <= margin || s.largest_face <= margin + nearby * f.thin) // either, for sizes that make no sense
+	if (s.largest_face <= margin || s.largest_face <= margin + nearby * f.thin) // for any size
 		find_edge_gaps(&f, &s);
 	out->points = 0;
 	out->separation = ob_max(s.largest_face, s.largest_edge);
