@@ -7,7 +7,8 @@ enum {
 	WORKERS_LIMIT = 1 << 20,
 	HULLS_LIMIT = UINT16_MAX,
 	SCRIPT_BYTES_LIMIT = 1 << 28,
-	VERSIONS_LIMIT = 1 << 16
+	VERSIONS_LIMIT = 1 << 16,
+	JOINTS_LIMIT = 1 << 24
 };
 
 static uint32_t power_of_two_from(uint32_t least)
@@ -48,6 +49,8 @@ typedef struct area_rule {
 		PER_FREE_GROUP,
 		PER_VERSION,
 		PER_LEDGER,
+		PER_JOINT,
+		PER_JOINED_OBJECT,
 	} per;
 	unsigned times, more;
 } area_rule;
@@ -102,6 +105,9 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_SCRIPT_TURN] = { ELEMENT(script_turn), PER_SCRIPT_CELL, 1, 0 },
 	[OB_AREA_SCRIPT_CELL] = { ELEMENT(script_cell), PER_SCRIPT_CELL, 1, 0 },
 	[OB_AREA_SCRIPT_DUE] = { ELEMENT(script_due), PER_SCRIPT_CELL, 1, 0 },
+	[OB_AREA_JOINT] = { ELEMENT(joint), PER_JOINT, 1, 0 },
+	[OB_AREA_NEXT_JOINT] = { ELEMENT(next_joint), PER_JOINT, 1, 0 },
+	[OB_AREA_FIRST_JOINT] = { ELEMENT(first_joint), PER_JOINED_OBJECT, 1, 0 },
 	[OB_AREA_SCRATCH] = { ELEMENT(scratch), PER_OBJECT, 4, 0 },
 	[OB_AREA_TASK_NS] = { ELEMENT(task_ns), PER_OBJECT, 1, 0 },
 	[OB_AREA_SCRIPT_TEXT] = { 1, PER_SCRIPT_BYTE, 1, 0 },
@@ -148,6 +154,8 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 		[PER_FREE_GROUP] = free ? ((uint64_t)s->capacity + OB_FREE_GROUP - 1) / OB_FREE_GROUP : 0,
 		[PER_VERSION] = (uint64_t)s->capacity * s->history,
 		[PER_LEDGER] = (uint64_t)s->capacity * s->ledgers,
+		[PER_JOINT] = s->joints,
+		[PER_JOINED_OBJECT] = s->joints > 0 ? s->capacity : 0,
 	};
 	const area_rule *r = &rules[area];
 	return r->element * (count[r->per] * r->times + r->more);
@@ -202,7 +210,8 @@ void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p)
 				      .script_cells = p->script_cells,
 				      .script_bytes = p->script_bytes,
 				      .history = p->history,
-				      .ledgers = p->ledgers };
+				      .ledgers = p->ledgers,
+				      .joints = p->joints };
 	h->sizes.pairs_max = most_pairs(capacity);
 	h->sizes.buckets = power_of_two_from(2 * capacity);
 	h->sizes.neighbours_max = 2 * h->sizes.pairs_max + capacity; // either object of a pair may find the other
@@ -240,12 +249,14 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	if (s->script_cells > s->capacity || s->script_bytes > SCRIPT_BYTES_LIMIT ||
 	    (s->script_cells > 0) != (s->script_bytes >= sizeof(ob_script_directory)))
 		return false;
+	if (s->joints > JOINTS_LIMIT)
+		return false;
 	if (s->history == 1 || s->history > VERSIONS_LIMIT || s->ledgers == 1 || s->ledgers > s->history)
 		return false;
 	ob_header expected;
 	ob_layout_plan(&expected, &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
 							s->outbox_bytes > 0, s->script_cells, s->script_bytes,
-							s->history, s->ledgers });
+							s->history, s->ledgers, s->joints });
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       (h->harden & 1 << OB_HARDEN_OUTBOX) == (s->outbox_bytes ? 1 << OB_HARDEN_OUTBOX : 0) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&
@@ -293,9 +304,15 @@ static void bind_step_data(ob_universe *u)
 		.scratch = (void *)(base + area[OB_AREA_SCRATCH]),
 		.task_ns = (void *)(base + area[OB_AREA_TASK_NS]),
 	};
+	ob_step_data *data = &u->step_data;
+	if (u->header.sizes.joints) {
+		data->joints = u->header.sizes.joints;
+		data->joint = (void *)(base + area[OB_AREA_JOINT]);
+		data->next_joint = (void *)(base + area[OB_AREA_NEXT_JOINT]);
+		data->first_joint = (void *)(base + area[OB_AREA_FIRST_JOINT]);
+	}
 	if (!u->header.sizes.script_cells)
 		return;
-	ob_step_data *data = &u->step_data;
 	data->script_cells = u->header.sizes.script_cells;
 	data->script_counts = (void *)(base + area[OB_AREA_SCRIPT_COUNTS]);
 	data->script_of = (void *)(base + area[OB_AREA_SCRIPT_OF]);

@@ -66,6 +66,9 @@ typedef enum ob_area {
 	OB_AREA_SCRIPT_TURN, // [script_cells]
 	OB_AREA_SCRIPT_CELL, // [script_cells]
 	OB_AREA_SCRIPT_DUE, // [script_cells]
+	OB_AREA_JOINT, // these three empty unless the scene has joints
+	OB_AREA_NEXT_JOINT, // [joints]
+	OB_AREA_FIRST_JOINT, // [capacity]
 	OB_AREA_SCRATCH,
 	OB_AREA_TASK_NS,
 	OB_AREA_SCRIPT_TEXT,
@@ -90,6 +93,7 @@ typedef struct ob_layout_sizes {
 	uint32_t script_bytes; // size of their texts, with the directory
 	uint32_t history; // versions of each motion that a free run keeps; 0 = the run is in lockstep
 	uint32_t ledgers; // same of each object's mail; 0 = it has none
+	uint32_t joints;
 } ob_layout_sizes;
 
 // The first two fields have the same place in all versions. A file with the same magic is owned through its lock
@@ -165,7 +169,7 @@ enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
 static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT_PAGE, "trace");
 static_assert(sizeof(ob_run_settings) == 128, "run settings");
-static_assert(sizeof(ob_header) == 80 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 128 + 8, "header");
+static_assert(sizeof(ob_header) == 88 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 128 + 8, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 576, "control");
 static_assert(sizeof(ob_worker_cell) == 960, "worker cell");
@@ -214,7 +218,7 @@ typedef struct ob_layout_plan_of {
 	uint32_t capacity, workers, hulls;
 	bool traced, contained;
 	uint32_t script_cells, script_bytes;
-	uint32_t history, ledgers;
+	uint32_t history, ledgers, joints;
 } ob_layout_plan_of;
 
 // Fills sizes (from the input), offsets and bytes.

@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <ob/joint.h>
 #include <ob/universe.h>
 
 #include "table/pair_state.h"
@@ -225,6 +226,11 @@ typedef struct ob_step_data {
 	uint32_t *script_due; // [script_cells]: those that run before this step, ascending
 	const ob_script_directory *script_text;
 	uint32_t script_cells;
+	// 0 and NULL unless the scene has joints (joint.c).
+	uint32_t joints;
+	ob_joint_passport *joint; // [joints]
+	uint32_t (*next_joint)[2]; // [joints]: 1 + the next one of either object; 0 ends
+	uint32_t *first_joint; // [object]: 1 + the first of its joints, ascending; 0: it has none
 } ob_step_data;
 
 typedef enum ob_step_failure {

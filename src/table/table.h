@@ -57,6 +57,7 @@ typedef struct ob_universe_setup {
 	uint32_t history; // versions of each motion that a free run keeps, at least 2; 0: the run is in lockstep
 	uint32_t ledgers; // same of each object's mail; 0: no ledger
 	const struct ob_free_settings *free; // of a free run
+	uint32_t joints; // of the scene
 } ob_universe_setup;
 
 // Creates the shared segment /dev/shm/obsim.<name>, zeroed, state STARTING. Removes stale segments, without an owner
@@ -87,6 +88,20 @@ void ob_script_free_cell(ob_universe *u, uint32_t id);
 // Puts a message of these values, without a sender, into the mail of the object's script. Returns false if it has none,
 // or no room for it. Call from the host, paused.
 bool ob_script_deliver(ob_universe *u, uint32_t id, const void *values, uint32_t bytes);
+// Writes the scene's joints, in any order of their objects, which may be absent yet. Call from the host, before the run.
+void ob_joints_write(ob_universe *u, const ob_joint_passport *joint, uint32_t joints);
+// Iterates over an object's joints: for (uint32_t j = ob_joint_first(data, id); j; j = ob_joint_next(data, j, id)), of
+// joint j - 1.
+static inline uint32_t ob_joint_first(const ob_step_data *data, uint32_t id)
+{
+	const uint32_t first = data->joints ? data->first_joint[id] : 0;
+	return first <= data->joints ? first : 0;
+}
+uint32_t ob_joint_next(const ob_step_data *data, uint32_t joint, uint32_t id);
+// True if the joint holds: its objects exist as those that it was made for.
+bool ob_joint_holds(const ob_universe *u, const ob_joint_passport *j);
+// True if a joint holds the two that does not let them touch each other.
+bool ob_joint_parts(const ob_universe *u, uint32_t a, uint32_t b);
 // Cell of an object; NULL: it has no script.
 const ob_script_turn *ob_script_turn_of(const ob_universe *u, uint32_t id);
 // Counts objects whose script an error has stopped; and those whose script goes on, but is warned of. Paused.

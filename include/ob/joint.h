@@ -1,0 +1,56 @@
+// Joints: what holds two objects of a universe, or one and the world, together.
+//
+// A joint has a frame in each of its two objects. Its kind says which of their relative motions it leaves free:
+//
+//   kind        free                                              frame
+//   ball        all turns about its origin                        any
+//   hinge       the turn about its z axis                         z: axis of the hinge
+//   slider      the shift along its z axis                        z: direction of the slide
+//   fixed       nothing                                           any
+//   universal   the turns about x of the first, y of the second   x and y: arms of the cross
+//   distance    all but the distance of the two origins           any; the origins lie apart
+//
+// Units: m, rad. Thread-safety: as <ob/universe.h>.
+#ifndef OB_JOINT_H
+#define OB_JOINT_H
+
+#include <ob/motion.h>
+
+#pragma GCC visibility push(default)
+
+typedef enum ob_joint_kind {
+	OB_JOINT_BALL,
+	OB_JOINT_HINGE,
+	OB_JOINT_SLIDER,
+	OB_JOINT_FIXED,
+	OB_JOINT_UNIVERSAL,
+	OB_JOINT_DISTANCE,
+	OB_JOINT_KINDS,
+} ob_joint_kind;
+
+#define OB_JOINT_WORLD UINT32_MAX // in place of an object: the world itself
+
+enum { // ob_joint_passport.flags
+	OB_JOINT_COLLIDES = 1 << 0, // its two objects may touch each other
+};
+
+// Properties of a joint. It holds while both objects are present with these generations. 144 bytes.
+typedef struct ob_joint_passport {
+	uint32_t object[2]; // ids; the second may be OB_JOINT_WORLD
+	uint32_t generation[2]; // of the objects
+	uint32_t kind; // ob_joint_kind
+	uint32_t flags; // OB_JOINT_*
+	ob_pose frame[2]; // frame of the joint in the frame of each object, as of a body; in the world's
+	double length; // m, of a distance; else 0
+} ob_joint_passport;
+
+// Name of a kind, as scenes have it ("hinge"). NULL: no such kind.
+const char *ob_joint_kind_name(uint32_t kind);
+// Number of joints that the universe has had; and one of them. false: none has this number, or its numbers are
+// implausible, or one of its objects does not exist any more.
+uint32_t ob_universe_joints(const ob_universe *u);
+bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passport *out);
+
+#pragma GCC visibility pop
+
+#endif
