@@ -263,7 +263,9 @@ static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 	const double *u = w->u[row], h = .5 * w->h;
 	ob_vec3 jump = ob_sub(ob_row_linear(u), ob_row_linear(v)),
 		jump_turn = ob_sub(ob_row_angular(u), ob_row_angular(v)), rate;
-	const bool jumped = ob_norm2(jump) >= smooth || body->radius * body->radius * ob_norm2(jump_turn) >= 9 * smooth;
+	const bool held = body->joints && !body->contacts; // joints alone change it, and smoothly
+	const bool jumped =
+		!held && (ob_norm2(jump) >= smooth || body->radius * body->radius * ob_norm2(jump_turn) >= 9 * smooth);
 	ob_vec3 way = ob_scale(ob_row_linear(u), h);
 	ob_quat q;
 	if (jumped)
@@ -487,7 +489,7 @@ void ob_bodies_report(ob_solver *s, uint32_t rest)
 				 .deviation = body->deviation,
 				 .flags = (body->moved_freely ? OB_MOTION_FREE : 0) | rest | body->refinement |
 					  (expected && ob_equilibrium_body_steady(w, i) ? OB_MOTION_STEADY : 0) };
-		if (!body->contacts)
+		if (!body->contacts && !body->joints)
 			mo.a = body->acceleration;
 		if (rest)
 			mo.v = mo.w = ob_v3(0, 0, 0);

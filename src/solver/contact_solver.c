@@ -6,6 +6,7 @@
 #include "solver/conjugate.h"
 #include "solver/direct_solver.h"
 #include "solver/few_contacts.h"
+#include "solver/joint_rows.h"
 
 // Iterations. A change of velocity above the wake threshold activates a body: its contacts are solved again.
 static const double wake_threshold = 2e-3; // m/s
@@ -224,6 +225,28 @@ static void activate_all(ob_island_work *w)
 		ob_solver_activate(w, i, w->iteration);
 }
 
+// Solves the joints on the velocities that the contacts have left. Bodies that they change by more than the threshold (m/s)
+// are active: any.
+static void solve_joints(ob_solver *s, double threshold, bool *any)
+{
+	ob_island_work *w = &s->island;
+	if (!w->joints.count)
+		return;
+	memcpy(w->delta, w->u, w->rows * sizeof *w->u);
+	ob_joints_solve(w, w->u);
+	for (uint32_t i = 1; i <= w->bodies; i++) {
+		const ob_body *body = &w->body[i];
+		const ob_vec3 v = ob_sub(ob_row_linear(w->u[i]), ob_row_linear(w->delta[i])),
+			      turn = ob_sub(ob_row_angular(w->u[i]), ob_row_angular(w->delta[i]));
+		if (!body->contacts ||
+		    !(ob_norm2(v) + body->radius * body->radius * ob_norm2(turn) > threshold * threshold))
+			continue;
+		ob_solver_activate(w, i, w->iteration);
+		*any = true;
+	}
+	memset(w->delta, 0, w->rows * sizeof *w->delta);
+}
+
 // Returns the ratio of substeps to their usual number, at least 1. Remainders of all substeps add up over the step, so
 // thresholds fall when a step is solved again with more substeps.
 static double refinement(const ob_solver *s)
@@ -261,7 +284,8 @@ void ob_solver_iterate(ob_solver *s)
 			iteration.wake_threshold = extra_iteration_threshold * w->unit.speed / refinement(s);
 			to_the_end = false;
 		}
-		if (to_the_end && k >= iterations_before_steps && !iteration.jacobi && !iteration.ghosts) {
+		if (to_the_end && k >= iterations_before_steps && !w->joints.count && !iteration.jacobi &&
+		    !iteration.ghosts) {
 			ob_budget_note(s, WORK_OF_STEP);
 			ob_few_contacts_step(w);
 			activate_all(w);
@@ -270,6 +294,7 @@ void ob_solver_iterate(ob_solver *s)
 		s->methods.read(s, w->u, k);
 		w->iteration += 1 + (k == 0); // a gap of 1, so that no body is active from the last partial substep
 		residual = solve_contacts(s, &iteration, &any_active, &changed);
+		solve_joints(s, iteration.wake_threshold, &any_active);
 		if (iteration.first) {
 			w->last_residual = changed;
 			w->residual = ob_max(w->residual, changed);
@@ -280,13 +305,13 @@ void ob_solver_iterate(ob_solver *s)
 		}
 		iteration.first = false;
 		iteration.block_tolerance = block_tolerance * residual;
-		if (ob_direct_wanted(s, residual)) {
+		if (!w->joints.count && ob_direct_wanted(s, residual)) {
 			ob_direct_solve(s);
 			any_active = true;
 			activate_all(w);
 		}
 	}
 	w->direct.used_last = w->direct.solves > 0;
-	if (ob_direct_settles(s, residual))
+	if (!w->joints.count && ob_direct_settles(s, residual))
 		settle(s, &iteration);
 }

@@ -512,7 +512,7 @@ static void count_contacts(const ob_island_work *w, ob_batch *b, bool jacobi)
 static void count_in_reach(ob_island_work *w)
 {
 	for (uint32_t row = 0; row < w->rows; row++)
-		w->body[row].in_reach = 0;
+		w->body[row].in_reach = w->body[row].joints ? 2 : 0; // a joint brings load, too
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i];
 		ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];

@@ -9,8 +9,8 @@ static const double min_rest_time = .1; // s; shorter in a coarse run
 bool ob_equilibrium_likely(const ob_solver *s, const ob_island_input *in)
 {
 	const ob_run_settings *run = s->settings;
-	if (run->substeps == 1 || s->island.substeps > run->substeps || run->solver != OB_SOLVER_COLOURED ||
-	    !s->methods.exact)
+	if (in->joints || run->substeps == 1 || s->island.substeps > run->substeps ||
+	    run->solver != OB_SOLVER_COLOURED || !s->methods.exact)
 		return false;
 	for (uint32_t i = 0; i < in->members; i++)
 		if (!(in->object[i].motion->flags & OB_MOTION_STEADY))

@@ -1,6 +1,7 @@
 #include "solver/error_control.h"
 
 #include "solver/contacts.h"
+#include "solver/joints.h"
 
 static const uint32_t max_substeps = OB_MAX_SUBSTEPS;
 static_assert(1 << (OB_SUBSTEP_CHOICES - 1) == OB_MAX_SUBSTEPS, "each number of substeps has its place");
@@ -149,7 +150,7 @@ static void set_next_substeps(ob_solver *s)
 	ob_island_work *w = &s->island;
 	const ob_run_settings *run = s->settings;
 	for (uint32_t i = 0; i < w->rows; i++)
-		w->body[i].next_substeps = run->substeps;
+		w->body[i].next_substeps = w->joints.count ? ob_joints_substeps(s) : run->substeps;
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i];
 		uint32_t n = substeps_for(w, contact, run);

@@ -85,7 +85,7 @@ void ob_estimate_update(ob_solver *s)
 	double error = 0;
 	if (weight) {
 		ob_solver_enter(s, OB_PROFILE_ESTIMATE);
-		ob_probe_solve(s->estimate.probe, s->in, refined || n < 2 ? 2 * n : n / 2);
+		ob_probe_solve(s->estimate.probe, s->in, refined || n < 2 || w->joints.count ? 2 * n : n / 2);
 		s->counters.estimates += w->bodies;
 	}
 	for (uint32_t row = 1; row <= w->bodies; row++)

@@ -169,7 +169,7 @@ void ob_frame_enter(ob_solver *s, const ob_island_input *in)
 {
 	ob_island_work *w = &s->island;
 	find_what_holds(s, in);
-	w->frame = s->methods.exact ? find_frame(w) : ob_v3(0, 0, 0);
+	w->frame = s->methods.exact && !in->joints ? find_frame(w) : ob_v3(0, 0, 0);
 	for (uint32_t row = 1; row < w->rows && ob_norm2(w->frame) > 0; row++)
 		w->body[row].acceleration =
 			is_slippery(&w->body[row]) ? ob_v3(0, 0, 0) : ob_sub(w->body[row].acceleration, w->frame);

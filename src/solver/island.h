@@ -9,6 +9,8 @@
 
 #include <assert.h>
 
+#include <ob/joint.h>
+
 #include "contact/batch.h"
 #include "contact/impact.h"
 #include "solver/sparse_solver.h"
@@ -55,7 +57,8 @@ typedef struct ob_body {
 	bool rolls; // its contact does not go along with its spin, which moves no surface (solver/surfaces.h)
 	uint32_t surface; // 1 + index into the kinematic surfaces (solver/surfaces.h); 0: none
 	double carried; // N s, sum over all surfaces that carry it
-	bool among_others; // it touches moving bodies
+	bool among_others; // it touches moving bodies, or a joint holds it
+	uint32_t joints; // that hold it
 	bool turns; // it has a contact whose geometry turns
 	bool halved; // it is at the midpoint of the partial substep (solver/midpoint.h)
 	ob_body_row first_half; // m, rad: displacement to the midpoint
@@ -177,6 +180,39 @@ typedef struct ob_surfaces {
 	double step_begin; // s, time of the step's start
 } ob_surfaces;
 
+// A joint's end in an island.
+typedef struct ob_joint_end {
+	uint32_t row; // 0: it does not move by forces
+	const ob_motion *motion; // of such an object; NULL: the world
+	ob_pose frame; // of the joint in the body
+	ob_vec3 arm; // m, world: from the body's centre to the joint's origin
+	ob_vec3 at, axis[3]; // m, world: origin; axes of the frame
+	ob_body_row given; // m/s, rad/s: velocity of one that does not move by forces
+} ob_joint_end;
+
+// A joint of an island (solver/joints.c).
+typedef struct ob_held_joint {
+	uint32_t kind; // ob_joint_kind
+	double length; // m, of a distance
+	ob_joint_end end[2];
+	uint32_t child, parent; // rows of the elimination: the first end that moves, the other; OB_SPARSE_FIXED: none
+	ob_joint rows; // J at the present poses, and the last impulses
+	double response[2][OB_JOINT_ROWS][6]; // change of velocity of child and parent by an impulse of each row
+	double error[OB_JOINT_ROWS]; // m, or sine: violation of each row
+	double sum[OB_JOINT_ROWS]; // N s, N m s: impulse of the flight, of its first or second half
+	double target[OB_JOINT_ROWS]; // m/s, rad/s: velocity of each row that the contact solver aims at
+} ob_held_joint;
+
+// Memory grown as needed, never shrunk.
+typedef struct ob_joint_set {
+	uint32_t count, max;
+	ob_held_joint *joint;
+	ob_sparse_solver sparse; // bodies: rows less 1
+	double step_begin; // s, time of the step's start
+	double stiffness; // 1/s: largest rate, by their forces, at which bodies may swing, in this step so far
+	bool failed; // a stage of this step was too long to be solved
+} ob_joint_set;
+
 // Scratch memory of an island's solve, grown as needed, never shrunk.
 typedef struct ob_island_work {
 	ob_units unit; // the run's units, for thresholds
@@ -234,6 +270,7 @@ typedef struct ob_island_work {
 	ob_conjugate conjugate;
 	ob_impacts impacts;
 	ob_surfaces surfaces;
+	ob_joint_set joints;
 } ob_island_work;
 
 // Raises a threshold in a coarse run: `usual` times the coarseness, at most `bound`, which follows from the tolerance,

@@ -15,6 +15,8 @@
 #include "solver/error_control.h"
 #include "solver/frame.h"
 #include "solver/impacts.h"
+#include "solver/joint_rows.h"
+#include "solver/joints.h"
 #include "solver/methods.h"
 #include "solver/midpoint.h"
 #include "solver/push_apart.h"
@@ -61,6 +63,7 @@ static void solve_velocities(ob_solver *s)
 {
 	do {
 		ob_solver_enter(s, OB_PROFILE_MOVE);
+		ob_joints_begin(s);
 		ob_bodies_predict_velocities(s);
 		ob_solver_enter(s, OB_PROFILE_SOLVE);
 		ob_solver_iterate(s);
@@ -93,6 +96,30 @@ static void solve_partial_substep(ob_solver *s, double left, bool first_of_step)
 	s->methods.follow(s);
 	ob_solver_enter(s, OB_PROFILE_PROJECT);
 	ob_push_apart(s);
+	ob_joints_project(s);
+}
+
+// Solves the substeps in turn.
+static void solve_substeps(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	for (uint32_t k = 0; k < w->substeps; k++) {
+		bool first = k == 0;
+		for (double left = w->substep; left > 0 && !ob_budget_spent(s); left -= w->h, first = false)
+			solve_partial_substep(s, left, first);
+	}
+}
+
+// Flies with the joints where nothing may touch. false: they need more substeps, which are set.
+static bool fly(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	ob_solver_enter(s, OB_PROFILE_MOVE);
+	if (ob_joints_fly(s) || w->substeps >= OB_MAX_SUBSTEPS)
+		return true;
+	const uint32_t needed = ob_joints_substeps(s);
+	w->substeps = needed < OB_MAX_SUBSTEPS ? needed : OB_MAX_SUBSTEPS;
+	return false;
 }
 
 // Solves the whole step on a private copy of the published state. true: the solution's error is tolerable.
@@ -104,14 +131,16 @@ static bool solve_step(ob_solver *s, const ob_island_input *in)
 	ob_solver_enter(s, OB_PROFILE_LOAD);
 	s->calls.attempt(s->calls.with);
 	ob_bodies_load(s, in);
+	ob_joints_load(s, in);
 	ob_frame_enter(s, in);
 	ob_contacts_load(s, in);
 	ob_direct_begin(&w->direct);
 	s->counters.body_substeps += (uint64_t)in->members * w->substeps;
-	for (uint32_t k = 0; k < w->substeps; k++) {
-		bool first = k == 0;
-		for (double left = w->substep; left > 0 && !ob_budget_spent(s); left -= w->h, first = false)
-			solve_partial_substep(s, left, first);
+	if (in->joints && !in->pairs) {
+		if (!fly(s) && !ob_budget_spent(s))
+			return false;
+	} else {
+		solve_substeps(s);
 	}
 	ob_solver_enter(s, OB_PROFILE_NARROWPHASE);
 	for (uint32_t row = 1; row <= w->bodies; row++)
@@ -138,7 +167,7 @@ static bool solve_equilibrium(ob_solver *s, const ob_island_input *in)
 static uint32_t rest_flag(ob_solver *s)
 {
 	const double rest_time = ob_bodies_update_rest(s);
-	if (s->island.torques || ob_norm2(s->island.frame) > 0 ||
+	if (s->island.joints.count || s->island.torques || ob_norm2(s->island.frame) > 0 ||
 	    ob_surfaces_carry_any(&s->island)) // equilibrium and sleep know of forces alone
 		return 0;
 	if (ob_equilibrium_reached(&s->island))
@@ -149,7 +178,7 @@ static uint32_t rest_flag(ob_solver *s)
 void ob_island_step(ob_solver *s, const ob_island_input *in)
 {
 	s->in = in;
-	s->island.in_field = false;
+	s->island.in_field = in->joints > 0; // joints are solved in no other frame than the world's
 	s->island.substeps = ob_error_control_substeps(s, in);
 	s->island.balanced = solve_equilibrium(s, in);
 	if (!s->island.balanced)
@@ -174,7 +203,7 @@ void ob_island_report(ob_solver *s)
 void ob_island_probe(ob_solver *s, const ob_island_input *in, uint32_t substeps)
 {
 	s->in = in;
-	s->island.in_field = false;
+	s->island.in_field = in->joints > 0; // joints are solved in no other frame than the world's
 	s->island.substeps = substeps;
 	(void)solve_step(s, in);
 	ob_frame_leave(s);
@@ -220,4 +249,5 @@ void ob_solver_finish(ob_solver *s)
 	ob_conjugate_finish(&w->conjugate);
 	ob_impacts_finish(&w->impacts);
 	ob_surfaces_finish(&w->surfaces);
+	ob_joints_finish(&w->joints);
 }

@@ -71,8 +71,10 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 void ob_midpoint_mark(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
-	for (uint32_t i = 0; i < w->rows; i++)
-		w->body[i].among_others = w->body[i].turns = false;
+	for (uint32_t i = 0; i < w->rows; i++) {
+		w->body[i].among_others = w->body[i].joints > 0;
+		w->body[i].turns = false;
+	}
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i];
 		ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
@@ -124,7 +126,7 @@ static bool is_hit(const ob_solver *s, const ob_contact *contact)
 
 // ---- to the midpoint
 
-static void halve(ob_solver *s, uint32_t row)
+void ob_midpoint_halve(ob_solver *s, uint32_t row)
 {
 	ob_island_work *w = &s->island;
 	ob_body *body = &w->body[row];
@@ -299,7 +301,7 @@ void ob_midpoint_begin(ob_solver *s)
 	}
 	for (uint32_t i = 0; i < w->contacts; i++)
 		if (w->contact[i].turns)
-			halve(s, w->contact[i].a), halve(s, w->contact[i].b);
+			ob_midpoint_halve(s, w->contact[i].a), ob_midpoint_halve(s, w->contact[i].b);
 	for (uint32_t i = 0; i < w->contacts; i++)
 		if (at_midpoint(w, &w->contact[i]))
 			find_at_midpoint(s, &w->contact[i]);

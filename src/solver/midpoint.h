@@ -25,6 +25,8 @@
 void ob_midpoint_mark(ob_solver *s);
 // Moves bodies with such contacts to the midpoint and finds the contacts there, before the iterations.
 void ob_midpoint_begin(ob_solver *s);
+// Moves a body that moves to the midpoint, if it is not there yet.
+void ob_midpoint_halve(ob_solver *s, uint32_t row);
 // Ends it, after the positions are integrated.
 void ob_midpoint_end(ob_solver *s);
 // Moves the bodies back to the start, where the partial substep turns out to be shorter.

@@ -43,7 +43,7 @@ void ob_refinement_update(ob_solver *s, bool estimated, double error)
 	const ob_motion *last = s->in->object[0].motion;
 	const bool refined = ob_is_refined(&s->in->object[0]), exceeds = estimated && error > s->settings->tolerance;
 	uint32_t n = refined ? last->substeps : 0, stage = last->flags & OB_MOTION_REFINEMENT;
-	if (s->island.bodies > 1 || ob_contacts_changed(&s->island))
+	if (s->island.bodies > 1 || s->island.joints.count || ob_contacts_changed(&s->island))
 		return;
 	if (exceeds && (stage & OB_MOTION_DOUBTED || refined)) {
 		const uint32_t found = find_substeps(s, error);

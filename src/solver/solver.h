@@ -10,6 +10,7 @@
 #ifndef OB_SOLVER_SOLVER_H
 #define OB_SOLVER_SOLVER_H
 
+#include <ob/joint.h>
 #include <ob/motion.h>
 
 #include "contact/manifold.h"
@@ -44,12 +45,19 @@ typedef struct ob_island_pair {
 
 #define OB_NO_FIXED UINT32_MAX
 
+// A joint of which one or both objects are members.
+typedef struct ob_island_joint {
+	const ob_joint_passport *joint;
+	uint32_t object[2]; // indices of objects; OB_NO_FIXED: the world
+} ob_island_joint;
+
 typedef struct ob_island_input {
 	uint64_t step; // number of complete steps
-	uint32_t members, objects, pairs;
+	uint32_t members, objects, pairs, joints;
 	// [objects]: the members by ascending id, then the others as the pairs name them
 	const ob_island_object *object;
 	const ob_island_pair *pair;
+	const ob_island_joint *joint; // [joints], in an order that does not depend on the run
 	bool feels; // touches are to be reported
 } ob_island_input;
 

@@ -181,6 +181,30 @@ static uint32_t block_of(const ob_sparse_solver *t, uint32_t sooner, uint32_t la
 	return i;
 }
 
+void ob_sparse_clear(ob_sparse_solver *t)
+{
+	const uint32_t blocks = t->first[t->bodies];
+	if (blocks)
+		memset(t->block, 0, blocks * sizeof *t->block);
+	ob_sparse_begin_side(t);
+}
+
+void ob_sparse_begin_side(ob_sparse_solver *t)
+{
+	memset(t->change, 0, t->bodies * sizeof *t->change);
+}
+
+void ob_sparse_push(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent)
+{
+	for (uint32_t r = 0; r < j->rows; r++) {
+		const double push = j->y[r] / j->compliance[r];
+		for (int i = 0; i < 6; i++)
+			t->change[child][i] += push * j->child[r][i];
+		for (int i = 0; i < 6 && parent != OB_SPARSE_FIXED; i++)
+			t->change[parent][i] += push * j->parent[r][i];
+	}
+}
+
 // Adds s x y^T.
 static void add_product(double (*m)[6], double s, const double *x, const double *y)
 {
@@ -296,10 +320,33 @@ static void back_substitute(ob_sparse_solver *t, uint32_t k)
 	upper_solve(t->own[body], t->inverse[body], t->change[body]);
 }
 
-void ob_sparse_solve(ob_sparse_solver *t)
+void ob_sparse_factor(ob_sparse_solver *t)
 {
 	for (uint32_t k = 0; k < t->bodies; k++)
 		eliminate_body(t, k);
+}
+
+static void forward_substitute(ob_sparse_solver *t, uint32_t k)
+{
+	const uint32_t body = t->order[k];
+	lower_solve(t->own[body], t->inverse[body], t->change[body]);
+	for (uint32_t i = t->first[k]; i < t->first[k + 1]; i++)
+		for (int r = 0; r < 6; r++)
+			for (int c = 0; c < 6; c++)
+				t->change[t->below[i]][r] -= t->block[i][r][c] * t->change[body][c];
+}
+
+void ob_sparse_substitute(ob_sparse_solver *t)
+{
+	for (uint32_t k = 0; k < t->bodies; k++)
+		forward_substitute(t, k);
+	for (uint32_t k = t->bodies; k-- > 0;)
+		back_substitute(t, k);
+}
+
+void ob_sparse_solve(ob_sparse_solver *t)
+{
+	ob_sparse_factor(t);
 	for (uint32_t k = t->bodies; k-- > 0;)
 		back_substitute(t, k);
 }

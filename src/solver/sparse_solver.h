@@ -78,6 +78,13 @@ bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most);
 void ob_sparse_set_inertia(ob_sparse_solver *t, uint32_t body, double (*m)[6]);
 void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent);
 void ob_sparse_solve(ob_sparse_solver *t);
+// For several right-hand sides of the same joints. Clear, then set inertias and add joints; factor; then for each side
+// begin it, push with the joints' y, and substitute.
+void ob_sparse_clear(ob_sparse_solver *t);
+void ob_sparse_factor(ob_sparse_solver *t);
+void ob_sparse_begin_side(ob_sparse_solver *t);
+void ob_sparse_push(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent);
+void ob_sparse_substitute(ob_sparse_solver *t);
 // Sets the joint's impulses.
 void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t child, uint32_t parent);
 void ob_sparse_finish(ob_sparse_solver *t);

@@ -1,0 +1,271 @@
+#include "solver/joint_rows.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/allocate.h"
+
+static const double compliance = 1e-9; // of a row, as a share of its own response
+
+// ---- rows
+
+typedef struct row_rule {
+	enum { NO_ROW, ALONG, ACROSS, LENGTH } type;
+	int a, b; // axes of the first and the second end
+} row_rule;
+
+#define PLACE \
+	{ ALONG, 0, 0 }, { ALONG, 0, 1 }, \
+	{ \
+		ALONG, 0, 2 \
+	}
+#define SAME_Z \
+	{ ACROSS, 0, 2 }, \
+	{ \
+		ACROSS, 1, 2 \
+	}
+#define SAME_X \
+	{ \
+		ACROSS, 0, 1 \
+	}
+
+static const row_rule rules[OB_JOINT_KINDS][OB_JOINT_ROWS] = {
+	[OB_JOINT_BALL] = { PLACE },
+	[OB_JOINT_HINGE] = { PLACE, SAME_Z },
+	[OB_JOINT_SLIDER] = { { ALONG, 0, 0 }, { ALONG, 0, 1 }, SAME_Z, SAME_X },
+	[OB_JOINT_FIXED] = { PLACE, SAME_Z, SAME_X },
+	[OB_JOINT_UNIVERSAL] = { PLACE, { ACROSS, 0, 1 } },
+	[OB_JOINT_DISTANCE] = { { LENGTH, 0, 0 } },
+};
+
+static void set_row(double *row, ob_vec3 linear, ob_vec3 angular)
+{
+	row[0] = linear.x, row[1] = linear.y, row[2] = linear.z;
+	row[3] = angular.x, row[4] = angular.y, row[5] = angular.z;
+}
+
+// Finds the place of an end at this time (s) of the run.
+static void find_end(const ob_island_work *w, ob_joint_end *e, double time)
+{
+	ob_pose at = { ob_v3(0, 0, 0), ob_quat_identity() };
+	if (e->row) {
+		at = (ob_pose){ w->body[e->row].p, w->body[e->row].q };
+	} else if (e->motion) {
+		const ob_state now = ob_motion_at(e->motion, ob_v3(0, 0, 0), time);
+		at = now.pose;
+		set_row(e->given, now.v, now.w);
+	}
+	const ob_mat3 r = ob_quat_matrix(at.q), axes = ob_quat_matrix(ob_quat_mul(at.q, e->frame.q));
+	e->arm = ob_rotate(&r, e->frame.p);
+	e->at = ob_add(at.p, e->arm);
+	for (int i = 0; i < 3; i++)
+		e->axis[i] = ob_column(&axes, i);
+}
+
+// Finds the violation of each row.
+static void find_errors(ob_held_joint *j)
+{
+	const ob_joint_end *a = &j->end[0], *b = &j->end[1];
+	const ob_vec3 apart = ob_sub(a->at, b->at);
+	for (uint32_t r = 0; r < j->rows.rows; r++) {
+		const row_rule *rule = &rules[j->kind][r];
+		j->error[r] = rule->type == ALONG    ? ob_dot(b->axis[rule->b], apart)
+			      : rule->type == ACROSS ? ob_dot(a->axis[rule->a], b->axis[rule->b])
+						     : ob_norm(apart) - j->length;
+	}
+}
+
+void ob_joints_find(ob_island_work *w, double time)
+{
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		find_end(w, &j->end[0], time);
+		find_end(w, &j->end[1], time);
+		find_errors(j);
+	}
+}
+
+// Sets a row of both ends.
+static void find_row(const ob_held_joint *j, const row_rule *rule, double *of_a, double *of_b)
+{
+	const ob_joint_end *a = &j->end[0], *b = &j->end[1];
+	const ob_vec3 apart = ob_sub(a->at, b->at), none = { 0, 0, 0 };
+	if (rule->type == ACROSS) {
+		const ob_vec3 turn = ob_cross(a->axis[rule->a], b->axis[rule->b]);
+		set_row(of_a, none, turn);
+		set_row(of_b, none, ob_scale(turn, -1));
+		return;
+	}
+	const bool along = rule->type == ALONG;
+	const double far = ob_norm(apart);
+	const ob_vec3 n = along ? b->axis[rule->b] : far > 0 ? ob_scale(apart, 1 / far) : ob_v3(0, 0, 1);
+	set_row(of_a, n, ob_cross(a->arm, n));
+	set_row(of_b, ob_scale(n, -1), ob_cross(n, along ? ob_add(b->arm, apart) : b->arm));
+}
+
+// Sets the response of an end to an impulse of a row. Returns its part of the row's velocity.
+static double find_response(const ob_island_work *w, uint32_t body, const double *row, double *response)
+{
+	if (body == OB_SPARSE_FIXED) {
+		memset(response, 0, 6 * sizeof *response);
+		return 0;
+	}
+	const ob_body *b = &w->body[1 + body];
+	double sum = 0;
+	set_row(response, ob_scale(ob_row_linear(row), b->inv_mass), ob_body_turned_by(b, ob_row_angular(row)));
+	for (int i = 0; i < 6; i++)
+		sum += row[i] * response[i];
+	return sum;
+}
+
+void ob_joint_find_rows(const ob_island_work *w, ob_held_joint *j)
+{
+	const bool swapped = j->end[0].row == 0;
+	for (uint32_t r = 0; r < j->rows.rows; r++) {
+		double *child = j->rows.child[r], *parent = j->rows.parent[r];
+		find_row(j, &rules[j->kind][r], swapped ? parent : child, swapped ? child : parent);
+		j->rows.compliance[r] = compliance * (find_response(w, j->child, child, j->response[0][r]) +
+						      find_response(w, j->parent, parent, j->response[1][r]));
+	}
+}
+
+static void set_inertia(ob_island_work *w, uint32_t body)
+{
+	const ob_body *b = &w->body[1 + body];
+	const ob_vec3 k = b->inertia;
+	ob_sparse_block m = { { 0 } };
+	for (int i = 0; i < 3; i++)
+		m[i][i] = b->mass;
+	for (int axis = 0; axis < 3; axis++) {
+		const ob_vec3 n = ob_column(&b->r, axis);
+		const double x[3] = { n.x, n.y, n.z }, moment = axis == 0 ? k.x : axis == 1 ? k.y : k.z;
+		for (int i = 0; i < 3; i++)
+			for (int c = 0; c < 3; c++)
+				m[3 + i][3 + c] += moment * x[i] * x[c];
+	}
+	ob_sparse_set_inertia(&w->joints.sparse, body, m);
+}
+
+void ob_joints_factor(ob_island_work *w)
+{
+	ob_joint_set *set = &w->joints;
+	ob_sparse_clear(&set->sparse);
+	for (uint32_t i = 0; i < w->bodies; i++)
+		set_inertia(w, i);
+	for (uint32_t i = 0; i < set->count; i++) {
+		ob_held_joint *j = &set->joint[i];
+		ob_joint_find_rows(w, j);
+		memset(j->rows.y, 0, sizeof j->rows.y);
+		ob_sparse_add_joint(&set->sparse, &j->rows, j->child, j->parent);
+	}
+	ob_sparse_factor(&set->sparse);
+}
+
+double ob_joint_row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_row *rows)
+{
+	const double *child = rows[1 + j->child];
+	const double *parent = j->parent == OB_SPARSE_FIXED ? j->end[j->end[0].row != 0].given : rows[1 + j->parent];
+	double sum = 0;
+	for (int i = 0; i < 6; i++)
+		sum += j->rows.child[r][i] * child[i] + j->rows.parent[r][i] * parent[i];
+	return sum;
+}
+
+void ob_joint_respond(const ob_held_joint *j, const double *impulse, ob_body_row *rows)
+{
+	for (uint32_t r = 0; r < j->rows.rows; r++)
+		for (int i = 0; i < 6; i++) {
+			rows[1 + j->child][i] += impulse[r] * j->response[0][r][i];
+			if (j->parent != OB_SPARSE_FIXED)
+				rows[1 + j->parent][i] += impulse[r] * j->response[1][r][i];
+		}
+}
+
+void ob_joints_find_impulses(ob_island_work *w)
+{
+	ob_joint_set *set = &w->joints;
+	ob_sparse_begin_side(&set->sparse);
+	for (uint32_t i = 0; i < set->count; i++)
+		ob_sparse_push(&set->sparse, &set->joint[i].rows, set->joint[i].child, set->joint[i].parent);
+	ob_sparse_substitute(&set->sparse);
+	for (uint32_t i = 0; i < set->count; i++)
+		ob_sparse_joint_impulses(&set->sparse, &set->joint[i].rows, set->joint[i].child, set->joint[i].parent);
+}
+
+void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
+{
+	enum { PASSES = 3 };
+	for (int pass = 0; pass < PASSES; pass++) {
+		for (uint32_t i = 0; i < w->joints.count; i++) {
+			ob_held_joint *j = &w->joints.joint[i];
+			for (uint32_t r = 0; r < j->rows.rows; r++)
+				j->rows.y[r] = j->target[r] - ob_joint_row_velocity(j, r, rows);
+		}
+		ob_joints_find_impulses(w);
+		for (uint32_t i = 0; i < w->joints.count; i++) {
+			ob_held_joint *j = &w->joints.joint[i];
+			ob_joint_respond(j, j->rows.x, rows);
+			for (uint32_t r = 0; r < j->rows.rows; r++)
+				j->sum[r] += j->rows.x[r];
+		}
+	}
+}
+
+// ---- loading
+
+static void load_end(ob_island_work *w, const ob_island_input *in, uint32_t object, ob_joint_end *e)
+{
+	if (object == OB_NO_FIXED)
+		return;
+	if (object < in->members)
+		e->row = w->row_of[object];
+	else
+		e->motion = in->object[object].motion;
+	if (!e->row)
+		return;
+	w->body[e->row].joints++;
+	w->body[e->row].moved_freely = false;
+}
+
+static void load_joint(ob_island_work *w, const ob_island_input *in, const ob_island_joint *from)
+{
+	ob_held_joint *j = &w->joints.joint[w->joints.count++];
+	*j = (ob_held_joint){ .kind = from->joint->kind, .length = from->joint->length };
+	for (int side = 0; side < 2; side++) {
+		j->end[side].frame = from->joint->frame[side];
+		load_end(w, in, from->object[side], &j->end[side]);
+	}
+	while (j->rows.rows < OB_JOINT_ROWS && rules[j->kind][j->rows.rows].type != NO_ROW)
+		j->rows.rows++;
+	const uint32_t a = j->end[0].row, b = j->end[1].row;
+	j->child = (a ? a : b) - 1;
+	j->parent = a && b ? b - 1 : OB_SPARSE_FIXED;
+	ob_sparse_link(&w->joints.sparse, j->child, j->parent);
+}
+
+void ob_joints_load(ob_solver *s, const ob_island_input *in)
+{
+	ob_island_work *w = &s->island;
+	ob_joint_set *set = &w->joints;
+	set->count = 0;
+	if (!in->joints)
+		return;
+	if (in->joints > set->max) {
+		set->max = in->joints + in->joints / 2;
+		set->joint = ob_reallocate(set->joint, set->max * sizeof *set->joint);
+	}
+	set->step_begin = (double)in->step * s->settings->step_length;
+	set->stiffness = 0;
+	set->failed = false;
+	ob_sparse_begin(&set->sparse, w->bodies);
+	for (uint32_t i = 0; i < in->joints; i++)
+		load_joint(w, in, &in->joint[i]);
+	ob_sparse_analyse(&set->sparse, UINT32_MAX);
+}
+
+void ob_joints_finish(ob_joint_set *j)
+{
+	free(j->joint);
+	ob_sparse_finish(&j->sparse);
+}

@@ -1,0 +1,37 @@
+// Rows of an island's joints: equality constraints, solved together by sparse elimination (solver/sparse_solver.h).
+//
+// A row is one number g of the poses of its two ends that must stay 0, with its derivative J by their motions. There are
+// three types; a kind of joint is a list of them.
+//
+//   along    n . (p_a - p_b)   n an axis of the second end: the origins part along it
+//   across   x . y             x an axis of the first end, y of the second: they lean
+//   length   |p_a - p_b| - l   a distance
+//
+// The elimination needs some compliance, which also makes rows that depend on each other harmless. What it leaves is solved
+// for again, so nothing of it is left in the solution.
+#ifndef OB_SOLVER_JOINT_ROWS_H
+#define OB_SOLVER_JOINT_ROWS_H
+
+#include "solver/solver.h"
+
+// Loads the joints, after the bodies.
+void ob_joints_load(ob_solver *s, const ob_island_input *in);
+// Finds the ends of all joints and the violation of their rows, at the present poses and this time (s) of the run.
+void ob_joints_find(ob_island_work *w, double time);
+// Finds the rows of a joint, whose ends have been found.
+void ob_joint_find_rows(const ob_island_work *w, ob_held_joint *j);
+// Finds the rows of all joints, whose ends have been found, and factors their equations.
+void ob_joints_factor(ob_island_work *w);
+// Velocity of a row (m/s, rad/s) at the velocities in rows.
+double ob_joint_row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_row *rows);
+// Adds the response to so much of each row's impulse to the velocities, or to displacements.
+void ob_joint_respond(const ob_held_joint *j, const double *impulse, ob_body_row *rows);
+// Finds the impulses x that change each row's velocity by its y. They are equal and opposite, so what is left by the
+// elimination changes no momentum.
+void ob_joints_find_impulses(ob_island_work *w);
+// Changes velocities such that each row moves as its target says. Adds the impulses to the joints' sums.
+void ob_joints_solve(ob_island_work *w, ob_body_row *rows);
+
+void ob_joints_finish(ob_joint_set *j);
+
+#endif

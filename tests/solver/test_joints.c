@@ -1,0 +1,381 @@
+// Islands of joined bodies from a literal: closed forms, another solution, conserved quantities, and rows that hold.
+#include "solver/solver.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "shape/shape.h"
+
+enum { BODIES = 4, JOINTS = 4 };
+
+static const double gravity = 9.81, step_length = 1. / 60;
+
+// A mechanism that its test keeps from step to step.
+typedef struct mechanism {
+	uint32_t bodies, joints;
+	ob_passport passport[BODIES];
+	ob_motion motion[BODIES];
+	ob_joint_passport joint[JOINTS];
+	ob_solver solver;
+	uint64_t steps;
+	ob_run_settings run;
+} mechanism;
+
+static bool spend(void *with, uint64_t work)
+{
+	return false;
+}
+
+static void begin_attempt(void *with) {}
+
+static void touch(void *with, uint32_t a, uint32_t b, double impulse, ob_vec3 point)
+{
+	CHECK(false);
+}
+
+static void fail(void *with, uint32_t object)
+{
+	CHECK(false);
+}
+
+static void keep_contact(void *with, const ob_found_contact *c)
+{
+	CHECK(false);
+}
+
+static void keep_motion(void *with, const ob_island_object *object, ob_motion *m, bool free)
+{
+	((mechanism *)with)->motion[object->id] = *m;
+	CHECK(!free);
+}
+
+static mechanism *create(double g)
+{
+	mechanism *m = calloc(1, sizeof *m);
+	const ob_island_calls calls = { m, spend, NULL, begin_attempt, touch, fail, keep_contact, keep_motion };
+	m->run = ob_run_settings_default();
+	m->run.gravity = ob_v3(0, 0, -g);
+	m->run.step_length = step_length;
+	if (!ob_solver_create(&m->solver, &m->run, &calls, BODIES))
+		abort();
+	return m;
+}
+
+static void destroy(mechanism *m)
+{
+	ob_solver_finish(&m->solver);
+	free(m);
+}
+
+static uint32_t add_body(mechanism *m, ob_shape shape, ob_vec3 size, double mass, ob_vec3 at)
+{
+	const uint32_t id = m->bodies++;
+	m->passport[id] = (ob_passport){ .id = id,
+					 .flags = OB_OBJECT_PRESENT,
+					 .shape = (uint8_t)shape,
+					 .size = size,
+					 .mass = mass,
+					 .inertia = ob_shape_inertia(shape, size, NULL, mass) };
+	m->motion[id] = (ob_motion){ .p = at, .q = ob_quat_identity() };
+	return id;
+}
+
+static ob_quat turned_back(ob_quat q)
+{
+	return (ob_quat){ q.w, -q.x, -q.y, -q.z };
+}
+
+// Joins two bodies, or one and the world, in a frame of the world.
+static ob_joint_passport *join(mechanism *m, ob_joint_kind kind, uint32_t a, uint32_t b, ob_vec3 at, ob_quat q)
+{
+	ob_joint_passport *j = &m->joint[m->joints++];
+	*j = (ob_joint_passport){ .object = { a, b }, .kind = kind };
+	for (int side = 0; side < 2; side++) {
+		const uint32_t id = j->object[side];
+		if (id == OB_JOINT_WORLD) {
+			j->frame[side] = (ob_pose){ at, q };
+			continue;
+		}
+		const ob_mat3 r = ob_quat_matrix(m->motion[id].q);
+		j->frame[side] = (ob_pose){ ob_rotate_back(&r, ob_sub(at, m->motion[id].p)),
+					    ob_quat_mul(turned_back(m->motion[id].q), q) };
+	}
+	return j;
+}
+
+static void step(mechanism *m)
+{
+	ob_island_object object[BODIES];
+	ob_island_joint joint[JOINTS];
+	const ob_motion *was = m->motion;
+	ob_motion before[BODIES];
+	memcpy(before, was, sizeof before);
+	for (uint32_t k = 0; k < m->bodies; k++)
+		object[k] = (ob_island_object){ .id = k,
+						.passport = &m->passport[k],
+						.motion = &before[k],
+						.now = { { before[k].p, before[k].q }, before[k].v, before[k].w },
+						.path = before[k].path };
+	for (uint32_t k = 0; k < m->joints; k++) {
+		joint[k] = (ob_island_joint){ .joint = &m->joint[k] };
+		for (int side = 0; side < 2; side++)
+			joint[k].object[side] =
+				m->joint[k].object[side] == OB_JOINT_WORLD ? OB_NO_FIXED : m->joint[k].object[side];
+	}
+	ob_island_solve(&m->solver, &(ob_island_input){ .step = m->steps++,
+							.members = m->bodies,
+							.objects = m->bodies,
+							.joints = m->joints,
+							.object = object,
+							.joint = joint });
+}
+
+static ob_vec3 spin_of(const mechanism *m, uint32_t id)
+{
+	const ob_mat3 r = ob_quat_matrix(m->motion[id].q);
+	const ob_vec3 k = m->passport[id].inertia, w = ob_rotate_back(&r, m->motion[id].w);
+	return ob_rotate(&r, ob_v3(k.x * w.x, k.y * w.y, k.z * w.z));
+}
+
+static double energy_of(const mechanism *m)
+{
+	double sum = 0;
+	for (uint32_t id = 0; id < m->bodies; id++) {
+		const ob_motion *x = &m->motion[id];
+		sum += .5 * m->passport[id].mass * ob_norm2(x->v) + .5 * ob_dot(x->w, spin_of(m, id)) -
+		       m->passport[id].mass * ob_dot(m->run.gravity, x->p);
+	}
+	return sum;
+}
+
+// Largest distance by which joints have parted, m, and sine of an angle by which their z axes lean.
+static double parted(const mechanism *m)
+{
+	double most = 0;
+	for (uint32_t k = 0; k < m->joints; k++) {
+		const ob_joint_passport *j = &m->joint[k];
+		ob_vec3 at[2], z[2];
+		for (int side = 0; side < 2; side++) {
+			const uint32_t id = j->object[side];
+			const ob_quat q = id == OB_JOINT_WORLD ? ob_quat_identity() : m->motion[id].q;
+			const ob_mat3 r = ob_quat_matrix(q), axes = ob_quat_matrix(ob_quat_mul(q, j->frame[side].q));
+			at[side] = ob_rotate(&r, j->frame[side].p);
+			if (id != OB_JOINT_WORLD)
+				at[side] = ob_add(at[side], m->motion[id].p);
+			z[side] = ob_column(&axes, 2);
+		}
+		const ob_vec3 apart = ob_sub(at[0], at[1]);
+		const bool leans = j->kind == OB_JOINT_HINGE || j->kind == OB_JOINT_FIXED || j->kind == OB_JOINT_SLIDER;
+		most = fmax(most, j->kind == OB_JOINT_DISTANCE ? fabs(ob_norm(apart) - j->length)
+				  : j->kind == OB_JOINT_SLIDER ? ob_norm(ob_cross(apart, z[1]))
+							       : ob_norm(apart));
+		if (leans)
+			most = fmax(most, ob_norm(ob_cross(z[0], z[1])));
+	}
+	return most;
+}
+
+static const ob_quat y_axis = { M_SQRT1_2, -M_SQRT1_2, 0, 0 }; // turns z to y
+
+static mechanism *create_pendulum(double angle)
+{
+	mechanism *m = create(gravity);
+	const uint32_t bob = add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(sin(angle), 0, -cos(angle)));
+	join(m, OB_JOINT_HINGE, bob, OB_JOINT_WORLD, ob_v3(0, 0, 0), y_axis);
+	return m;
+}
+
+// Period (s) of the pendulum: 4 K(sin(angle / 2)) / rate, by the arithmetic-geometric mean.
+static double period(double angle)
+{
+	double a = 1, g = cos(angle / 2);
+	for (int i = 0; i < 40; i++) {
+		const double mean = (a + g) / 2;
+		g = sqrt(a * g);
+		a = mean;
+	}
+	return 2 * M_PI / a * sqrt((1 + .4 * .1 * .1) / gravity);
+}
+
+// Time (s) of the next passage through the lowest point, by a cubic between two steps.
+static double passage(mechanism *m)
+{
+	double before, after, rate_before, rate_after;
+	do {
+		before = atan2(m->motion[0].p.x, -m->motion[0].p.z), rate_before = -m->motion[0].w.y;
+		step(m);
+		after = atan2(m->motion[0].p.x, -m->motion[0].p.z), rate_after = -m->motion[0].w.y;
+	} while (before * after > 0 || fabs(before) > 1);
+	double low = 0, high = 1;
+	for (int i = 0; i < 60; i++) {
+		const double t = (low + high) / 2, u = 1 - t;
+		const double x = u * u * (1 + 2 * t) * before + t * t * (3 - 2 * t) * after +
+				 step_length * t * u * (u * rate_before - t * rate_after);
+		*(x * before > 0 ? &low : &high) = t;
+	}
+	return ((double)m->steps - 1 + low) * step_length;
+}
+
+static void test_period(void)
+{
+	const double angles[] = { .1, M_PI / 4, M_PI / 2 };
+	for (int k = 0; k < 3; k++) {
+		mechanism *m = create_pendulum(angles[k]);
+		const double first = passage(m), expected = period(angles[k]);
+		double last = first;
+		for (int i = 0; i < 20; i++)
+			last = passage(m);
+		CHECK_NEAR((last - first) / 10, expected, 1e-6 * expected);
+		destroy(m);
+	}
+}
+
+static void test_energy(void)
+{
+	mechanism *m = create_pendulum(M_PI / 2);
+	const double begin = energy_of(m);
+	double most = 0;
+	for (int i = 0; i < 20000; i++) {
+		step(m);
+		most = fmax(most, fabs(energy_of(m) - begin));
+	}
+	CHECK(most < 1e-8 * gravity);
+	CHECK(parted(m) < 1e-12);
+	destroy(m);
+}
+
+// ---- double pendulum
+
+typedef struct angles {
+	double angle[2], rate[2];
+} angles;
+
+static angles rates_of(const angles *x)
+{
+	const double i = .4 * .1 * .1, c = cos(x->angle[0] - x->angle[1]), s = sin(x->angle[0] - x->angle[1]);
+	const double a = i + 2, b = c, d = i + 1;
+	const double f0 = -s * x->rate[1] * x->rate[1] - 2 * gravity * sin(x->angle[0]),
+		     f1 = s * x->rate[0] * x->rate[0] - gravity * sin(x->angle[1]), det = a * d - b * b;
+	return (angles){ { x->rate[0], x->rate[1] }, { (d * f0 - b * f1) / det, (a * f1 - b * f0) / det } };
+}
+
+static angles moved(const angles *x, double h, const angles *by)
+{
+	angles out;
+	for (int k = 0; k < 2; k++) {
+		out.angle[k] = x->angle[k] + h * by->angle[k];
+		out.rate[k] = x->rate[k] + h * by->rate[k];
+	}
+	return out;
+}
+
+// One step of the classical method of Runge and Kutta.
+static angles advanced(const angles *x, double h)
+{
+	const angles a = rates_of(x), xb = moved(x, h / 2, &a), b = rates_of(&xb), xc = moved(x, h / 2, &b),
+		     c = rates_of(&xc), xd = moved(x, h, &c), d = rates_of(&xd);
+	angles out = moved(x, h / 6, &a);
+	out = moved(&out, h / 3, &b);
+	out = moved(&out, h / 3, &c);
+	return moved(&out, h / 6, &d);
+}
+
+static void test_double_pendulum(void)
+{
+	enum { FINE = 1000, STEPS = 120 };
+	mechanism *m = create(gravity);
+	const ob_vec3 size = ob_v3(.1, 0, 0);
+	const uint32_t a = add_body(m, OB_SHAPE_SPHERE, size, 1, ob_v3(1, 0, 0)),
+		       b = add_body(m, OB_SHAPE_SPHERE, size, 1, ob_v3(2, 0, 0));
+	angles x = { { M_PI / 2, M_PI / 2 }, { 0, 0 } };
+	join(m, OB_JOINT_HINGE, a, OB_JOINT_WORLD, ob_v3(0, 0, 0), y_axis);
+	join(m, OB_JOINT_HINGE, a, b, ob_v3(1, 0, 0), y_axis);
+	for (int i = 0; i < STEPS; i++) {
+		step(m);
+		for (int k = 0; k < FINE; k++)
+			x = advanced(&x, step_length / FINE);
+	}
+	CHECK_NEAR(m->motion[b].p.x, sin(x.angle[0]) + sin(x.angle[1]), 1e-6);
+	CHECK_NEAR(m->motion[b].p.z, -cos(x.angle[0]) - cos(x.angle[1]), 1e-6);
+	destroy(m);
+}
+
+// ---- loops, all kinds
+
+// Place in the middle of two, at which a bar between them has its centre.
+static ob_vec3 middle(ob_vec3 a, ob_vec3 b)
+{
+	return ob_scale(ob_add(a, b), .5);
+}
+
+// A crank and a rocker: hinges in a plane, so each of its rows across the plane is there several times.
+static void test_loop(void)
+{
+	mechanism *m = create(gravity);
+	const ob_vec3 ground = ob_v3(0, 0, 0), size = ob_v3(.1, 0, 0), b = ob_v3(0, 0, 1), d = ob_v3(3, 0, 0);
+	const double far = sqrt(10), along = (9 - 6.25 + 10) / (2 * far), above = sqrt(9 - along * along);
+	const ob_vec3 c = ob_v3((3 * along + above) / far, 0, 1 + (3 * above - along) / far);
+	const uint32_t crank = add_body(m, OB_SHAPE_SPHERE, size, 1, middle(ground, b)),
+		       coupler = add_body(m, OB_SHAPE_SPHERE, size, 1, middle(b, c)),
+		       rocker = add_body(m, OB_SHAPE_SPHERE, size, 1, middle(c, d));
+	join(m, OB_JOINT_HINGE, crank, OB_JOINT_WORLD, ground, y_axis);
+	join(m, OB_JOINT_HINGE, crank, coupler, b, y_axis);
+	join(m, OB_JOINT_HINGE, coupler, rocker, c, y_axis);
+	join(m, OB_JOINT_HINGE, rocker, OB_JOINT_WORLD, d, y_axis);
+	m->motion[crank].w = ob_v3(0, 50, 0);
+	step(m); // the others take their share
+	const double begin = energy_of(m);
+	double lowest = 1;
+	for (int i = 0; i < 600; i++) {
+		step(m);
+		lowest = fmin(lowest, m->motion[crank].p.z);
+		CHECK(parted(m) < 1e-11);
+	}
+	CHECK_NEAR(energy_of(m), begin, 1e-6 * begin);
+	CHECK(lowest < -.4); // the crank goes round
+	destroy(m);
+}
+
+// Two bodies of any kind of joint in free space keep momentum and energy, and the joint holds.
+static void test_kinds(void)
+{
+	for (uint32_t kind = 0; kind < OB_JOINT_KINDS; kind++) {
+		mechanism *m = create(0);
+		const uint32_t a = add_body(m, OB_SHAPE_BOX, ob_v3(.3, .2, .1), 2, ob_v3(0, 0, 0)),
+			       b = add_body(m, OB_SHAPE_BOX, ob_v3(.1, .2, .4), 1, ob_v3(.2, .3, 1));
+		ob_joint_passport *j = join(m, (ob_joint_kind)kind, a, b, ob_v3(.1, .1, .5), ob_quat_identity());
+		if (kind == OB_JOINT_DISTANCE) {
+			j->frame[0].p = ob_v3(0, 0, 0);
+			j->length = ob_norm(ob_v3(.1, .1, .5));
+		}
+		m->motion[a].w = ob_v3(1, 2, 3);
+		m->motion[b].v = ob_v3(.3, -.2, .1);
+		step(m); // it takes what the joint does not allow
+		const double begin = energy_of(m);
+		for (int i = 0; i < 300; i++)
+			step(m);
+		const ob_vec3 p = ob_add(ob_scale(m->motion[a].v, 2), m->motion[b].v);
+		const ob_vec3 spin = ob_add(ob_add(spin_of(m, a), spin_of(m, b)),
+					    ob_add(ob_scale(ob_cross(m->motion[a].p, m->motion[a].v), 2),
+						   ob_cross(m->motion[b].p, m->motion[b].v)));
+		const ob_vec3 k = m->passport[a].inertia,
+			      first = ob_add(ob_v3(k.x, 2 * k.y, 3 * k.z),
+					     ob_cross(ob_v3(.2, .3, 1), ob_v3(.3, -.2, .1)));
+		CHECK(ob_norm(ob_sub(p, ob_v3(.3, -.2, .1))) < 1e-12);
+		CHECK(ob_norm(ob_sub(spin, first)) < 1e-11);
+		CHECK_NEAR(energy_of(m), begin, 1e-7 * begin);
+		CHECK(parted(m) < 1e-12);
+		destroy(m);
+	}
+}
+
+int main(void)
+{
+	test_period();
+	test_energy();
+	test_double_pendulum();
+	test_loop();
+	test_kinds();
+	return check_end();
+}
