@@ -30,6 +30,24 @@ static bool has_outboxes(const ob_host_config *c)
 	return c->harden & 1 << OB_HARDEN_OUTBOX;
 }
 
+// Refuses what cannot be done with joints.
+static bool check_joints(const ob_scene *scene, const ob_host_config *c, ob_error *e)
+{
+	const ob_run_settings *r = &c->run, usual = ob_run_settings_default();
+	const char *lacks = !scene->joints                          ? NULL
+			    : r->monolith                           ? "arch: the one ODE world"
+			    : c->ranks.ranks > 1                    ? "ranks: a universe on several ranks"
+			    : c->free                               ? "sync: a free run"
+			    : r->solver != usual.solver             ? "solver: such a run"
+			    : r->integrator != usual.integrator     ? "integrator: such a run"
+			    : r->narrow_phase != usual.narrow_phase ? "narrow phase: such a run"
+								    : NULL;
+	return !lacks || ob_fail(e,
+				 "%s has no joints, as this scene has: take simulators in lockstep on one rank, with "
+				 "the usual methods",
+				 lacks);
+}
+
 static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_error *e)
 {
 	const ob_run_settings *r = &c->run;
@@ -57,6 +75,8 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "on death: the scene has scripts, whose objects cannot be frozen");
 	if (r->monolith && scene->hulls > 0) // few of ODE's convex geometries collide with each other
 		return ob_fail(e, "arch: the one ODE world has no hulls, as this scene has: take object simulators");
+	if (!check_joints(scene, c, e))
+		return false;
 	for (uint32_t i = 0; i < scene->objects; i++) {
 		if (!ob_object_check(&scene->object[i], e))
 			return false;
@@ -142,6 +162,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.checked = c->check,
 		.harden = c->harden,
 		.run = c->run,
+		.joints = scene->joints,
 	};
 	setup.run.one_per_object = one_per_object;
 	setup.run.freezes = ob_on_death_freezes_failed(c->on_death);
@@ -214,6 +235,7 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_confi
 	h->population = ob_population_create(scene, h->u, h->roster, e);
 	if (!h->population)
 		return false;
+	ob_joints_write(h->u, scene->joint, scene->joints);
 	if (!from)
 		ob_population_update(h->population, 0, h->requests);
 	else if (!load(h, from, e))

@@ -121,6 +121,11 @@ struct effort {
 	bool stopped;
 };
 
+// Pair of objects that a joint lets overlap.
+struct joined {
+	uint32_t low, high; // ids
+};
+
 struct search {
 	struct item *item;
 	struct box *box;
@@ -129,6 +134,8 @@ struct search {
 	ob_penetration *out;
 	double total; // m
 	struct effort effort;
+	struct joined *joined; // [joined_count], sorted
+	size_t joined_count;
 };
 
 static bool is_over(struct effort *x)
@@ -145,9 +152,40 @@ static uint64_t work_of(const ob_solid *a, const ob_solid *b)
 	return ob_depth_needs_search(a->shape, b->shape) ? WORK_OF_SEARCH : WORK_OF_DEPTH;
 }
 
+static int by_ids(const void *x, const void *y)
+{
+	const struct joined *a = x, *b = y;
+	return a->low != b->low ? (a->low < b->low ? -1 : 1) : a->high < b->high ? -1 : a->high > b->high;
+}
+
+static struct joined joined_of(uint32_t a, uint32_t b)
+{
+	return (struct joined){ a < b ? a : b, a < b ? b : a };
+}
+
+// Lists them. false: no memory.
+static bool list_joined(struct search *s, const ob_snapshot *from)
+{
+	s->joined = malloc((from->joints + 1) * sizeof *s->joined);
+	for (uint32_t i = 0; s->joined && i < from->joints; i++) {
+		const ob_joint_passport *j = &from->joint[i];
+		if (j->object[1] != OB_JOINT_WORLD && !(j->flags & OB_JOINT_COLLIDES))
+			s->joined[s->joined_count++] = joined_of(j->object[0], j->object[1]);
+	}
+	if (s->joined_count)
+		qsort(s->joined, s->joined_count, sizeof *s->joined, by_ids);
+	return s->joined;
+}
+
+static bool may_overlap(const struct search *s, uint32_t a, uint32_t b)
+{
+	const struct joined key = joined_of(a, b);
+	return s->joined_count && bsearch(&key, s->joined, s->joined_count, sizeof key, by_ids);
+}
+
 static void add_depth(struct search *s, struct item *a, struct item *b)
 {
-	if (a->fixed && b->fixed)
+	if ((a->fixed && b->fixed) || may_overlap(s, a->id, b->id))
 		return;
 	a->overlaps++;
 	b->overlaps++;
@@ -344,7 +382,7 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 	x.item = calloc(s->count, sizeof *x.item);
 	x.box = malloc(s->count * sizeof *x.box);
 	x.node = malloc(2 * (size_t)s->count * sizeof *x.node);
-	bool fine = x.item && x.box && x.node;
+	bool fine = x.item && x.box && x.node && list_joined(&x, s);
 	if (!fine) {
 		out->max_m = out->mean_m = NAN;
 		ob_fail(e, "no memory to measure the penetration of %u objects", s->count);
@@ -367,6 +405,7 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 	free(x.item);
 	free(x.box);
 	free(x.node);
+	free(x.joined);
 	return fine;
 }
 

@@ -6,6 +6,7 @@
 #define OB_MEASURE_MEASURE_H
 
 #include <ob/hull.h>
+#include <ob/joint.h>
 #include <ob/motion.h>
 
 // Copy of all motions at one step boundary.
@@ -19,6 +20,9 @@ typedef struct ob_snapshot {
 	uint32_t *home; // home worker of each simulator, UINT32_MAX: none; NULL: unknown, as of a record
 	size_t contacts;
 	ob_contact_point *contact;
+	uint32_t joints;
+	ob_joint_passport *joint; // [joints], those that hold
+	uint32_t joints_max;
 	uint32_t count_max;
 	size_t contacts_max;
 	uint64_t created; // instant of creation of the hulls' universe
@@ -50,7 +54,7 @@ typedef struct ob_penetration {
 	size_t pairs;
 	uint32_t worst_a, worst_b;
 } ob_penetration;
-// Penetration of objects, without pairs of two static ones. A tree of tight boxes finds the pairs, in time proportional
+// Penetration of objects, without pairs of two static ones, or of two that a joint lets overlap. A tree of tight boxes finds the pairs, in time proportional
 // to n log n and to the pairs with overlapping boxes. Then the depth of depth.h: closed forms, except for a cylinder
 // with a box, capsule or cylinder (1e-7 m, never too small). max_m and mean_m are NaN if memory runs out, or if more
 // pairs overlap than some seconds allow.

@@ -118,6 +118,28 @@ static bool take_contacts(ob_snapshot *s, const ob_universe *u, ob_error *e)
 	return true;
 }
 
+static bool grow_joints(ob_snapshot *s, uint32_t joints)
+{
+	if (joints <= s->joints_max)
+		return true;
+	ob_joint_passport *grown = realloc(s->joint, joints * sizeof *grown);
+	if (!grown)
+		return false;
+	s->joint = grown;
+	s->joints_max = joints;
+	return true;
+}
+
+static bool take_joints(ob_snapshot *s, const ob_universe *u, ob_error *e)
+{
+	const uint32_t joints = ob_universe_joints(u);
+	if (!grow_joints(s, joints))
+		return ob_fail(e, "no memory for %u joints", joints);
+	for (uint32_t i = 0; i < joints; i++)
+		s->joints += ob_universe_get_joint(u, i, &s->joint[s->joints]);
+	return true;
+}
+
 bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, ob_error *e)
 {
 	ob_universe_info info;
@@ -128,10 +150,11 @@ bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, 
 	s->time = info.time;
 	s->count = info.capacity;
 	s->contacts = 0;
+	s->joints = 0;
 	for (uint32_t id = 0; id < s->count; id++)
 		if (!take_object(s, u, id, e))
 			return false;
-	return !with_contacts || take_contacts(s, u, e);
+	return take_joints(s, u, e) && (!with_contacts || take_contacts(s, u, e));
 }
 
 static bool copy_hulls(ob_snapshot *to, const ob_snapshot *from)
@@ -151,12 +174,14 @@ static bool copy_hulls(ob_snapshot *to, const ob_snapshot *from)
 
 bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from)
 {
-	if (!grow_objects(to, from->count) || !grow_contacts(to, from->contacts) || !copy_hulls(to, from))
+	if (!grow_objects(to, from->count) || !grow_contacts(to, from->contacts) || !grow_joints(to, from->joints) ||
+	    !copy_hulls(to, from))
 		return false;
 	to->step = from->step;
 	to->time = from->time;
 	to->count = from->count;
 	to->contacts = from->contacts;
+	to->joints = from->joints;
 	if (from->count) {
 		memcpy(to->passport, from->passport, from->count * sizeof *to->passport);
 		memcpy(to->motion, from->motion, from->count * sizeof *to->motion);
@@ -165,6 +190,8 @@ bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from)
 		else
 			memset(to->home, 0xff, from->count * sizeof *to->home);
 	}
+	if (from->joints)
+		memcpy(to->joint, from->joint, from->joints * sizeof *to->joint);
 	if (from->contacts)
 		memcpy(to->contact, from->contact, from->contacts * sizeof *to->contact);
 	return true;
@@ -176,6 +203,7 @@ void ob_snapshot_finish(ob_snapshot *s)
 	free(s->motion);
 	free(s->home);
 	free(s->contact);
+	free(s->joint);
 	drop_hulls(s);
 	memset(s, 0, sizeof *s);
 }

@@ -40,7 +40,7 @@ typedef struct ob_mesh_source {
 
 typedef struct ob_builder {
 	ob_scene *scene; // objects are added to it; room is the array's length:
-	uint32_t objects_room;
+	uint32_t objects_room, joints_room;
 	uint32_t hulls_room;
 	uint64_t *hull_points; // [scene->hulls], hashes of their points
 	const ob_scene_options *options;
@@ -89,8 +89,11 @@ int ob_scene_call_camera(lua_State *L);
 int ob_scene_call_param(lua_State *L);
 int ob_scene_call_random(lua_State *L);
 int ob_scene_call_random_rotation(lua_State *L);
+int ob_scene_call_joint(lua_State *L); // upvalue 1: the kind
 int ob_scene_call_random_integer(lua_State *L); // math.random
 
+// The shortest rotation from +z to the unit vector n.
+ob_quat ob_scene_turn_to(ob_vec3 n);
 // Adds an object of this shape from the table at the bottom of the stack.
 void ob_scene_add(lua_State *L, ob_shape shape);
 

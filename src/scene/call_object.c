@@ -455,8 +455,7 @@ static const ob_hull *find_hull(lua_State *L, ob_builder *b, const ob_points *p)
 	return &s->hull[s->hulls++];
 }
 
-// The shortest rotation from +z to the unit vector n.
-static ob_quat turn_to(ob_vec3 n)
+ob_quat ob_scene_turn_to(ob_vec3 n)
 {
 	if (n.z < -1 + 1e-12)
 		return (ob_quat){ 0, 1, 0, 0 };
@@ -510,7 +509,7 @@ void ob_scene_add(lua_State *L, ob_shape shape)
 	if (ob_shape_is(shape, OB_HULLED))
 		d.hull = find_hull(L, ob_sandbox_user(L), &d.points);
 	if (ob_shape_is(shape, OB_UNBOUNDED))
-		d.q = turn_to(d.normal);
+		d.q = ob_scene_turn_to(d.normal);
 	add(L, ob_shape_name(shape), shape, size_of(shape, &d), &d);
 }
 

@@ -500,13 +500,14 @@ static const offered text_arithmetic[] = {
 
 // Concepts of other simulators that obsim lacks, and what comes nearest.
 static const char *const foreign[][2] = {
-	{ "joint", "obsim has no joints" },
-	{ "hinge", "obsim has no joints" },
-	{ "slider", "obsim has no joints" },
-	{ "motor", "obsim has no joints" },
-	{ "constraint", "obsim has no joints" },
+	{ "joint", "joints are ball, hinge, slider, fixed, universal and distance" },
+	{ "revolute", "a joint that turns about an axis is a hinge" },
+	{ "prismatic", "a joint that slides along an axis is a slider" },
+	{ "weld", "a joint that holds two objects as one is fixed" },
+	{ "motor", "obsim has no motors: a script can set a torque, self:torque" },
+	{ "constraint", "joints are ball, hinge, slider, fixed, universal and distance" },
 	{ "spring", "obsim has no springs: a script can set a force, self:force" },
-	{ "rope", "obsim has no ropes" },
+	{ "rope", "obsim has no ropes: a chain of capsules, held by balls, comes near one" },
 	{ "cloth", "obsim has no cloth: its objects are rigid" },
 	{ "fluid", "obsim has no fluids: its objects are rigid" },
 	{ "cone", "obsim has no cones: hull { points = ... } makes one of its points" },

@@ -40,7 +40,7 @@ static int call_shape(lua_State *L)
 	return 0;
 }
 
-// Opens the library, and offers a call for each shape.
+// Opens the library, and offers a call for each shape and for each kind of joint.
 static int open_library(lua_State *L)
 {
 	ob_library_open(L);
@@ -49,6 +49,11 @@ static int open_library(lua_State *L)
 		lua_pushinteger(L, shape);
 		lua_pushcclosure(L, call_shape, 1);
 		lua_setfield(L, -2, ob_shape_name((ob_shape)shape));
+	}
+	for (uint32_t kind = 0; kind < OB_JOINT_KINDS; kind++) {
+		lua_pushinteger(L, kind);
+		lua_pushcclosure(L, ob_scene_call_joint, 1);
+		lua_setfield(L, -2, ob_joint_kind_name(kind));
 	}
 	return 0;
 }
@@ -176,6 +181,7 @@ void ob_scene_free(ob_scene *s)
 	for (uint32_t i = 0; i < s->objects; i++)
 		free(s->object[i].path), free(s->object[i].force);
 	free(s->object);
+	free(s->joint);
 	free(s->hull);
 	free(s->hull_corners);
 	for (uint32_t i = 0; i < s->meshes; i++)

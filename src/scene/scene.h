@@ -2,6 +2,7 @@
 #ifndef OB_SCENE_SCENE_H
 #define OB_SCENE_SCENE_H
 
+#include <ob/joint.h>
 #include <ob/motion.h>
 
 #include "hull/hull.h"
@@ -61,6 +62,8 @@ typedef struct ob_scene {
 	uint64_t seed;
 	uint32_t objects;
 	ob_object_def *object; // [objects]; ids are their index
+	uint32_t joints;
+	ob_joint_passport *joint; // [joints]; their objects are there from the start
 	uint32_t hulls;
 	ob_hull *hull; // [hulls], by the number in passports
 	ob_hull_corners *hull_corners; // [hulls], in the scene's frame

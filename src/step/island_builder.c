@@ -159,6 +159,24 @@ static void involve_due(const ob_involved *p)
 	data->count->due = data->count->involved;
 }
 
+// Joins the body to those that a joint holds to it, as follow_links does.
+static void follow_joints(const ob_involved *p, uint32_t id, uint32_t *stack)
+{
+	const ob_step_data *data = p->data;
+	for (uint32_t j = ob_joint_first(data, id); j; j = ob_joint_next(data, j, id)) {
+		const ob_joint_passport *joint = &data->joint[j - 1];
+		const uint32_t other = joint->object[joint->object[0] == id];
+		if (other == OB_JOINT_WORLD || other >= data->objects_max || !is_own(p, other) ||
+		    !ob_joint_holds(p->u, joint))
+			continue;
+		if (ob_involve(p, other)) {
+			p->place[other] = *stack;
+			*stack = other;
+		}
+		ob_forest_join(p->parent, id, other);
+	}
+}
+
 // Joins the body to its linked bodies. Each body that is new goes on the caller's stack, through place[]: the task that
 // has found it follows its links.
 static void follow_links(const ob_involved *p, uint32_t id, uint32_t *stack, uint64_t *visits)
@@ -177,6 +195,7 @@ static void follow_links(const ob_involved *p, uint32_t id, uint32_t *stack, uin
 		}
 		ob_forest_join(p->parent, k->a, k->b);
 	}
+	follow_joints(p, id, stack);
 }
 
 // Numbers the trees by their lowest id, as the first islands, and lists their members in ascending order, as the first.

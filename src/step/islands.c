@@ -59,10 +59,60 @@ static void read_pair(ob_sim *s, ob_island_pair *to, uint32_t pair)
 	}
 }
 
+// Returns the place of a joint's end in the input; one that is not simulated is read when it is named for the first time.
+static uint32_t read_end(ob_sim *s, uint32_t id)
+{
+	ob_island_scratch *x = &s->scratch;
+	if (id == OB_JOINT_WORLD)
+		return OB_NO_FIXED;
+	if (!ob_schedule_is_dynamic(&s->data->schedule[id])) {
+		const uint32_t at = x->index_of[id];
+		if (at < x->in.members || at >= x->in.objects || x->object[at].id != id) {
+			x->index_of[id] = x->in.objects;
+			read_object(s, &x->object[x->in.objects++], id, false);
+		}
+	}
+	return x->index_of[id];
+}
+
+// Reads the joints of a member, those of two members with the first of these.
+static void read_joints(ob_sim *s, uint32_t id)
+{
+	ob_island_scratch *x = &s->scratch;
+	for (uint32_t j = ob_joint_first(s->data, id); j; j = ob_joint_next(s->data, j, id)) {
+		const ob_joint_passport *joint = &s->data->joint[j - 1];
+		const uint32_t other = joint->object[joint->object[0] == id];
+		const bool moves = other != OB_JOINT_WORLD && other < s->data->objects_max &&
+				   ob_schedule_is_dynamic(&s->data->schedule[other]);
+		if ((moves && joint->object[1] == id) || !ob_joint_holds(s->u, joint))
+			continue;
+		if (x->in.joints == x->joints_max) {
+			x->joints_max = 2 * x->joints_max + 16;
+			x->joint = ob_reallocate(x->joint, x->joints_max * sizeof *x->joint);
+			x->in.joint = x->joint;
+		}
+		x->joint[x->in.joints++] =
+			(ob_island_joint){ .joint = joint,
+					   .object = { read_end(s, joint->object[0]), read_end(s, joint->object[1]) } };
+	}
+}
+
+// Number of joints of the members, those of two of them twice.
+static uint32_t count_joints(const ob_sim *s, const ob_island *is)
+{
+	uint32_t n = 0;
+	for (uint32_t i = 0; s->data->joints && i < is->members; i++) {
+		const uint32_t id = s->data->member[is->first_member + i];
+		for (uint32_t j = ob_joint_first(s->data, id); j; j = ob_joint_next(s->data, j, id))
+			n++;
+	}
+	return n;
+}
+
 static const ob_island_input *read_island(ob_sim *s, const ob_island *is)
 {
 	ob_island_scratch *x = &s->scratch;
-	const uint32_t objects = is->members + is->pairs; // at most one that is fixed per pair
+	const uint32_t objects = is->members + is->pairs + count_joints(s, is); // at most one fixed for each
 	if (objects > x->objects_max) {
 		x->objects_max = objects + objects / 2;
 		x->object = ob_reallocate(x->object, x->objects_max * sizeof *x->object);
@@ -77,6 +127,7 @@ static const ob_island_input *read_island(ob_sim *s, const ob_island *is)
 				   .pairs = is->pairs,
 				   .object = x->object,
 				   .pair = x->pair,
+				   .joint = x->joint,
 				   .feels = ob_touches_are_felt(s->u, is) };
 	for (uint32_t i = 0; i < is->members; i++) {
 		const uint32_t id = s->data->member[is->first_member + i];
@@ -85,6 +136,8 @@ static const ob_island_input *read_island(ob_sim *s, const ob_island *is)
 	}
 	for (uint32_t i = 0; i < is->pairs; i++)
 		read_pair(s, &x->pair[i], s->data->island_pair[is->first_pair + i]);
+	for (uint32_t i = 0; s->data->joints && i < is->members; i++)
+		read_joints(s, x->object[i].id);
 	x->island = is;
 	return &x->in;
 }
@@ -100,6 +153,7 @@ void ob_island_scratch_finish(ob_sim *s)
 	free(s->scratch.index_of);
 	free(s->scratch.object);
 	free(s->scratch.pair);
+	free(s->scratch.joint);
 }
 
 // ---- requests and reports of the solver
@@ -182,6 +236,9 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 	const uint32_t *id = data->member + is->first_member;
 	if (is->members > 2 || (is->pairs && (data->count->merged || !s->solver.methods.exact)))
 		return false;
+	for (uint32_t i = 0; i < is->members; i++)
+		if (ob_joint_first(data, id[i]))
+			return false;
 	for (uint32_t i = 0; data->script_of && i < is->members; i++)
 		if (ob_norm2(ob_script_torque(data, id[i])) > 0)
 			return false;

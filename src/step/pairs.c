@@ -274,7 +274,8 @@ static void compare_pairs(const ob_universe *u, uint32_t id, const uint32_t *fou
 			add_change(to, OB_PAIR_ENDS | at.pair);
 	}
 	for (uint32_t i = 0; i < n; i++)
-		if (!had[i] && decides(u, id, found[i]) && (!is_immobile(data, id) || !is_immobile(data, found[i])))
+		if (!had[i] && decides(u, id, found[i]) && (!is_immobile(data, id) || !is_immobile(data, found[i])) &&
+		    !ob_joint_parts(u, id, found[i]))
 			add_change(to, found[i]);
 }
 

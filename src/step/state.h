@@ -16,7 +16,8 @@ typedef struct ob_island_scratch {
 	const ob_island *island;
 	ob_island_object *object;
 	ob_island_pair *pair;
-	uint32_t objects_max, pairs_max;
+	ob_island_joint *joint;
+	uint32_t objects_max, pairs_max, joints_max;
 	uint32_t *index_of; // [object of the universe]: its place in the input, if it is there
 } ob_island_scratch;
 

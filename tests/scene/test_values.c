@@ -55,6 +55,32 @@ static void check_settings(void)
 	ob_scene_free(s);
 }
 
+static void check_joints(void)
+{
+	ob_scene *s = load_good("box { name = 'door', size = { 1, .1, 2 }, at = { .5, 0, 1 },\n"
+				"rotation = { axis = { 0, 0, 1 }, degrees = 90 } }\n"
+				"sphere { name = 'bob', radius = .1, at = { 3, 0, 1 } }\n"
+				"hinge { 'door', 'bob', at = { 0, 2, 1 }, axis = { 0, 0, 5 }, collide = true }\n"
+				"universal { 'bob', at = { 3, 0, 1 }, axis = { 0, 1, 0 }, across = { 0, .1, 1 } }\n"
+				"distance { 'bob', to = { 3, 4, 1 } } fixed { 'door' }");
+	CHECK(s);
+	if (!s)
+		return;
+	const ob_joint_passport *j = s->joint;
+	CHECK(s->joints == 4 && j[0].kind == OB_JOINT_HINGE && j[0].flags == OB_JOINT_COLLIDES);
+	CHECK(j[0].object[0] == 0 && j[0].object[1] == 1 && j[0].generation[0] == 1 && j[0].generation[1] == 1);
+	check_vec(j[0].frame[0].p, 2, .5, 0);
+	check_vec(j[0].frame[1].p, -3, 2, 0);
+	const ob_mat3 cross = ob_quat_matrix(j[1].frame[1].q);
+	check_vec(ob_column(&cross, 0), 0, 1, 0);
+	check_vec(ob_column(&cross, 1), 0, 0, 1);
+	CHECK(j[1].object[1] == OB_JOINT_WORLD && j[1].flags == 0);
+	CHECK(j[2].kind == OB_JOINT_DISTANCE && j[2].length == 4);
+	check_vec(j[2].frame[1].p, 3, 4, 1);
+	check_vec(j[3].frame[1].p, .5, 0, 1);
+	ob_scene_free(s);
+}
+
 static void check_free(void)
 {
 	ob_scene *s = load_good("scene { sync = 'free', update_rate = 500, max_lag = .01 }\nground {}");
@@ -184,6 +210,7 @@ int main(void)
 {
 	check_defaults();
 	check_settings();
+	check_joints();
 	check_free();
 	check_exactness();
 	check_former_names();

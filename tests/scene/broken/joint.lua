@@ -1,2 +1,2 @@
--- expect: :2: joint: unknown name: obsim has no joints
+-- expect: :2: joint: unknown name: joints are ball, hinge, slider, fixed, universal and distance
 joint { between = { "a", "b" } }

@@ -1,0 +1,213 @@
+// ball, hinge, slider, fixed, universal, distance: joints of two objects, or of one and the world.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/spelling.h"
+#include "scene/builder.h"
+#include "scene/object_limits.h"
+#include "scene/sandbox.h"
+#include "scene/text.h"
+
+#define OB_SCENE_JOINTS_MAX 1000000
+
+// Fields of a call; NaN = not set.
+typedef struct joint {
+	ob_vec3 at, axis, across, from, to;
+	double length;
+	bool collide;
+} joint;
+
+#define F(member, ...) OB_FIELD(joint, member, .name = #member, __VA_ARGS__)
+#define PLACE(member) F(member, .kind = OB_FIELD_VECTOR, .low = -OB_PLACE_MOST, .high = OB_PLACE_MOST)
+#define REQUIRED_PLACE(member) \
+	F(member, .kind = OB_FIELD_VECTOR, .low = -OB_PLACE_MOST, .high = OB_PLACE_MOST, .required = true)
+#define DIRECTION(member) F(member, .kind = OB_FIELD_DIRECTION, .required = true)
+#define COLLIDE F(collide, .kind = OB_FIELD_BOOLEAN)
+
+static const ob_field ball_fields[] = { REQUIRED_PLACE(at), COLLIDE };
+static const ob_field fixed_fields[] = { PLACE(at), COLLIDE };
+static const ob_field hinge_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), COLLIDE };
+static const ob_field slider_fields[] = { PLACE(at), DIRECTION(axis), COLLIDE };
+static const ob_field universal_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), DIRECTION(across), COLLIDE };
+static const ob_field distance_fields[] = {
+	PLACE(from), PLACE(to), F(length, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST, .high = 2 * OB_PLACE_MOST),
+	COLLIDE
+};
+
+static const struct {
+	const ob_field *field;
+	size_t fields;
+} calls[OB_JOINT_KINDS] = {
+	[OB_JOINT_BALL] = { ball_fields, sizeof ball_fields / sizeof *ball_fields },
+	[OB_JOINT_HINGE] = { hinge_fields, sizeof hinge_fields / sizeof *hinge_fields },
+	[OB_JOINT_SLIDER] = { slider_fields, sizeof slider_fields / sizeof *slider_fields },
+	[OB_JOINT_FIXED] = { fixed_fields, sizeof fixed_fields / sizeof *fixed_fields },
+	[OB_JOINT_UNIVERSAL] = { universal_fields, sizeof universal_fields / sizeof *universal_fields },
+	[OB_JOINT_DISTANCE] = { distance_fields, sizeof distance_fields / sizeof *distance_fields },
+};
+
+// ---- objects
+
+static _Noreturn void fail_name(lua_State *L, const ob_scene *s, const char *kind, const char *name)
+{
+	ob_spelling spelling = ob_spelling_start(name);
+	for (uint32_t i = 0; i < s->objects; i++)
+		ob_spelling_offer(&spelling, s->object[i].passport.name);
+	if (spelling.best)
+		ob_sandbox_fail(L, "%s: unknown object \"%s\", did you mean \"%s\"?", kind, name, spelling.best);
+	ob_sandbox_fail(L, "%s: expected the name of an object declared before, got \"%s\"", kind, name);
+}
+
+// Returns the object of this name, of those declared so far; the last ones are joined most often.
+static uint32_t find_object(lua_State *L, const ob_scene *s, const char *kind, const char *name)
+{
+	enum { NAMES_PER_INSTRUCTION = 4 };
+	for (uint32_t i = s->objects; i-- > 0;)
+		if (strcmp(s->object[i].passport.name, name) == 0) {
+			ob_sandbox_spend(L, (s->objects - i) / NAMES_PER_INSTRUCTION);
+			return i;
+		}
+	fail_name(L, s, kind, name);
+}
+
+static uint32_t read_object(lua_State *L, const ob_scene *s, const char *kind, int place)
+{
+	const int type = lua_rawgeti(L, 1, place);
+	if (type == LUA_TNIL && place == 2) {
+		lua_pop(L, 1);
+		return OB_JOINT_WORLD;
+	}
+	if (type != LUA_TSTRING)
+		ob_sandbox_fail(L, "%s: expected names of one or two objects, as in %s { \"door\", \"frame\", ... }",
+				kind, kind);
+	const uint32_t id = find_object(L, s, kind, lua_tostring(L, -1));
+	lua_pop(L, 1);
+	if (s->object[id].born > 0)
+		ob_sandbox_fail(L, "%s: expected objects that are there from the start, \"%s\" is born at %.10g", kind,
+				s->object[id].passport.name, s->object[id].born);
+	return id;
+}
+
+static bool is_moved(const ob_scene *s, uint32_t id)
+{
+	return id != OB_JOINT_WORLD && !(s->object[id].passport.flags & OB_OBJECT_PRESCRIBED);
+}
+
+// Reads the two names, and replaces the table by a copy without them.
+static void read_objects(lua_State *L, const ob_scene *s, const char *kind, ob_joint_passport *j)
+{
+	if (!lua_istable(L, 1))
+		ob_sandbox_fail(L, "%s: expected a table, as in %s { \"door\", \"frame\", ... }", kind, kind);
+	j->object[0] = read_object(L, s, kind, 1);
+	j->object[1] = read_object(L, s, kind, 2);
+	if (j->object[0] == j->object[1])
+		ob_sandbox_fail(L, "%s: expected two different objects, got \"%s\" twice", kind,
+				s->object[j->object[0]].passport.name);
+	if (!is_moved(s, j->object[0]) && !is_moved(s, j->object[1]))
+		ob_sandbox_fail(L, "%s: expected an object that is neither static nor kinematic", kind);
+	lua_newtable(L);
+	for (lua_pushnil(L); lua_next(L, 1);) {
+		lua_pushvalue(L, -2);
+		lua_insert(L, -2);
+		if (lua_isinteger(L, -2) && (lua_tointeger(L, -2) == 1 || lua_tointeger(L, -2) == 2))
+			lua_pop(L, 2);
+		else
+			lua_rawset(L, -4);
+	}
+	lua_replace(L, 1);
+}
+
+// ---- frames
+
+static ob_vec3 centre_of(const ob_scene *s, uint32_t id, ob_vec3 of_world)
+{
+	return id == OB_JOINT_WORLD ? of_world : s->object[id].state.pose.p;
+}
+
+// Frame in that of the object, as it begins.
+static ob_pose in_object(const ob_scene *s, uint32_t id, ob_pose frame)
+{
+	if (id == OB_JOINT_WORLD)
+		return frame;
+	const ob_pose *at = &s->object[id].state.pose;
+	const ob_quat q = ob_quat_normalize(at->q);
+	const ob_mat3 r = ob_quat_matrix(q);
+	return (ob_pose){ ob_rotate_back(&r, ob_sub(frame.p, at->p)),
+			  ob_quat_normalize(ob_quat_mul((ob_quat){ q.w, -q.x, -q.y, -q.z }, frame.q)) };
+}
+
+// Attitude of a frame with its x axis along the first, and its y axis along the second, as far as that is across.
+static ob_quat cross_frame(lua_State *L, ob_vec3 x, ob_vec3 y)
+{
+	const ob_vec3 across = ob_madd(y, -ob_dot(x, y), x), normal = ob_cross(x, y);
+	const double least = 1e-3, length = ob_norm(normal);
+	if (!(ob_norm(across) > least))
+		ob_sandbox_fail(L, "universal.across: expected a direction across axis");
+	const ob_vec3 z = ob_scale(normal, 1 / length);
+	const ob_quat q = ob_scene_turn_to(z);
+	const ob_mat3 r = ob_quat_matrix(q);
+	const double c = ob_dot(ob_column(&r, 0), x), s = ob_dot(ob_column(&r, 1), x);
+	const double w = sqrt(ob_max(0, .5 * (1 + c))), turn = copysign(sqrt(ob_max(0, .5 * (1 - c))), s);
+	return ob_quat_normalize(ob_quat_mul(q, (ob_quat){ w, 0, 0, turn }));
+}
+
+static void set_frames(lua_State *L, const ob_scene *s, const joint *d, ob_joint_passport *j)
+{
+	const ob_vec3 first = centre_of(s, j->object[0], ob_v3(0, 0, 0)), second = centre_of(s, j->object[1], first);
+	ob_pose frame[2] = { { first, ob_quat_identity() }, { second, ob_quat_identity() } };
+	if (j->kind == OB_JOINT_DISTANCE) {
+		frame[0].p = isnan(d->from.x) ? first : d->from;
+		frame[1].p = isnan(d->to.x) ? second : d->to;
+		const double apart = ob_norm(ob_sub(frame[0].p, frame[1].p));
+		j->length = isnan(d->length) ? apart : d->length;
+		if (!(apart >= OB_LENGTH_LEAST))
+			ob_sandbox_fail(L, "distance: expected two points that are apart: give it from and to");
+		if (fabs(j->length - apart) > 1e-6 * apart)
+			ob_sandbox_fail(L, "distance.length: expected %.10g, as far as its points are apart, got %.10g",
+					apart, j->length);
+	} else {
+		frame[0].p = isnan(d->at.x) ? first : d->at;
+		frame[0].q = j->kind == OB_JOINT_UNIVERSAL ? cross_frame(L, d->axis, d->across)
+			     : isnan(d->axis.x)            ? ob_quat_identity()
+							   : ob_scene_turn_to(d->axis);
+		frame[1] = frame[0];
+	}
+	for (int side = 0; side < 2; side++)
+		j->frame[side] = in_object(s, j->object[side], frame[side]);
+}
+
+static void add(lua_State *L, ob_builder *b, const char *kind, const ob_joint_passport *j)
+{
+	ob_scene *s = b->scene;
+	if (s->joints == OB_SCENE_JOINTS_MAX)
+		ob_sandbox_fail(L, "%s: expected at most %d joints in a scene", kind, OB_SCENE_JOINTS_MAX);
+	if (s->joints == b->joints_room) {
+		const uint32_t room = b->joints_room ? 2 * b->joints_room : 64;
+		ob_joint_passport *more = realloc(s->joint, room * sizeof *more);
+		if (!more)
+			ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
+		s->joint = more;
+		b->joints_room = room;
+	}
+	s->joint[s->joints++] = *j;
+	ob_sandbox_extend(L, OB_SCENE_OBJECT_INSTRUCTIONS);
+}
+
+int ob_scene_call_joint(lua_State *L)
+{
+	ob_builder *b = ob_sandbox_user(L);
+	ob_joint_passport j = { .generation = { 1, 1 }, .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
+	const ob_vec3 none = { NAN, NAN, NAN };
+	joint d = { none, none, none, none, none, NAN, false };
+	const char *kind = ob_joint_kind_name(j.kind);
+	if (b->options->joining)
+		ob_sandbox_fail(L, "%s: joints cannot be added to a universe that runs", kind);
+	lua_settop(L, 1);
+	read_objects(L, b->scene, kind, &j);
+	ob_fields_read(L, 1, kind, calls[j.kind].field, calls[j.kind].fields, &d);
+	j.flags = d.collide ? OB_JOINT_COLLIDES : 0;
+	set_frames(L, b->scene, &d, &j);
+	add(L, b, kind, &j);
+	return 0;
+}
