@@ -153,6 +153,7 @@ ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, d
 		.samples = f->samples,
 		.device = f->gpu,
 		.overlay_aabb = f->aabb,
+		.overlay_joints = f->joints,
 		.overlay_contacts = f->contacts,
 		.mesh = scene->mesh,
 		.meshes = scene->meshes,

@@ -174,11 +174,14 @@ static bool read_overlay(ob_frames_request *f, const char *list, ob_error *e)
 			f->aabb = true;
 		else if (n == 8 && strncmp(list, "contacts", n) == 0)
 			f->contacts = true;
+		else if (n == 6 && strncmp(list, "joints", n) == 0)
+			f->joints = true;
 		else if (n == 7 && strncmp(list, "caption", n) == 0)
 			f->caption = true;
 		else
-			return ob_fail(e, "--overlay %.*s: expected aabb, contacts or caption, as in aabb,contacts",
-				       (int)n, list);
+			return ob_fail(
+				e, "--overlay %.*s: expected aabb, contacts, joints or caption, as in aabb,contacts",
+				(int)n, list);
 		list += n + (list[n] == ',');
 	}
 	return true;
@@ -550,7 +553,8 @@ bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_erro
 			       "--colour-by %s: a record does not hold where simulators ran; simulator, island, "
 			       "rest and cost can be shown",
 			       a->value[OB_OPTION_COLOUR_BY]);
-	return !r->frames.contacts || ob_fail(e, "--overlay contacts: a record holds no contacts");
+	const char *lacks = r->frames.contacts ? "contacts" : r->frames.joints ? "joints" : NULL;
+	return !lacks || ob_fail(e, "--overlay %s: a record holds no %s", lacks, lacks);
 }
 
 ob_host_config ob_request_host(const ob_run_request *r)

@@ -20,7 +20,7 @@ typedef struct ob_frames_request {
 	uint32_t stills; // 0 = none
 	ob_quality quality;
 	int width, height, samples;
-	bool aabb, contacts, caption; // overlays
+	bool aabb, contacts, joints, caption; // overlays
 	ob_colour_key colour_by;
 } ob_frames_request;
 

@@ -431,6 +431,7 @@ static const float awake[4] = { 1, .86f, .25f, 1 }, flying[4] = { .45f, .95f, 1,
 static const float asleep[4] = { .62f, .66f, .74f, 1 }, fixed[4] = { .35f, .37f, .42f, 1 };
 static const float rim[4] = { .08f, .02f, .05f, .85f }, dot_colour[4] = { 1, .30f, .20f, 1 };
 static const float normal_colour[4] = { 1, .95f, .55f, 1 };
+static const float joint_colour[4] = { .35f, .85f, 1, 1 }, axis_colour[4] = { 1, .45f, .9f, 1 };
 static const float edge_px = 1.5f, dot_px = 6, rim_px = 8.5f, normal_px = 2;
 static const double normal_length_px = 26;
 
@@ -509,6 +510,43 @@ bool ob_overlay_contacts(ob_overlay *o, const ob_snapshot *s, const ob_view *v, 
 		add_segment(o, at, tip, normal_colour, normal_px);
 		add_segment(o, at, at, rim, rim_px);
 		add_segment(o, at, at, dot_colour, dot_px);
+	}
+	return true;
+}
+
+// Place of a joint's end, relative to the eye, and of the centre of its object.
+static ob_vec3 joint_end(const ob_snapshot *s, const ob_joint_passport *j, int side, ob_vec3 eye, ob_vec3 *centre,
+			 ob_vec3 *axis)
+{
+	const uint32_t id = j->object[side];
+	const bool world = id == OB_JOINT_WORLD || id >= s->count;
+	const ob_pose at = world ? (ob_pose){ { 0, 0, 0 }, ob_quat_identity() } : ob_snapshot_state(s, id).pose;
+	const ob_mat3 r = ob_quat_matrix(at.q), axes = ob_quat_matrix(ob_quat_mul(at.q, j->frame[side].q));
+	const ob_vec3 end = ob_sub(ob_add(at.p, ob_rotate(&r, j->frame[side].p)), eye);
+	*centre = world ? end : ob_sub(at.p, eye);
+	*axis = ob_column(&axes, 2);
+	return end;
+}
+
+bool ob_overlay_joints(ob_overlay *o, const ob_snapshot *s, const ob_view *v, int height)
+{
+	if (!reserve_segments(o, 6 * (size_t)s->joints))
+		return false;
+	const double metres_per_px = 2 * v->tan_y / height; // at a distance of 1 m
+	for (uint32_t i = 0; i < s->joints; i++) {
+		const ob_joint_passport *j = &s->joint[i];
+		ob_vec3 centre[2], axis[2], end[2];
+		for (int side = 0; side < 2; side++)
+			end[side] = joint_end(s, j, side, v->eye, &centre[side], &axis[side]);
+		for (int side = 0; side < 2; side++)
+			add_segment(o, centre[side], end[side], joint_colour, edge_px);
+		add_segment(o, end[0], end[1], joint_colour, edge_px);
+		const double length = normal_length_px * metres_per_px * ob_norm(end[1]);
+		if (j->kind == OB_JOINT_HINGE || j->kind == OB_JOINT_SLIDER)
+			add_segment(o, ob_madd(end[1], -length, axis[1]), ob_madd(end[1], length, axis[1]), axis_colour,
+				    normal_px);
+		add_segment(o, end[1], end[1], rim, rim_px);
+		add_segment(o, end[1], end[1], joint_colour, dot_px);
 	}
 	return true;
 }

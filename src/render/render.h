@@ -18,7 +18,7 @@ typedef struct ob_render_setup {
 	int samples; // draft: multisampling, 1 = none; fine: number of averaged pictures
 	// NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0", "1", ..
 	const char *device;
-	bool overlay_aabb, overlay_contacts;
+	bool overlay_aabb, overlay_contacts, overlay_joints;
 	ob_colouring colouring; // its places must outlive the renderer
 	// [meshes], the scene's, which must outlive the renderer; objects refer to them by the number in their body
 	// properties. One with a number beyond these is drawn as its collision shape
