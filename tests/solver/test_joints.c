@@ -7,7 +7,7 @@
 #include "check.h"
 #include "shape/shape.h"
 
-enum { BODIES = 4, JOINTS = 4 };
+enum { BODIES = 101, JOINTS = 101 };
 
 static const double gravity = 9.81, step_length = 1. / 60;
 
@@ -231,6 +231,17 @@ static void test_period(void)
 	}
 }
 
+// Near the top the period depends on the angle very much.
+static void test_slow_swing(void)
+{
+	const double angle = 179. / 180 * M_PI;
+	mechanism *m = create_pendulum(angle);
+	const double first = passage(m);
+	passage(m);
+	CHECK_NEAR(passage(m) - first, period(angle), 1e-4 * period(angle));
+	destroy(m);
+}
+
 static void test_energy(void)
 {
 	mechanism *m = create_pendulum(M_PI / 2);
@@ -242,6 +253,83 @@ static void test_energy(void)
 	}
 	CHECK(most < 1e-8 * gravity);
 	CHECK(parted(m) < 1e-12);
+	destroy(m);
+}
+
+// ---- in space
+
+// A symmetrical top on a ball, in steady precession: the roots of I Omega^2 cos(tilt) - L Omega + m g l = 0 (Lagrange).
+static void test_top(void)
+{
+	const double l = 1, mass = 1, tilt = .5, fast = 60;
+	mechanism *m = create(gravity);
+	const ob_vec3 up = ob_v3(sin(tilt), 0, cos(tilt));
+	const uint32_t top = add_body(m, OB_SHAPE_CYLINDER, ob_v3(.5, .05, 0), mass, ob_scale(up, l));
+	const ob_vec3 k = m->passport[top].inertia;
+	const double across = k.x + mass * l * l, spin = k.z * fast;
+	const double slow =
+		(spin - sqrt(spin * spin - 4 * across * cos(tilt) * mass * gravity * l)) / (2 * across * cos(tilt));
+	m->motion[top].q = ob_quat_turn(ob_quat_identity(), ob_v3(0, tilt, 0));
+	join(m, OB_JOINT_BALL, top, OB_JOINT_WORLD, ob_v3(0, 0, 0), ob_quat_identity());
+	// The spin about the axis is `fast` in all, with the part of the precession.
+	m->motion[top].w = ob_add(ob_v3(0, 0, slow), ob_scale(up, fast - slow * cos(tilt)));
+	m->motion[top].v = ob_cross(m->motion[top].w, m->motion[top].p);
+	double turned = 0, last = 0;
+	for (int i = 0; i < 300; i++) {
+		step(m);
+		const ob_vec3 at = m->motion[top].p;
+		const double azimuth = atan2(at.y, at.x);
+		turned += remainder(azimuth - last, 2 * M_PI);
+		last = azimuth;
+		CHECK_NEAR(at.z, l * cos(tilt), 1e-7); // it does not nod
+	}
+	CHECK_NEAR(turned, slow * 300 * step_length, 1e-6 * turned);
+	destroy(m);
+}
+
+// A spherical pendulum on a cone goes round at the rate sqrt(g / (l cos)), and keeps its height.
+static void test_cone(void)
+{
+	const double tilt = .6, radius = .1, rate = sqrt(gravity / cos(tilt));
+	mechanism *m = create(gravity);
+	const uint32_t bob = add_body(m, OB_SHAPE_SPHERE, ob_v3(radius, 0, 0), 1, ob_v3(sin(tilt), 0, -cos(tilt)));
+	m->joint[m->joints++] =
+		(ob_joint_passport){ .object = { bob, OB_JOINT_WORLD },
+				     .kind = OB_JOINT_DISTANCE,
+				     .frame = { { { 0, 0, 0 }, { 1, 0, 0, 0 } }, { { 0, 0, 0 }, { 1, 0, 0, 0 } } },
+				     .length = 1 };
+	m->motion[bob].v = ob_v3(0, rate * sin(tilt), 0);
+	for (int i = 0; i < 600; i++) {
+		step(m);
+		CHECK_NEAR(m->motion[bob].p.z, -cos(tilt), 1e-8);
+	}
+	const double turn = remainder(rate * 600 * step_length, 2 * M_PI);
+	CHECK_NEAR(remainder(atan2(m->motion[bob].p.y, m->motion[bob].p.x) - turn, 2 * M_PI), 0, 1e-6);
+	destroy(m);
+}
+
+// A chain holds a thousand times the weight of a link, and swings.
+static void test_chain(void)
+{
+	enum { LINKS = 100 };
+	const double link = .1, mass = .1;
+	mechanism *m = create(gravity);
+	for (uint32_t i = 0; i <= LINKS; i++) {
+		const bool last = i == LINKS;
+		const double at = last ? -link * LINKS - .25 : -link * (i + .5);
+		add_body(m, OB_SHAPE_BOX, last ? ob_v3(.25, .25, .25) : ob_v3(.02, .02, link / 2),
+			 last ? 1000 * mass : mass, ob_v3(0, 0, at));
+		join(m, OB_JOINT_BALL, i, i ? i - 1 : OB_JOINT_WORLD, ob_v3(0, 0, -link * i), ob_quat_identity());
+	}
+	m->motion[LINKS].v = ob_v3(1, 0, 0);
+	step(m); // the links take their share
+	const double begin = energy_of(m);
+	for (int i = 0; i < 20; i++) {
+		step(m);
+		CHECK(parted(m) < 1e-12);
+	}
+	CHECK_NEAR(energy_of(m), begin, 1e-4 * .5 * 1000 * mass);
+	CHECK(m->motion[LINKS].p.x > .2);
 	destroy(m);
 }
 
@@ -373,7 +461,11 @@ static void test_kinds(void)
 int main(void)
 {
 	test_period();
+	test_slow_swing();
 	test_energy();
+	test_top();
+	test_cone();
+	test_chain();
 	test_double_pendulum();
 	test_loop();
 	test_kinds();
