@@ -122,35 +122,28 @@ ob_message *ob_facts_workers(const ob_host *h)
 	return m;
 }
 
-// True once no step will follow; then the text of the hash of its state, in hexadecimal.
-static bool find_hash(const ob_universe *u, const ob_universe_info *info, char text[20])
-{
-	ob_snapshot s = { 0 };
-	const bool ended = info->state == OB_UNIVERSE_FINISHED && ob_snapshot_take(&s, u, false, NULL);
-	if (ended)
-		snprintf(text, 20, "%016llx", (unsigned long long)ob_measure_hash(&s));
-	ob_snapshot_finish(&s);
-	return ended;
-}
-
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
 {
+	const ob_universe *u = ob_host_universe(h);
 	ob_universe_info info;
+	ob_snapshot s = { 0 };
 	char hash[20] = "";
-	ob_universe_get_info(ob_host_universe(h), &info);
-	const bool ended = find_hash(ob_host_universe(h), &info, hash);
+	ob_universe_get_info(u, &info);
+	const bool taken = ob_snapshot_take(&s, u, false, NULL), ended = info.state == OB_UNIVERSE_FINISHED;
+	const double energy = taken ? ob_measure_energy(&s, info.gravity) : NAN;
+	if (taken && ended)
+		snprintf(hash, sizeof hash, "%016llx", (unsigned long long)ob_measure_hash(&s));
+	ob_snapshot_finish(&s);
 	ob_message *m = ob_message_new(true);
-	if (m)
-		ob_message_print(
-			m,
-			"{\"statistics\":{\"viewers\":%u,\"objects\":%u,\"awake\":%u,\"pairs\":%u,\"islands\":%u,"
-			"\"step\":%llu,\"frozen\":%u,\"ended\":%s,\"deaths\":%u,\"hash\":\"%s\",\"last_death\":",
-			viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step,
-			info.frozen, ended ? "true" : "false", info.deaths, hash);
-	if (m) {
-		ob_message_put_json(m, info.last_death);
-		ob_message_print(m, "}}");
-	}
+	if (!m)
+		return NULL;
+	ob_message_print(m,
+			 "{\"statistics\":{\"viewers\":%u,\"objects\":%u,\"awake\":%u,\"pairs\":%u,\"islands\":%u,"
+			 "\"step\":%llu,\"frozen\":%u,\"ended\":%s,\"deaths\":%u,\"hash\":\"%s\",\"last_death\":",
+			 viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step,
+			 info.frozen, ended ? "true" : "false", info.deaths, hash);
+	ob_message_put_json(m, info.last_death);
+	ob_message_print(m, isfinite(energy) ? ",\"energy\":%.9g}}" : ",\"energy\":null}}", energy);
 	return m;
 }
 

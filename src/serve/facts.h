@@ -11,7 +11,7 @@
 // scene's meshes, by their numbers, less 1; NULL: they are sent otherwise.
 ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
 			     const ob_content *mesh);
-// {"statistics": objects, awake, pairs, islands, step, viewers, ended ..}
+// {"statistics": objects, awake, pairs, islands, step, viewers, energy (J), deaths, ended, then the hash of the state ..}
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers);
 // {"workers": [[pid, rank, objects of the last step, CPU (s), object that it is busy with, or null], ..]}
 ob_message *ob_facts_workers(const ob_host *h);

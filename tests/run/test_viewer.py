@@ -164,6 +164,13 @@ class Viewer(server.Case):
 		middle = b.run("const r = document.querySelector('#picture').getBoundingClientRect(); return [r.width / 2, r.height / 2]")
 		b.click(*middle)
 		b.wait("document.querySelector('#details h2').textContent === 'crate'")
+		b.key("o") # all objects, the picked one's plots, and this viewpoint's address
+		b.wait("document.querySelector('#plot-height') && !document.querySelector('#plot-height').hidden")
+		b.run("const s = document.querySelector('#search'); s.value = 'CRA'; s.dispatchEvent(new Event('input'))")
+		self.assertEqual(b.run("return [...document.querySelectorAll('#tree button')].map((x) => x.textContent)"), ["crate"])
+		b.run("document.querySelector('#tree button').click(); document.querySelector('[data-do=link]').click()")
+		self.assertEqual(b.run("return location.hash"), "#view=0%2C-6%2C0.5%2C0%2C0%2C0.5")
+		b.key("o")
 		forward = b.run("return obsim.camera.forward")
 		b.pointer(("move", *middle), ("down", 0), ("move", middle[0], middle[1] - 150))
 		b.wait(f"{at}[2] > 1.2")

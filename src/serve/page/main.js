@@ -9,6 +9,7 @@ import { turned } from './motion.js';
 import { colourBy } from './colouring.js';
 import { Workers } from './workers.js';
 import { Hand } from './hand.js';
+import { Explore } from './explore.js';
 
 const THROWN = 12; // m/s
 const PICKED = [1, 0.7, 0.33, 1];
@@ -21,7 +22,7 @@ const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const recording = document.querySelector('meta[name=recording]').content;
-const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera);
+const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe);
 let drawing, look, cameras = [], shownCamera = 0, picked = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '';
 
 // ---- the picture
@@ -167,6 +168,7 @@ function pointAt(x, y) {
 function pick(id) {
 	picked = id;
 	read = [];
+	explore.drop('height', 'speed');
 	if (id === null)
 		panel.details(null);
 	universe.send(id === null ? { do: 'inspect' } : { do: 'inspect', id });
@@ -229,6 +231,19 @@ panel.addEventListener('simulators', (e) => {
 	askSimulators();
 });
 workers.addEventListener('colours', askSimulators);
+panel.addEventListener('objects', (e) => explore.show(e.detail));
+explore.addEventListener('pick', (e) => pick(e.detail));
+panel.addEventListener('picture', () => explore.picture(canvas));
+panel.addEventListener('video', () => document.querySelector('[data-do=video]').setAttribute('aria-pressed', explore.video(canvas)));
+panel.addEventListener('link', () => {
+	asked.set('view', [...camera.eye, ...camera.target].map((x) => Number(x.toFixed(4)) + 0).join());
+	asked.delete('token'); // the receiver needs one of their own
+	const address = `${location.origin}${location.pathname}#${asked}`;
+	if (!token)
+		history.replaceState(null, '', address);
+	navigator.clipboard?.writeText(address).catch(() => {});
+	panel.notice(`this viewpoint: ${address}`, 10);
+});
 panel.addEventListener('restart', () => universe.send({ do: 'restart' }));
 for (const what of ['edit', 'message'])
 	panel.addEventListener(what, (e) => {
@@ -286,13 +301,19 @@ for (const [event, what] of [['pointerdown', 'push'], ['pointerup', 'let'], ['po
 
 // ---- messages
 
+// The viewpoint in the address, as eye and target; null: none.
+function askedView() {
+	const view = asked.get('view')?.split(',').map(Number) ?? [];
+	return view.length === 6 && view.every(Number.isFinite) ? { eye: view.slice(0, 3), target: view.slice(3), fov: cameras[0].fov } : null;
+}
+
 universe.addEventListener('welcome', (e) => {
 	look = e.detail;
 	cameras = look.cameras;
 	panel.welcome(look);
 	fetchMeshes(look.meshes);
 	if (!camera.placed)
-		camera.set(cameras[0]);
+		camera.set(askedView() ?? cameras[0]);
 	camera.placed = true;
 	tries = 0;
 	panel.notice(frames ? '' : matchMedia('(pointer: coarse)').matches ? HINT_TOUCH : HINT, 8);
@@ -315,13 +336,20 @@ async function fetchMeshes(paths) {
 }
 
 universe.addEventListener('mesh', (e) => drawing.addMesh(e.detail));
-universe.addEventListener('population', () => { camera.ground = groundHeight(); });
+universe.addEventListener('population', () => {
+	camera.ground = groundHeight();
+	explore.list();
+});
 universe.addEventListener('film', (e) => {
 	panel.film(e.detail);
 	workers.film();
 });
 universe.addEventListener('statistics', (e) => {
 	universe.ended = e.detail.ended;
+	explore.add('awake', e.detail.awake);
+	explore.add('pace', universe.paused || universe.ended ? 0 : universe.speed);
+	if (e.detail.energy !== null)
+		explore.add('energy', e.detail.energy);
 	panel.statistics(e.detail);
 });
 setInterval(() => {
@@ -332,6 +360,10 @@ universe.addEventListener('details', (e) => {
 	if (e.detail.id !== picked)
 		return;
 	panel.details(e.detail);
+	if (e.detail.p) {
+		explore.add('height', e.detail.p[2]);
+		explore.add('speed', Math.hypot(...e.detail.v));
+	}
 	read = e.detail.reads ?? [];
 });
 universe.addEventListener('error', (e) => panel.notice(e.detail));
@@ -353,5 +385,5 @@ async function begin() {
 }
 
 // For tests and the console
-window.obsim = { universe, camera, panel, workers, hand, pick, frames: () => frames, drawing: () => drawing };
+window.obsim = { universe, camera, panel, workers, hand, explore, pick, frames: () => frames, drawing: () => drawing };
 begin().catch((error) => panel.notice(error.message, 0));
