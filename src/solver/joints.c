@@ -12,6 +12,7 @@
 static const double exact = 1e-14; // m, sine: violation that counts as none, beside rounding
 static const double rounding = 4e-16; // share of the coordinates
 static const double most_violation = 1e-6; // m, sine: a flight that ends with more was too long
+static const double misplaced = 1e-9; // m, sine: more at a step's start is not of a flight: bodies were put there
 static const double block_rate = 1; // rad: largest swing in a block
 static const double flight_rate = .5; // rad: largest swing in a flight of a step without blocks
 
@@ -172,6 +173,36 @@ static void note_paths(ob_island_work *w, double h)
 	}
 }
 
+static void update_poses(ob_island_work *w)
+{
+	for (uint32_t row = 1; row <= w->bodies; row++)
+		if (w->body[row].joints)
+			ob_body_update_pose(w, row);
+}
+
+void ob_joints_project(ob_solver *s)
+{
+	enum { ROUNDS = 16 };
+	ob_island_work *w = &s->island;
+	double before = INFINITY, none;
+	for (int round = 0; w->joints.count && round < ROUNDS; round++) {
+		update_poses(w);
+		ob_joints_find(w, w->joints.step_begin + w->time);
+		const double error = largest_error(w, &none);
+		if (error <= none || !(error < .5 * before))
+			return;
+		before = error;
+		ob_joints_factor(w);
+		for (uint32_t i = 0; i < w->joints.count; i++)
+			for (uint32_t r = 0; r < w->joints.joint[i].rows.rows; r++)
+				w->joints.joint[i].rows.y[r] = -w->joints.joint[i].error[r];
+		ob_joints_find_impulses(w);
+		for (uint32_t i = 0; i < w->joints.count; i++)
+			ob_joint_respond(&w->joints.joint[i], w->joints.joint[i].rows.x, w->d);
+	}
+	update_poses(w);
+}
+
 // Lengths of the flights of a block, as shares (Kahan and Li, "Composition constants for raising the orders of
 // unconventional schemes for ordinary differential equations", 1997: s9odr6a).
 static const double shares[] = { .39216144400731413928,  .33259913678935943860, -.70624617255763935981,
@@ -187,8 +218,12 @@ bool ob_joints_fly(ob_solver *s)
 	const bool blocks = n >= usual && n <= MOST_BLOCKS * usual;
 	const uint32_t parts = blocks ? n / usual : n, flights = blocks ? sizeof shares / sizeof *shares : 1;
 	const double *share = blocks ? shares : single, step = s->settings->step_length, h = step / parts;
-	double last = 0;
+	double last = 0, none;
 	ob_joints_find(w, w->joints.step_begin);
+	if (largest_error(w, &none) > misplaced) {
+		ob_joints_project(s);
+		ob_joints_find(w, w->joints.step_begin);
+	}
 	ob_joints_factor(w);
 	clear_targets(w);
 	clear_sums(w);
@@ -235,9 +270,7 @@ void ob_joints_begin(ob_solver *s)
 	const double begin = w->joints.step_begin + w->time;
 	if (!w->joints.count)
 		return;
-	for (uint32_t row = 1; row <= w->bodies; row++)
-		if (w->body[row].joints)
-			ob_body_update_pose(w, row);
+	update_poses(w);
 	ob_joints_find(w, begin);
 	ob_joints_factor(w);
 	clear_targets(w);
@@ -255,29 +288,4 @@ void ob_joints_begin(ob_solver *s)
 	}
 	ob_contacts_prepare(s);
 	ob_bodies_warm_start(s);
-}
-
-void ob_joints_project(ob_solver *s)
-{
-	enum { ROUNDS = 4 };
-	ob_island_work *w = &s->island;
-	double none;
-	for (int round = 0; w->joints.count && round < ROUNDS; round++) {
-		for (uint32_t row = 1; row <= w->bodies; row++)
-			if (w->body[row].joints)
-				ob_body_update_pose(w, row);
-		ob_joints_find(w, w->joints.step_begin + w->time);
-		if (largest_error(w, &none) <= none)
-			return;
-		ob_joints_factor(w);
-		for (uint32_t i = 0; i < w->joints.count; i++)
-			for (uint32_t r = 0; r < w->joints.joint[i].rows.rows; r++)
-				w->joints.joint[i].rows.y[r] = -w->joints.joint[i].error[r];
-		ob_joints_find_impulses(w);
-		for (uint32_t i = 0; i < w->joints.count; i++)
-			ob_joint_respond(&w->joints.joint[i], w->joints.joint[i].rows.x, w->d);
-	}
-	for (uint32_t row = 1; w->joints.count && row <= w->bodies; row++)
-		if (w->body[row].joints)
-			ob_body_update_pose(w, row);
 }

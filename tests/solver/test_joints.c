@@ -256,6 +256,17 @@ static void test_energy(void)
 	destroy(m);
 }
 
+// A body that was put elsewhere is put back, and not thrown.
+static void test_misplaced(void)
+{
+	mechanism *m = create_pendulum(0);
+	m->motion[0].p = ob_v3(.3, .1, -1.2);
+	step(m);
+	CHECK(parted(m) < 1e-12);
+	CHECK(ob_norm(m->motion[0].v) < gravity * step_length);
+	destroy(m);
+}
+
 // ---- in space
 
 // A symmetrical top on a ball, in steady precession: the roots of I Omega^2 cos(tilt) - L Omega + m g l = 0 (Lagrange).
@@ -463,6 +474,7 @@ int main(void)
 	test_period();
 	test_slow_swing();
 	test_energy();
+	test_misplaced();
 	test_top();
 	test_cone();
 	test_chain();
