@@ -54,6 +54,16 @@ class Frames(program.Case):
 		self.assertEqual(late.returncode, 2)
 		self.assertIn("the run ends at 1 s", late.stderr)
 
+	def test_colours(self):
+		"""Colours by islands are the same for threads and processes; by simulators they differ from the scene's."""
+		pictures = {}
+		for name, *words in (("own",), ("simulator", "--colour-by", "simulator"), ("island", "--colour-by", "island"),
+				("processes", "--colour-by", "island", "--isolation", "process", "--workers", "3")):
+			self.draw(name, "--duration", "1", "--still", "1", *words)
+			pictures[name] = digest(self.path(name))
+		self.assertEqual(pictures["island"], pictures["processes"])
+		self.assertEqual(len({str(p) for p in pictures.values()}), 3)
+
 	def draw(self, name, *words):
 		report = program.report(*BOXES, *SIZE, "--frames", self.path(name), *words)
 		names = sorted(os.listdir(self.path(name)))

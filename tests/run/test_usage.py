@@ -12,6 +12,16 @@ STACK = program.scene("stack")
 
 
 class Usage(program.Case):
+	def test_scenes(self):
+		"""The scenes that come with obsim are listed with their titles, and found by name beside a folder of that name."""
+		listed = dict(line.split(maxsplit=1) for line in program.call("scenes").stdout.splitlines())
+		self.assertEqual(set(listed), {f[:-4] for f in os.listdir(program.SCENES) if f.endswith(".lua")})
+		self.assertEqual(listed["plaza"], "A plaza")
+		os.mkdir(self.path("stack"))
+		done = program.call("run", "stack", "--duration", ".05", "--measure", "end", cwd=self.directory.name)
+		self.assertEqual(done.returncode, 0, done.stderr)
+		self.refuse("scenes", "plaza", saying="it takes no name")
+
 	def test_options(self):
 		self.refuse("run", saying="no scene given")
 		self.refuse("run", STACK, "--durration", "1", saying="did you mean --duration?")
