@@ -56,7 +56,7 @@ ARROWS = {
     'serve': 'record measure mesh host scene table settings shape motion base',
     'cli': 'shape free/free.h free/schedule.h serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
 }
-BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
+BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h', 'sync_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
          'paper': ['paper_texts.h'],
          'serve': ['content_table.h']}  # written by the build, so without a folder
 

@@ -15,6 +15,7 @@ enum ob_exit {
 // Each takes parsed arguments and returns an ob_exit; it has printed errors on standard error.
 int ob_command_run(const ob_arguments *a);
 int ob_command_compare(const ob_arguments *a);
+int ob_command_compare_sync(const ob_arguments *a); // with --sync lockstep,free
 int ob_command_top(const ob_arguments *a);
 int ob_command_lab(const ob_arguments *a);
 int ob_command_paper(const ob_arguments *a);

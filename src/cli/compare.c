@@ -177,6 +177,8 @@ static int report(const ob_comparison *c, const ob_arguments *a)
 
 int ob_command_compare(const ob_arguments *a)
 {
+	if (a->value[OB_OPTION_SYNC])
+		return ob_command_compare_sync(a);
 	ob_error e;
 	ob_comparison *c = calloc(1, sizeof *c);
 	int code;

@@ -52,6 +52,8 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	r->sync_asked = sync != NULL;
 	r->record_schedule = a->value[OB_OPTION_RECORD_SCHEDULE];
 	r->replay_schedule = a->value[OB_OPTION_REPLAY_SCHEDULE];
+	if (sync && strchr(sync, ','))
+		return ob_fail(e, "--sync %s: a run has one of them; obsim compare runs both ways", sync);
 	r->is_free = sync ? strcmp(sync, "free") == 0 : r->replay_schedule != NULL;
 	r->free_command = a->command == OB_COMMAND_RUN;
 	for (size_t i = 0; i < sizeof of_free / sizeof *of_free; i++)

@@ -80,8 +80,8 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_PACE] = { NULL, "pace", "realtime|RATE|max",
 			     "simulated seconds a second of the clock (run: max; serve: realtime)", RUN | SERVE, 0 },
 
-	[OB_OPTION_SYNC] = { NULL, "sync", OB_SYNC_NAMES,
-			     "step together, or each simulator at times of its own (the scene's)", RUN, 0 },
+	[OB_OPTION_SYNC] = { NULL, "sync", OB_SYNC_NAMES "|lockstep,free",
+			     "all step together, or each at its own times (the scene's)", RUN | COMPARE, 0 },
 	[OB_OPTION_UPDATE_RATE] = { NULL, "update-rate", "HZ", "free: steps of a simulator a second (the scene's)", RUN,
 				    0 },
 	[OB_OPTION_COUPLING] = { NULL, "coupling", OB_COUPLING_NAMES,

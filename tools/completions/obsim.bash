@@ -29,7 +29,7 @@ _obsim()
 	--on-death) mapfile -t COMPREPLY < <(compgen -W 'restart freeze abort keep' -- "$word") ;;
 	--restarts) mapfile -t COMPREPLY < <(compgen -W '5/10' -- "$word") ;;
 	--pace) mapfile -t COMPREPLY < <(compgen -W 'realtime max .1 10' -- "$word") ;;
-	--sync) mapfile -t COMPREPLY < <(compgen -W 'lockstep free' -- "$word") ;;
+	--sync) mapfile -t COMPREPLY < <(compgen -W 'lockstep free lockstep,free' -- "$word") ;;
 	--update-rate) mapfile -t COMPREPLY < <(compgen -W '60 240 960' -- "$word") ;;
 	--coupling) mapfile -t COMPREPLY < <(compgen -W 'own ledger' -- "$word") ;;
 	--max-lag) mapfile -t COMPREPLY < <(compgen -W 'none .001 .01' -- "$word") ;;

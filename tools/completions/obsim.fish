@@ -68,6 +68,7 @@ complete -c obsim -n '__fish_seen_subcommand_from export' -l patience -x -d 'sec
 
 set -l run '__fish_seen_subcommand_from run'
 complete -c obsim -n $run -l sync -x -a 'lockstep free' -d 'step together or at own times'
+complete -c obsim -n '__fish_seen_subcommand_from compare' -l sync -x -a 'lockstep,free' -d 'compare lockstep with free running'
 complete -c obsim -n $run -l update-rate -x -a '60 240 960' -d 'steps of a simulator a second'
 complete -c obsim -n $run -l coupling -x -a 'own ledger' -d 'who computes a contact'
 complete -c obsim -n $run -l max-lag -x -a 'none .001 .01' -d 'seconds ahead of a neighbour'

@@ -1,0 +1,147 @@
+// obsim compare --sync lockstep,free: reads the command line; compare/sync.h does the rest.
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/hash.h"
+#include "cli/command.h"
+#include "cli/quantity.h"
+#include "cli/request.h"
+#include "cli/terminal.h"
+#include "cli/version.h"
+#include "compare/compare.h"
+#include "compare/sync.h"
+#include "plot/plot.h"
+#include "shape/shape.h"
+
+enum { USUAL_SEEDS = 3, WIDTH = 160 };
+static const double usual_duration = 2, rate = 1000, jitter = .3; // s, Hz, share
+
+static bool check(const ob_arguments *a, ob_error *e)
+{
+	static const ob_option_id known[] = { OB_OPTION_DEFINE, OB_OPTION_DURATION, OB_OPTION_SYNC, OB_OPTION_VARY,
+					      OB_OPTION_SEED,   OB_OPTION_SEEDS,    OB_OPTION_OUT,  OB_OPTION_FRESH };
+	if (!strchr(a->value[OB_OPTION_SYNC], ','))
+		return ob_fail(e, "--sync %s: compare runs both ways: expected --sync lockstep,free",
+			       a->value[OB_OPTION_SYNC]);
+	for (int i = 0; i < OB_OPTIONS; i++) {
+		bool is_known = !a->value[i];
+		for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+			is_known |= (int)known[k] == i;
+		if (!is_known)
+			return ob_fail(e, "--%s does not go with --sync lockstep,free: leave it away",
+				       ob_option_table[i].name);
+	}
+	return !a->value[OB_OPTION_FRESH] || a->value[OB_OPTION_OUT] ||
+	       ob_fail(e, "--fresh runs again what a folder has: it needs --out");
+}
+
+static int by_size(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+	return x < y ? -1 : x > y;
+}
+
+// Number, mass and size of what moves.
+static bool measure(ob_sync_point *p, const ob_scene *s, ob_error *e)
+{
+	double *size = malloc((s->objects + 1) * sizeof *size);
+	for (uint32_t i = 0; size && i < s->objects; i++) {
+		const ob_passport *o = &s->object[i].passport;
+		if (o->flags & OB_OBJECT_PRESCRIBED)
+			continue;
+		size[p->objects++] = ob_shape_thickness(o->shape, o->size);
+		p->mass += o->mass;
+	}
+	if (size && p->objects) {
+		qsort(size, p->objects, sizeof *size, by_size);
+		p->size = size[p->objects / 2];
+	}
+	free(size);
+	return p->objects || ob_fail(e, "nothing moves in the scene: there is nothing to compare");
+}
+
+// Loads the scene with a value of the sweep, so that each is tried before anything runs.
+static bool load_point(ob_sync_comparison *c, ob_sync_point *p, const ob_arguments *a, ob_error *e)
+{
+	ob_arguments own = *a;
+	ob_run_request r;
+	own.value[OB_OPTION_SYNC] = NULL;
+	own.define = calloc(a->defines + 2, sizeof *own.define);
+	if (!own.define)
+		return ob_fail(e, "out of memory");
+	if (a->defines)
+		memcpy(own.define, a->define, a->defines * sizeof *own.define);
+	if (*p->define)
+		own.define[own.defines++] = p->define;
+	ob_scene *s = ob_request_read(&r, &own, e) ? ob_scene_load(r.scene, &r.scene_options, e) : NULL;
+	bool fine = s && measure(p, s, e);
+	if (fine) {
+		const char *slash = strrchr(c->scene, '/');
+		uint64_t hash = ob_hash_on(OB_HASH_BEGIN, s->text, s->text_size);
+		for (uint32_t i = 0; i < own.defines; i++)
+			hash = ob_hash_on(hash, own.define[i], strlen(own.define[i]) + 1);
+		if (a->value[OB_OPTION_DURATION])
+			c->duration = r.duration;
+		hash = ob_hash_on(hash, &c->duration, sizeof c->duration);
+		p->seed = r.scene_options.has_seed ? r.scene_options.seed : s->seed;
+		snprintf(p->key, sizeof p->key, "%.80s%s%s @%016" PRIx64, slash ? slash + 1 : c->scene,
+			 *p->define ? " " : "", p->define, hash);
+	}
+	ob_scene_free(s);
+	free(own.define);
+	return fine;
+}
+
+static bool prepare(ob_sync_comparison *c, const ob_arguments *a, ob_error *e)
+{
+	uint64_t seeds = USUAL_SEEDS;
+	ob_comparison *points = calloc(1, sizeof *points);
+	bool fine =
+		check(a, e) && (points || ob_fail(e, "out of memory")) &&
+		ob_number_count("seeds", a->value[OB_OPTION_SEEDS], 1, OB_COMPARE_RUNS, &seeds, e) &&
+		ob_comparison_read_points(points, a->value[OB_OPTION_VARY], e) &&
+		(!a->value[OB_OPTION_OUT] || ob_plot_check(e)) &&
+		(a->defines <= OB_SYNC_DEFINES || ob_fail(e, "more than %d parameters of the scene", OB_SYNC_DEFINES));
+	*c = (ob_sync_comparison){ .scene = a->operand,
+				   .seeds = (uint32_t)seeds,
+				   .duration = usual_duration,
+				   .rate = rate,
+				   .jitter = jitter };
+	for (uint32_t i = 0; fine && i < a->defines; i++)
+		c->define[c->defines++] = a->define[i];
+	for (uint32_t i = 0; fine && i < points->points; i++) {
+		memcpy(c->point[i].define, points->point[i].define, sizeof c->point[i].define);
+		fine = load_point(c, &c->point[i], a, e);
+	}
+	c->points = points ? points->points : 0;
+	free(points);
+	return fine;
+}
+
+int ob_command_compare_sync(const ob_arguments *a)
+{
+	const char *folder = a->value[OB_OPTION_OUT];
+	int columns = WIDTH, lines, code = OB_EXIT_OK;
+	ob_error e;
+	ob_sync_comparison *c = calloc(1, sizeof *c);
+	if (!c)
+		return ob_command_fail(OB_EXIT_FAILED, "out of memory");
+	if (!prepare(c, a, &e)) {
+		code = ob_command_fail(OB_EXIT_USAGE, e.text);
+	} else if (!ob_sync_run(c, ob_version_commit, folder, a->value[OB_OPTION_FRESH], &e)) {
+		code = ob_command_fail(OB_EXIT_FAILED, e.text);
+	} else {
+		if (isatty(STDOUT_FILENO))
+			ob_terminal_size(&columns, &lines);
+		ob_sync_print(c, stdout, (size_t)columns);
+		if (folder && !ob_sync_write_folder(c, folder, &e))
+			code = ob_command_fail(OB_EXIT_FAILED, e.text);
+		else if (folder)
+			printf("\n%s/report.html shows it all; %s/results.csv has every run.\n", folder, folder);
+	}
+	ob_sync_finish(c);
+	free(c);
+	return code;
+}

@@ -1,0 +1,83 @@
+// obsim compare --sync lockstep,free: a scene in lockstep and with free simulators; couplings, isolation, workers, lags; the
+// cost and the error of each. An experiment (experiment/) in which a trial is an `obsim run` of its own.
+//
+// A case is a sweep point, a configuration a row of ob_sync_table. Samples are seeds: a free run differs each time, and a
+// scene that draws random numbers does so with each seed.
+#ifndef OB_COMPARE_SYNC_H
+#define OB_COMPARE_SYNC_H
+
+#include "experiment/experiment.h"
+#include "reference/statistics.h"
+
+typedef enum ob_sync_coupling {
+	OB_SYNC_LOCKSTEP,
+	OB_SYNC_LEDGER,
+	OB_SYNC_OWN, // neighbours with their mass
+	OB_SYNC_HEAVY, // neighbours infinitely heavy
+	OB_SYNC_COUPLINGS
+} ob_sync_coupling;
+
+typedef struct ob_sync_configuration {
+	const char *key, *title; // in files; in tables
+	ob_sync_coupling coupling;
+	bool processes, each; // each: a worker for each object; else two workers
+	double delay; // s after which a publication is seen
+} ob_sync_configuration;
+
+enum { OB_SYNC_CONFIGURATIONS = 21, OB_SYNC_POINTS = 16, OB_SYNC_DEFINES = 64 };
+extern const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS];
+
+typedef enum ob_sync_metric {
+	OB_SYNC_CPU, // per body and simulated second
+	OB_SYNC_WALL, // per simulated second
+	OB_SYNC_UPDATES, // of all simulators per second of wall-clock time
+	OB_SYNC_LATENCY, // mean age of what was read
+	OB_SYNC_LATENCY_MOST,
+	OB_SYNC_WORST,
+	OB_SYNC_SIZES, // worst penetration over the bodies' size
+	OB_SYNC_ENERGY,
+	OB_SYNC_MOMENTUM,
+	OB_SYNC_LAG, // lag x speed / size
+	OB_SYNC_SHOWN = OB_SYNC_LAG, // from here on for diagrams and files
+	OB_SYNC_LOST, // energy that lockstep's run has lost per mass
+	OB_SYNC_METRICS
+} ob_sync_metric;
+extern const ob_metric ob_sync_metrics[OB_SYNC_METRICS];
+
+// The scene with one value of the varied parameter.
+typedef struct ob_sync_point {
+	char define[128]; // "n=100"; "" = no parameter
+	char key[OB_CASE_KEY];
+	uint32_t objects; // that move
+	uint64_t seed;
+	double size, mass; // m, median thickness of what moves; kg, all of it
+	double speed; // m/s: what the energy that lockstep loses is worth; after ob_sync_run
+} ob_sync_point;
+
+typedef struct ob_sync_comparison {
+	const char *scene; // path
+	const char *define[OB_SYNC_DEFINES]; // "name=value" of -D
+	uint32_t defines, seeds, points;
+	double duration, rate, jitter; // s, Hz, share: of free runs
+	ob_sync_point point[OB_SYNC_POINTS];
+	ob_records records; // after ob_sync_run
+} ob_sync_comparison;
+
+// Runs the trials that are missing in the folder (NULL: nothing is stored); fresh: all.
+bool ob_sync_run(ob_sync_comparison *c, const char *commit, const char *folder, bool fresh, ob_error *e);
+void ob_sync_finish(ob_sync_comparison *c);
+// Median and interval of a metric over seeds. n = 0: it was not measured.
+ob_statistics ob_sync_summarise(const ob_sync_comparison *c, const ob_sync_point *p, int configuration,
+				ob_sync_metric m);
+
+// Order of a coupling's error in the lag, with its interval of 95 %: slope of the worst penetration over the lag, both
+// logarithmic. slope NaN: fewer than two lags were run.
+ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling);
+// Recommendation by rules, from the figures alone.
+void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room);
+
+void ob_sync_print(const ob_sync_comparison *c, FILE *f, size_t width);
+// Writes report.html and plots/, beside the records in results.csv.
+bool ob_sync_write_folder(const ob_sync_comparison *c, const char *folder, ob_error *e);
+
+#endif

@@ -1,0 +1,336 @@
+// A comparison of lockstep with free simulators as text, and as a folder with one page.
+#include <ctype.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "compare/sync.h"
+#include "experiment/chart.h"
+#include "experiment/folder.h"
+#include "experiment/page.h"
+#include "experiment/table.h"
+#include "sync_texts.h"
+
+static const char *const coupling_title[OB_SYNC_COUPLINGS] = { "lockstep", "ledger", "own", "own, heavy" };
+
+static bool was_run(const ob_sync_comparison *c, const ob_sync_point *p, int w)
+{
+	return ob_sync_summarise(c, p, w, OB_SYNC_CPU).n > 0;
+}
+
+// True if any configuration measured it: momentum is measured only where nothing is fixed.
+static bool was_measured(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_metric m)
+{
+	bool any = false;
+	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++)
+		any |= ob_sync_summarise(c, p, w, m).n > 0 && !isnan(ob_sync_summarise(c, p, w, m).median);
+	return any;
+}
+
+static ob_table *table_of(const ob_sync_comparison *c, const ob_sync_point *p)
+{
+	char align[OB_SYNC_METRICS + 1] = "l";
+	for (int m = 0; m < OB_SYNC_SHOWN; m++)
+		strcat(align, was_measured(c, p, m) ? "r" : "");
+	ob_table *t = ob_table_new(align);
+	if (!t)
+		return NULL;
+	ob_table_add(t, "%s", "");
+	for (int m = 0; m < OB_SYNC_SHOWN; m++) {
+		const char *unit = ob_sync_metrics[m].unit;
+		if (!was_measured(c, p, m))
+			continue;
+		ob_table_add(t, "%s", ob_sync_metrics[m].title);
+		if (strcmp(unit, "1") != 0)
+			ob_table_small(t, "%s", unit);
+	}
+	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+		if (!was_run(c, p, w))
+			continue;
+		ob_table_add(t, "%s", ob_sync_table[w].title);
+		for (int m = 0; m < OB_SYNC_SHOWN; m++) {
+			if (!was_measured(c, p, m))
+				continue;
+			const ob_statistics s = ob_sync_summarise(c, p, w, m);
+			const double scale = ob_sync_metrics[m].scale;
+			ob_table_add(t, isnan(s.median) ? "–" : "%.3g", scale * s.median);
+			if (!isnan(s.median_low))
+				ob_table_small(t, "%.3g to %.3g", scale * s.median_low, scale * s.median_high);
+		}
+	}
+	return t;
+}
+
+// Failures of trials, a line each.
+static const ob_record *next_failure(const ob_sync_comparison *c, const ob_sync_point *p, size_t *from)
+{
+	while (*from < c->records.count) {
+		const ob_record *r = &c->records.record[(*from)++];
+		if (r->failure && strcmp(r->of, p->key) == 0)
+			return r;
+	}
+	return NULL;
+}
+
+void ob_sync_print(const ob_sync_comparison *c, FILE *f, size_t width)
+{
+	for (uint32_t i = 0; i < c->points; i++) {
+		const ob_sync_point *p = &c->point[i];
+		char text[2048];
+		size_t from = 0;
+		ob_table *t = table_of(c, p);
+		fprintf(f, "%s%s%s, %" PRIu32 " objects, %" PRIu32 " seed%s\n\n", c->scene, *p->define ? ", " : "",
+			p->define, p->objects, c->seeds, c->seeds == 1 ? "" : "s");
+		if (t)
+			ob_table_print(t, f, width);
+		ob_table_free(t);
+		for (const ob_record *r; (r = next_failure(c, p, &from));)
+			fprintf(f, "%s failed: %s\n", r->configuration, r->reason);
+		ob_sync_recommend(c, p, text, sizeof text);
+		fprintf(f, "\n%s\n", text);
+	}
+}
+
+// ---- diagrams
+
+static ob_chart *begin_chart(const ob_sync_comparison *c, const ob_sync_point *p)
+{
+	ob_chart *d = ob_chart_new();
+	if (d)
+		snprintf(d->subtitle, sizeof d->subtitle,
+			 "%.150s %s, %" PRIu32 " objects, medians of %" PRIu32 " seeds; %.60s", c->scene, p->define,
+			 p->objects, c->seeds, c->records.commit);
+	return d;
+}
+
+static void add_point(ob_chart *d, const ob_sync_comparison *c, const ob_sync_point *p, int w, ob_sync_metric along,
+		      ob_sync_metric up)
+{
+	const ob_statistics x = ob_sync_summarise(c, p, w, along), y = ob_sync_summarise(c, p, w, up);
+	const double sx = ob_sync_metrics[along].scale, sy = ob_sync_metrics[up].scale;
+	char hint[192];
+	if (isnan(x.median) || isnan(y.median))
+		return;
+	snprintf(hint, sizeof hint, "%s: %.3g, %.3g", ob_sync_table[w].title, sx * x.median, sy * y.median);
+	ob_plot_point *at = ob_chart_add(d, sx * x.median, sy * y.median, "", hint);
+	at->low = y.n > 1 ? sy * y.least : 0;
+	at->high = y.n > 1 ? sy * y.most : 0;
+}
+
+// An error over lag x speed / size, a curve for each coupling, on two threads.
+static ob_chart *chart_lags(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_metric up, const char *title,
+			    bool slopes)
+{
+	ob_chart *d = begin_chart(c, p);
+	if (!d)
+		return NULL;
+	snprintf(d->title, sizeof d->title, "%s over the lag", title);
+	snprintf(d->x_label, sizeof d->x_label, "lag × speed / size");
+	snprintf(d->y_label, sizeof d->y_label, "%s", title);
+	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
+	for (int k = OB_SYNC_LEDGER; k < OB_SYNC_COUPLINGS; k++) {
+		const ob_line order = ob_sync_order(c, p, k);
+		char name[128];
+		snprintf(name, sizeof name, slopes && !isnan(order.slope) ? "%s: slope %.2f" : "%s", coupling_title[k],
+			 order.slope);
+		ob_chart_begin(d, k - 1, false, name);
+		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+			const ob_sync_configuration *of = &ob_sync_table[w];
+			if ((int)of->coupling == k && !of->processes && !of->each)
+				add_point(d, c, p, w, OB_SYNC_LAG, up);
+		}
+	}
+	return d;
+}
+
+// CPU over the worst penetration, without injected lags.
+static ob_chart *chart_cost(const ob_sync_comparison *c, const ob_sync_point *p)
+{
+	ob_chart *d = begin_chart(c, p);
+	if (!d)
+		return NULL;
+	snprintf(d->title, sizeof d->title, "CPU over the worst penetration, no injected lag");
+	snprintf(d->x_label, sizeof d->x_label, "worst penetration (mm)");
+	snprintf(d->y_label, sizeof d->y_label, "CPU per body and simulated second (ms)");
+	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
+	for (int k = 0; k < OB_SYNC_COUPLINGS; k++) {
+		ob_chart_begin(d, k, false, coupling_title[k])->line = false;
+		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++)
+			if ((int)ob_sync_table[w].coupling == k && ob_sync_table[w].delay == 0)
+				add_point(d, c, p, w, OB_SYNC_WORST, OB_SYNC_CPU);
+	}
+	return d;
+}
+
+// ---- the page
+
+static void write_style(ob_page *p, const void *with)
+{
+	ob_page_style(p);
+}
+
+static void write_paragraph(ob_page *p, const char *class, const char *text)
+{
+	ob_page_markup(p, "<p class=\"%s\">", class);
+	ob_page_text(p, text);
+	ob_page_markup(p, "</p>\n");
+}
+
+static void write_recommendation(ob_page *p, const void *with)
+{
+	const ob_sync_comparison *c = with;
+	char text[2048];
+	ob_sync_recommend(c, &c->point[c->points - 1], text, sizeof text);
+	write_paragraph(p, "lead", text);
+}
+
+static void write_term(ob_page *p, const char *name, const char *text)
+{
+	ob_page_markup(p, "<dt>%s</dt><dd>", name);
+	ob_page_text(p, text);
+	ob_page_markup(p, "</dd>\n");
+}
+
+static void write_setting(ob_page *p, const void *with)
+{
+	const ob_sync_comparison *c = with;
+	char text[256];
+	double took = 0;
+	for (size_t i = 0; i < c->records.count; i++)
+		took += c->records.record[i].took_s;
+	write_term(p, "Scene", c->scene);
+	write_term(p, "Machine", c->records.machine);
+	write_term(p, "Program", c->records.commit);
+	snprintf(text, sizeof text, "%g s simulated, %" PRIu32 " seeds of each configuration; %.0f s in all",
+		 c->duration, c->seeds, took);
+	write_term(p, "Runs", text);
+}
+
+static void write_figure(ob_page *p, ob_chart *d)
+{
+	ob_page_markup(p, "<figure>\n");
+	if (d)
+		ob_chart_html(d, p);
+	ob_page_markup(p, "</figure>\n");
+}
+
+static void write_slopes(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
+{
+	ob_page_markup(p, "<ul>\n");
+	for (int k = OB_SYNC_LEDGER; k < OB_SYNC_COUPLINGS; k++) {
+		const ob_line order = ob_sync_order(c, at, k);
+		if (isnan(order.slope))
+			continue;
+		ob_page_markup(p, "<li>%s: error grows with the lag to the power of %.2f", coupling_title[k],
+			       order.slope);
+		if (!isnan(order.slope_low))
+			ob_page_markup(p, " (%.2f to %.2f)", order.slope_low, order.slope_high);
+		ob_page_markup(p, ", over %zu lags</li>\n", order.n);
+	}
+	ob_page_markup(p, "</ul>\n");
+}
+
+static void write_points(ob_page *p, const void *with)
+{
+	const ob_sync_comparison *c = with;
+	for (uint32_t i = c->points; i-- > 0;) {
+		const ob_sync_point *at = &c->point[i];
+		size_t from = 0;
+		char text[2048];
+		ob_page_markup(p, "<section>\n<h3>%" PRIu32 " objects%s", at->objects, *at->define ? ", " : "");
+		ob_page_text(p, at->define);
+		ob_page_print_quantity(text, sizeof text, at->size, "m");
+		ob_page_markup(p, "; size %s, ", text);
+		ob_page_print_quantity(text, sizeof text, at->speed, "m/s");
+		ob_page_markup(p, "speed %s</h3>\n", text);
+		ob_table *t = table_of(c, at);
+		if (t)
+			ob_table_html(t, p);
+		ob_table_free(t);
+		write_figure(p, chart_lags(c, at, OB_SYNC_SIZES, "Worst penetration / size", true));
+		write_slopes(p, c, at);
+		write_figure(p, chart_lags(c, at, OB_SYNC_ENERGY, "Energy gained / energy at the start", false));
+		write_figure(p, chart_cost(c, at));
+		ob_sync_recommend(c, at, text, sizeof text);
+		write_paragraph(p, "note", text);
+		for (const ob_record *r; (r = next_failure(c, at, &from));) {
+			snprintf(text, sizeof text, "%s failed: %s", r->configuration, r->reason);
+			write_paragraph(p, "note", text);
+		}
+		ob_page_markup(p, "</section>\n");
+	}
+}
+
+static void write_rate(ob_page *p, const void *with)
+{
+	ob_page_markup(p, "%g", ((const ob_sync_comparison *)with)->rate);
+}
+
+static void write_jitter(ob_page *p, const void *with)
+{
+	ob_page_markup(p, "%g", 100 * ((const ob_sync_comparison *)with)->jitter);
+}
+
+// Threats that depend on what was run.
+static void write_threats(ob_page *p, const void *with)
+{
+	enum { FEW = 6 };
+	const ob_sync_comparison *c = with;
+	if (c->seeds < FEW)
+		ob_page_markup(p,
+			       "<li><b>%" PRIu32
+			       " seeds</b> give no interval of 95 %%: free runs of one scene differ by a factor of up "
+			       "to two. --seeds 6 gives intervals.</li>\n",
+			       c->seeds);
+	if (c->points < 2)
+		ob_page_markup(
+			p, "<li>One number of objects. --vary n=10,100,1000 compares several, where the scene has a "
+			   "parameter for it.</li>\n");
+	size_t from = 0, failed = 0;
+	for (uint32_t i = 0; i < c->points; i++, from = 0)
+		while (next_failure(c, &c->point[i], &from))
+			failed++;
+	if (failed)
+		ob_page_markup(p, "<li>%zu runs failed; figures are those of the others.</li>\n", failed);
+}
+
+static void write_meanings(ob_page *p, const void *with)
+{
+	for (int m = 0; m <= OB_SYNC_LAG; m++)
+		write_term(p, ob_sync_metrics[m].title, ob_sync_metrics[m].meaning);
+}
+
+static void write_page(FILE *f, const void *with)
+{
+	static const ob_page_slot slots[] = { { "style", write_style },     { "recommendation", write_recommendation },
+					      { "setting", write_setting }, { "points", write_points },
+					      { "rate", write_rate },       { "jitter", write_jitter },
+					      { "threats", write_threats }, { "meanings", write_meanings } };
+	ob_page page = { f };
+	ob_page_fill(&page, text_sync_html, slots, sizeof slots / sizeof *slots, with);
+}
+
+// Prints "error", or "error-n-100" for one point among several.
+static const char *name_file(char to[160], const char *of, const char *define)
+{
+	snprintf(to, 160, "%s%s%s", of, *define ? "-" : "", define);
+	for (char *at = to; *at; at++)
+		if (!isalnum((unsigned char)*at) && !strchr(".-", *at))
+			*at = '-';
+	return to;
+}
+
+bool ob_sync_write_folder(const ob_sync_comparison *c, const char *folder, ob_error *e)
+{
+	char name[160];
+	bool fine = ob_folder_write(folder, "report.html", write_page, c, e);
+	for (uint32_t i = 0; fine && i < c->points; i++) {
+		const ob_sync_point *p = &c->point[i];
+		fine = ob_chart_write(chart_lags(c, p, OB_SYNC_SIZES, "Worst penetration / size", true), folder,
+				      name_file(name, "error", p->define), e) &&
+		       ob_chart_write(chart_lags(c, p, OB_SYNC_ENERGY, "Energy gained / energy at the start", false),
+				      folder, name_file(name, "energy", p->define), e) &&
+		       ob_chart_write(chart_cost(c, p), folder, name_file(name, "cost", p->define), e);
+	}
+	return fine;
+}

@@ -1,0 +1,58 @@
+"""Random free runs: births, deaths, kills, simulators that sleep, every coupling and bound. Each comes to its end.
+
+Arguments: the number of runs, or the first seed and the number of runs."""
+
+import random
+import sys
+import unittest
+
+import program
+
+NUMBERS = [int(a) for a in sys.argv[1:] if a.isdigit()]
+FIRST, RUNS = [[1, 12], [1] + NUMBERS, NUMBERS][len(NUMBERS)]
+STEP = 1 / 60
+
+
+class Random(program.Case):
+	def scene(self, draw):
+		"""Boxes and balls that meet, some of which come and go."""
+		lines = [f"scene {{ duration = {draw.choice([.1, .2, .3])} }}", "ground {}"]
+		for i in range(draw.randint(2, 8)):
+			life = draw.choice(["", "", f", born = {draw.uniform(0, .2):.3f}", f", dies = {draw.uniform(.05, .2):.3f}"])
+			at = f"{{ {draw.uniform(-1, 1):.3f}, {draw.uniform(-1, 1):.3f}, {.6 * i + .4:.3f} }}"
+			velocity = f"{{ {draw.uniform(-5, 5):.3f}, {draw.uniform(-5, 5):.3f}, 0 }}"
+			shape = draw.choice(["box { size = { .5, .5, .5 }", "sphere { radius = .25"])
+			lines.append(f"{shape}, at = {at}, velocity = {velocity}{life} }}")
+		if draw.random() < .3:
+			lines.append("box { size = { 1, .2, .2 }, at = { 0, 0, .3 }, kind = 'kinematic', spin = { 0, 0, 5 } }")
+		path = self.path("scene.lua")
+		with open(path, "w") as f:
+			f.write("\n".join(lines) + "\n")
+		return path
+
+	def options(self, draw, seed):
+		words = ["--sync", "free", "--coupling", draw.choice(["own", "ledger"]), "--seed", seed, "--measure", "end",
+			"--update-rate", draw.choice([60, 100, 333, 1000]), "--jitter", draw.choice([0, .3, .9]),
+			"--workers", draw.choice([1, 2, 3, "objects"])]
+		words += draw.choice([[], ["--max-lag", "none"], ["--max-lag", .0005], ["--max-lag", .05]])
+		words += draw.choice([[], [], ["--delay", .002], ["--pace", 2]])
+		isolation = draw.choice(["thread", "process"])
+		faults = [None, f"slow:p=.01,ms=3,seed={seed}"]
+		faults += [f"kill:p=.004,seed={seed}"] * 2 if isolation == "process" else []
+		fault = draw.choice(faults)
+		return words + ["--isolation", isolation] + (["--fault", fault] if fault else [])
+
+	def test_each_ends(self):
+		deaths = 0
+		for seed in range(FIRST, FIRST + RUNS):
+			draw = random.Random(seed)
+			scene, words = self.scene(draw), self.options(draw, seed)
+			r = program.report(scene, *words)
+			self.assertEqual(r["outcome"], "finished", (seed, words))
+			self.assertAlmostEqual(r["simulated_s"], r["steps"] * STEP, delta=1e-9)
+			deaths += r["deaths"]
+		print(f"{RUNS} runs from seed {FIRST} on, {deaths} deaths", file=sys.stderr)
+
+
+if __name__ == "__main__":
+	unittest.main(argv=sys.argv[:1])
