@@ -101,6 +101,16 @@ bool ob_free_schedule_end(const char *path, ob_error *e)
 	return (close(fd) == 0 && fine) || says_why(path, e);
 }
 
+// True if a step reads versions that a file of this size cannot have: memory is reserved by their numbers.
+static bool reads_too_far(const step_head *h, const uint32_t *word, size_t size)
+{
+	enum { BIRTHS = 1 << 16 }; // versions that the host made, at most
+	bool any = false;
+	for (uint32_t i = 0; h->mark == STEP_MARK && i < h->reads; i++)
+		any |= word[2 * i + 1] >> 1 > size / sizeof *h + BIRTHS;
+	return any;
+}
+
 // Copies the head of the step at a place. NULL: it is whole; else what is wrong.
 static const char *read_step(const char *bytes, size_t size, size_t at, step_head *out)
 {
@@ -116,6 +126,8 @@ static const char *read_step(const char *bytes, size_t size, size_t at, step_hea
 	if (out->mark == STEP_MARK &&
 	    (2 * (uint64_t)out->reads + (out->listed ? out->listed - 1 : 0) != out->words || !isfinite(out->end)))
 		return "the step makes no sense";
+	if (reads_too_far(out, (const uint32_t *)(bytes + at + sizeof *out), size))
+		return "the step reads a version that nobody published";
 	return NULL;
 }
 

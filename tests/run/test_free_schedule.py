@@ -2,6 +2,7 @@
 
 import os
 import random
+import struct
 import sys
 import unittest
 
@@ -61,6 +62,25 @@ class Schedule(program.Case):
 			self.assertEqual(done.returncode, 2, done.stderr)
 			self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
 			self.assertIn(broken, done.stderr)
+
+	def test_forged(self):
+		"""A version that nobody published is found, even with a right checksum: it would take all memory."""
+		scene, file = self.scene(), self.path("s")
+		self.record(scene, file)
+		with open(file, "rb") as f:
+			data = bytearray(f.read())
+		at = data.index(struct.pack("<I", 0x70657473))
+		while struct.unpack_from("<I", data, at + 36)[0] == 0: # a step that reads
+			at += 48 + 4 * struct.unpack_from("<I", data, at + 4)[0]
+		struct.pack_into("<I", data, at + 52, 0xfffffff0)
+		end, digest = at + 48 + 4 * struct.unpack_from("<I", data, at + 4)[0], 0xcbf29ce484222325
+		for byte in data[at + 16:end]:
+			digest = (digest ^ byte) * 0x100000001b3 % 2 ** 64
+		struct.pack_into("<Q", data, at + 8, digest)
+		with open(file, "wb") as f:
+			f.write(data)
+		done = program.call("run", scene, "--replay-schedule", file)
+		self.assertEqual((done.returncode, "nobody published" in done.stderr), (2, True), done.stderr)
 
 	def test_refusals(self):
 		scene, file = self.scene(), self.path("s")
