@@ -626,22 +626,11 @@ static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 	return ob_request_check_frames(&r->frames, s, r->duration, e);
 }
 
-double ob_request_thinnest(const ob_scene *s)
-{
-	double least = INFINITY;
-	for (uint32_t i = 0; i < s->objects; i++) {
-		const ob_passport *p = &s->object[i].passport;
-		if (!(p->flags & OB_OBJECT_PRESCRIBED))
-			least = fmin(least, ob_shape_thickness(p->shape, p->size));
-	}
-	return least;
-}
-
 // Sets the tolerance if it is a share of the thinnest object's thickness. A scene in which nothing moves keeps the default.
 static bool resolve_share(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
 	const ob_setting *t = &ob_setting_table[OB_SETTING_TOLERANCE];
-	const double thin = ob_request_thinnest(s), tolerance = r->tolerance_share * thin;
+	const double thin = ob_scene_thinnest(s), tolerance = r->tolerance_share * thin;
 	if (!(r->tolerance_share > 0) || isinf(thin))
 		return true;
 	if (tolerance < t->least || tolerance > t->most)

@@ -67,9 +67,6 @@ typedef struct ob_run_request {
 // The strings stay those of a.
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
 
-// Thickness (m) of the thinnest object that moves; infinity: none does.
-double ob_request_thinnest(const ob_scene *s);
-
 // Seconds given by --patience; unchanged without it.
 bool ob_request_read_patience(const ob_arguments *a, double *seconds, ob_error *e);
 

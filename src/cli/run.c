@@ -425,7 +425,7 @@ static void warn_of_missed_tolerance(const ob_report *p)
 static void warn_of_coarse_tolerance(const run *r)
 {
 	enum { COARSE = 10 }; // thickness by tolerance
-	const double tolerance = r->request.run.tolerance, thin = ob_request_thinnest(r->scene);
+	const double tolerance = r->request.run.tolerance, thin = ob_scene_thinnest(r->scene);
 	ob_quantity allowed, size;
 	if (r->ranks.rank == 0 && !(r->request.tolerance_share > 0) && COARSE * tolerance > thin)
 		ob_log_warn("the tolerance of %s is coarse for the thinnest object, of %s: --tolerance .1%% follows "

@@ -45,6 +45,9 @@ typedef struct ob_builder {
 	uint64_t *hull_points; // [scene->hulls], hashes of their points
 	const ob_scene_options *options;
 	bool has_scene; // scene { ... } was called
+	ob_run_settings settings; // its layer: what it does not set is unset
+	int settings_line; // where it was called
+	double tolerance_share; // of the thinnest object's thickness: the tolerance; 0: it is a length, or not set
 	ob_material material[OB_SCENE_MATERIALS_MAX];
 	uint32_t materials;
 	ob_camera_draft camera[OB_SCENE_CAMERAS_MAX];
@@ -97,6 +100,9 @@ ob_quat ob_scene_turn_to(ob_vec3 n);
 // Adds an object of this shape from the table at the bottom of the stack.
 void ob_scene_add(lua_State *L, ob_shape shape);
 
+// Sets the tolerance if it is a share of the thinnest object's thickness; a scene in which nothing moves keeps the
+// default. false and e: it would be out of its limits.
+bool ob_builder_resolve_tolerance(ob_builder *b, const char *path, ob_error *e);
 // True if the scene requested every -D; else false and e.
 bool ob_builder_check_defines(const ob_builder *b, const char *path, ob_error *e);
 // Moves the cameras into the scene, and places those that frame all objects. false and e: no memory, or one follows an

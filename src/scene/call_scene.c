@@ -14,6 +14,7 @@ typedef struct scene_fields {
 	ob_vec3 gravity;
 	uint32_t sync, coupling; // 1 = free; ob_coupling
 	double update_rate, max_lag; // Hz, s; 0 = not set
+	ob_length tolerance;
 	ob_run_settings run; // settings that the scene does not set are unset
 } scene_fields;
 
@@ -62,6 +63,10 @@ static void list_fields(ob_field field[OWN_FIELDS + SETTINGS])
 			.above = s->above,
 			.choices = s->names,
 		};
+		if (settings[i] == OB_SETTING_TOLERANCE) {
+			field[OWN_FIELDS + i].kind = OB_FIELD_LENGTH;
+			field[OWN_FIELDS + i].offset = offsetof(scene_fields, tolerance);
+		}
 	}
 }
 
@@ -91,6 +96,34 @@ static void check_settings(lua_State *L, const scene_fields *f, const ob_scene *
 				ob_setting_print(&s->run, OB_SETTING_SOLVER).text);
 }
 
+// Sets the tolerance: a share counts when all objects are known (ob_builder_resolve_tolerance).
+static void set_tolerance(lua_State *L, ob_builder *b, scene_fields *f)
+{
+	lua_Debug at;
+	b->tolerance_share = f->tolerance.share;
+	if (f->tolerance.m > 0)
+		f->run.tolerance = f->tolerance.m;
+	else if (f->tolerance.share > 0)
+		f->run.tolerance = OB_DEFAULT_TOLERANCE;
+	b->settings = f->run;
+	b->settings_line = lua_getstack(L, 1, &at) && lua_getinfo(L, "l", &at) ? at.currentline : 1;
+}
+
+bool ob_builder_resolve_tolerance(ob_builder *b, const char *path, ob_error *e)
+{
+	const ob_setting *t = &ob_setting_table[OB_SETTING_TOLERANCE];
+	const double thin = ob_scene_thinnest(b->scene), tolerance = b->tolerance_share * thin;
+	if (!(b->tolerance_share > 0) || isinf(thin))
+		return true;
+	if (tolerance < t->least || tolerance > t->most)
+		return ob_fail(
+			e, "%s:%d: scene.tolerance: %g%% of the thinnest object's %g m is %g m; expected %g to %g m",
+			path, b->settings_line, 100 * b->tolerance_share, thin, tolerance, t->least, t->most);
+	b->settings.tolerance = tolerance;
+	ob_run_settings_overlay(&b->scene->run, &b->settings);
+	return true;
+}
+
 int ob_scene_call_scene(lua_State *L)
 {
 	ob_builder *b = ob_sandbox_user(L);
@@ -112,6 +145,7 @@ int ob_scene_call_scene(lua_State *L)
 	s->duration = f.duration;
 	s->room = f.room;
 	s->run.gravity = f.gravity;
+	set_tolerance(L, b, &f);
 	ob_run_settings_overlay(&s->run, &f.run);
 	s->free = (ob_free_settings){ .update_rate = !f.sync             ? 0
 						     : f.update_rate > 0 ? f.update_rate

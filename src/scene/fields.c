@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <lauxlib.h>
@@ -307,6 +308,28 @@ static void read_source(const reader *r)
 	*(const char **)r->to = text;
 }
 
+// Reads a share as ".1%": digits and a point, above 0, up to 100%. Returns 0 if it is none.
+static double share_of(const char *text)
+{
+	char *end = NULL;
+	const double percent = strspn(text, ".0123456789") == strcspn(text, "%") ? strtod(text, &end) : 0;
+	return percent > 0 && percent <= 100 && strcmp(end, "%") == 0 ? percent / 100 : 0;
+}
+
+static void read_length(const reader *r)
+{
+	ob_length *to = r->to;
+	if (lua_type(r->L, -1) == LUA_TSTRING) {
+		to->share = share_of(lua_tostring(r->L, -1));
+		if (!(to->share > 0))
+			fail_range(r, "a share above 0%, up to 100%, as \".1%\", or a number");
+	} else {
+		reader number = *r;
+		number.to = &to->m;
+		read_number(&number);
+	}
+}
+
 static void read_table(const reader *r)
 {
 	if (!lua_istable(r->L, -1))
@@ -323,6 +346,7 @@ static void (*const read_kind[])(const reader *r) = {
 	[OB_FIELD_ROTATION] = read_rotation,   [OB_FIELD_POINTS] = read_points,
 	[OB_FIELD_COLOUR] = read_colour,       [OB_FIELD_FLAT] = read_flat,
 	[OB_FIELD_SOURCE] = read_source,       [OB_FIELD_TABLE] = read_table,
+	[OB_FIELD_LENGTH] = read_length,
 };
 
 static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *name, const ob_field *field,

@@ -29,6 +29,7 @@ typedef enum ob_field_kind {
 	OB_FIELD_SOURCE, // const char *, valid as long as the table: text of any characters, at most high bytes
 	OB_FIELD_TABLE, // bool: it is present; the caller reads its contents
 	OB_FIELD_POINTS, // ob_points from {{x, y, z}, ..}, each within low..high
+	OB_FIELD_LENGTH, // ob_length: a number within low..high (m), or a share as ".1%", up to 100%
 	OB_FIELD_COLOUR, // float[4], linear, from {r, g, b [, a]} or "#rrggbb[aa]" (sRGB)
 } ob_field_kind;
 
@@ -37,6 +38,11 @@ typedef struct ob_points {
 	const ob_vec3 *at;
 	uint32_t count;
 } ob_points;
+
+// One of the two is above 0: a length (m), or a share of another length. Neither: not set.
+typedef struct ob_length {
+	double m, share;
+} ob_length;
 
 enum { OB_FIELD_POINTS_MAX = 4096 };
 

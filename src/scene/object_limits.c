@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "scene/scene.h"
 #include "shape/shape.h"
 
 static bool within(const char *property, const char *unit, double least, double most, double value, ob_error *e)
@@ -175,4 +176,15 @@ bool ob_object_check_saved(const ob_passport *p, ob_error *e)
 {
 	ob_error why;
 	return check_name(p, e) && (ob_passport_check(p, &why) || name_fault(p, &why, e));
+}
+
+double ob_scene_thinnest(const ob_scene *s)
+{
+	double least = INFINITY;
+	for (uint32_t i = 0; i < s->objects; i++) {
+		const ob_passport *p = &s->object[i].passport;
+		if (!(p->flags & OB_OBJECT_PRESCRIBED))
+			least = fmin(least, ob_shape_thickness(p->shape, p->size));
+	}
+	return least;
 }

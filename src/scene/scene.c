@@ -123,7 +123,7 @@ static bool build(ob_builder *b, const char *path, ob_error *e)
 		return false;
 	if (b->scene->objects == 0)
 		return ob_fail(e, "%s:1: expected at least one object (box, sphere, ground ...)", path);
-	return ob_builder_place_cameras(b, path, e);
+	return ob_builder_resolve_tolerance(b, path, e) && ob_builder_place_cameras(b, path, e);
 }
 
 // Makes a scene of this text and takes ownership of it; NULL: the text could not be read, and e explains it.

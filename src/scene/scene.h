@@ -97,6 +97,9 @@ ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e
 ob_scene *ob_scene_load_text(const char *path, const char *text, size_t size, const ob_scene_options *o, ob_error *e);
 void ob_scene_free(ob_scene *s);
 
+// Thickness (m) of the thinnest object that moves; infinity: none does.
+double ob_scene_thinnest(const ob_scene *s);
+
 // Converts "#rrggbb" or "#rrggbbaa" to linear RGB and alpha; false: another format.
 bool ob_scene_read_colour(const char *text, float linear[4]);
 // Appends the value of a word, a number, true, false, or text, to the values of a message (scene/flat.h). false: no

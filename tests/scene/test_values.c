@@ -111,6 +111,25 @@ static void check_exactness(void)
 	ob_scene_free(s);
 }
 
+// A share of the thinnest object that moves, wherever it stands in the file
+static void check_share(void)
+{
+	ob_scene *s =
+		load_good("scene { tolerance = '.5%', iterations = 9 }\nground {}\n"
+			  "box { size = { 1, 2, .3 }, at = { 0, 0, 1 } }\nsphere { radius = .1, at = { 3, 0, 1 } }\n"
+			  "box { size = { .01, 1, 1 }, static = true, at = { 5, 0, 1 } }");
+	CHECK(s && s->run.substeps == 8 && s->run.iterations == 9);
+	CHECK_NEAR(s->run.tolerance, .001, 1e-12);
+	ob_scene_free(s);
+	s = load_good("scene { tolerance = '100%' }\nsphere { radius = .05, at = { 0, 0, 1 } }");
+	CHECK(s && s->run.substeps == 1);
+	CHECK_NEAR(s->run.tolerance, .1, 1e-12);
+	ob_scene_free(s);
+	s = load_good("scene { tolerance = '.1%' }\nground {}");
+	CHECK(s && s->run.tolerance == 1e-3);
+	ob_scene_free(s);
+}
+
 // Words of earlier versions
 static void check_former_names(void)
 {
@@ -213,6 +232,7 @@ int main(void)
 	check_joints();
 	check_free();
 	check_exactness();
+	check_share();
 	check_former_names();
 	check_shapes();
 	check_states();

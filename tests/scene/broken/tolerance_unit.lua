@@ -1,0 +1,2 @@
+-- expect: :2: scene.tolerance: expected a share above 0%, up to 100%, as ".1%", or a number from 1e-06 to 1, got "1mm"
+scene { tolerance = '1mm' }
