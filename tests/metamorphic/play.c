@@ -7,8 +7,11 @@
 
 #include "hull/hull.h"
 #include "measure/measure.h"
+#include "motion/deviation.h"
 #include "ode/ode_body.h"
+#include "shape/shape.h"
 #include "step/sim.h"
+#include "table/saved.h"
 #include "world/world.h"
 
 enum { MOST_WORKERS = 8 };
@@ -88,10 +91,14 @@ static void prescribe(const player *p, uint32_t i)
 	ob_sim_prescribe(p->u, i, b->driven ? own : &lift, 0);
 }
 
-static void put_bodies(player *p, const ob_world *w)
+static void put_hulls(player *p, const ob_world *w)
 {
 	for (uint32_t i = 0; i < w->hulls; i++)
 		ob_write_hull(p->u, i, &w->hull[i]);
+}
+
+static void put_bodies(player *p, const ob_world *w)
+{
 	for (uint32_t i = 0; i < w->objects; i++)
 		ob_write_passport(p->u, i, &w->passport[i]);
 	for (uint32_t i = 0; i < w->objects; i++)
@@ -130,7 +137,8 @@ static bool run_to(player *p, uint64_t step)
 	return ob_snapshot_take(&p->now, p->u, false, &e) || give_up(p->out, e.text);
 }
 
-static bool open_player(player *p, uint32_t workers)
+// from: a universe to go on with; NULL: the scene's start.
+static bool open_player(player *p, uint32_t workers, const ob_saved_universe *from)
 {
 	static int made;
 	char name[OB_NAME_MAX];
@@ -148,11 +156,15 @@ static bool open_player(player *p, uint32_t workers)
 	p->u = ob_universe_create(&setup, &e);
 	if (p->u) {
 		ob_universe_unlink(p->u);
-		put_bodies(p, &w);
+		put_hulls(p, &w);
+		if (!from)
+			put_bodies(p, &w);
 	}
 	ob_world_finish(&w);
-	if (!p->u)
+	if (!p->u || (from && !ob_universe_load(p->u, from, &e)))
 		return give_up(p->out, e.text);
+	if (from)
+		ob_sim_restore(p->u);
 	p->workers = workers;
 	for (uint32_t i = 0; i < workers; i++) {
 		p->crowd[i] = (worker){ .u = p->u, .number = i };
@@ -163,7 +175,7 @@ static bool open_player(player *p, uint32_t workers)
 		ob_ode_thread_init();
 		p->sim = ob_sim_create(p->u, 0, &e);
 	}
-	return (workers || p->sim || give_up(p->out, e.text)) && run_to(p, 0);
+	return (workers || p->sim || give_up(p->out, e.text)) && run_to(p, from ? from->step : 0);
 }
 
 static void close_player(player *p)
@@ -248,7 +260,7 @@ void play(const random_scene *s, uint32_t workers, uint64_t steps, played *out)
 	player p = { .scene = s, .steps = steps, .out = out };
 	*out = (played){ .failed = false };
 	ob_ode_init();
-	if (open_player(&p, workers)) {
+	if (open_player(&p, workers, NULL)) {
 		ob_penetration depth;
 		ob_measure_penetration(&p.now, &depth);
 		out->depth = depth.max_m;
@@ -266,4 +278,71 @@ void play(const random_scene *s, uint32_t workers, uint64_t steps, played *out)
 		out->hash = ob_measure_hash(&p.now);
 	}
 	close_player(&p);
+}
+
+// ---- a second beside a fine solution of it
+
+enum { SAVED_PAIRS = SCENE_BODIES * SCENE_BODIES };
+
+typedef struct saved {
+	ob_saved_universe universe;
+	ob_passport passport[SCENE_BODIES];
+	ob_motion motion[SCENE_BODIES];
+	ob_schedule schedule[SCENE_BODIES];
+	float bounds[SCENE_BODIES][6];
+	uint32_t neighbours[SCENE_BODIES], plane[SCENE_BODIES];
+	ob_pair_key pair[SAVED_PAIRS];
+	ob_saved_record record[SAVED_PAIRS];
+	ob_script_turn turn;
+	ob_script_cell cell;
+} saved;
+
+static bool save(player *p, saved *to)
+{
+	ob_saved_universe *u = &to->universe;
+	ob_universe_count_saved(p->u, u);
+	if (u->ids > SCENE_BODIES || u->pairs > SAVED_PAIRS || u->script_cells || u->script_bytes)
+		return give_up(p->out, "the universe does not fit");
+	u->passport = to->passport, u->motion = to->motion, u->schedule = to->schedule, u->bounds = to->bounds;
+	u->neighbours = to->neighbours, u->plane = to->plane, u->pair = to->pair, u->record = to->record;
+	u->script_turn = &to->turn, u->script_cell = &to->cell;
+	ob_universe_save(p->u, u);
+	return true;
+}
+
+static double distance(const player *a, const player *b, uint32_t i)
+{
+	const scene_body *o = &a->scene->body[i];
+	const ob_state x = state_of(a, i), y = state_of(b, i);
+	const ob_quat p = x.pose.q, q = y.pose.q;
+	const double same = fabs(p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z);
+	const double turn = ob_shape_is(o->shape, OB_ISOTROPIC) ? 0 : 2 * acos(fmin(1, same));
+	return ob_norm(ob_sub(x.pose.p, y.pose.p)) + turn * ob_shape_radius(o->shape, o->size);
+}
+
+bool play_beside(const random_scene *s, uint64_t step, uint32_t substeps, played_second *out)
+{
+	static saved state;
+	random_scene fine = *s;
+	played ends[2] = { { .failed = false }, { .failed = false } };
+	player p = { .scene = s, .steps = step + PLAY_STEPS, .out = &ends[0] },
+	       q = { .scene = &fine, .steps = step + PLAY_STEPS, .out = &ends[1] };
+	fine.run.tolerance = 0;
+	fine.run.substeps = substeps;
+	ob_ode_init();
+	bool good = open_player(&p, 0, NULL) && run_to(&p, step) && save(&p, &state);
+	for (uint64_t k = 1; good && k <= PLAY_STEPS; k++)
+		good = run_to(&p, step + k);
+	good = good && open_player(&q, 0, &state.universe);
+	for (uint64_t k = 1; good && k <= PLAY_STEPS; k++)
+		good = run_to(&q, step + k);
+	for (uint32_t i = 0; good && i < s->bodies; i++) {
+		const ob_motion *m = ob_newest_motion(p.u, i);
+		out->said[i] =
+			ob_deviation(ob_deviation_at(m->deviation, m->step, step + PLAY_STEPS, s->run.step_length));
+		out->off[i] = distance(&p, &q, i);
+	}
+	close_player(&q);
+	close_player(&p);
+	return good;
 }

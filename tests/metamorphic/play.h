@@ -18,6 +18,16 @@ typedef struct played {
 	bool touched;
 } played;
 
+// A second of a scene, for each body.
+typedef struct played_second {
+	double said[SCENE_BODIES]; // m: sum of its estimates
+	double off[SCENE_BODIES]; // m: distance of any surface point from a fine solution, at most, at the second's end
+} played_second;
+
+// Runs a scene up to a step, and for a second more; and goes on from the same state for that second with fixed substeps.
+// Returns false if either failed.
+bool play_beside(const random_scene *s, uint64_t step, uint32_t substeps, played_second *out);
+
 // Runs a scene. workers: threads, or 0: in the caller's own. The last sample is after that many steps.
 void play(const random_scene *s, uint32_t workers, uint64_t steps, played *out);
 
