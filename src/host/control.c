@@ -91,6 +91,9 @@ void ob_control_end(ob_control *c, const char *why)
 	ob_fail(&c->answer.error, "%s", why);
 	if (c->fd >= 0 && (c->stepping || c->turn == OB_CONTROL_RESETS))
 		send(c->fd, &c->answer, sizeof c->answer, MSG_NOSIGNAL | MSG_DONTWAIT);
+	if (c->fd >= 0)
+		close(c->fd); // a command that comes now finds that the run has ended
+	c->fd = -1;
 }
 
 // ---- commands
@@ -445,8 +448,8 @@ ob_control_turn ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64
 		*step = some_steps(c, now);
 	} else if (c->running && now < last) {
 		const uint64_t due = ob_pace_wait(&c->pace, now, length, .001);
-		*step = due == UINT64_MAX || (c->events && due > now) ? now + 1 : due;
-		*step = *step < last ? *step : last;
+		c->target = due < last ? due : last; // without a limit, too, some steps a go
+		*step = due > now ? some_steps(c, now) : now;
 	}
 	return OB_CONTROL_GOES_ON;
 }
