@@ -101,7 +101,8 @@ static bool is_sound(const ob_motion *m, const ob_universe *u)
 	return isfinite(m->t0) && !isnan(m->valid_until) && finite3(m->p) && finite3(m->v) && finite3(m->w) &&
 	       finite3(m->a) && norm > .9 && norm < 1.1 && isfinite(m->path) && m->reach >= 0 && isfinite(m->reach) &&
 	       m->rest_time >= 0 && isfinite(m->rest_time) && m->step == ob_step_count(u) + 1 &&
-	       m->island < ob_universe_ids(u) && !(m->flags >> 8) && !(m->flags & OB_MOTION_SWINGS);
+	       m->island < ob_universe_ids(u) && m->substeps < 1 << OB_SUBSTEP_CHOICES && !(m->flags >> 8) &&
+	       !(m->flags & OB_MOTION_SWINGS);
 }
 
 // True if this simulator was given the island.
