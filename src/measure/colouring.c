@@ -44,6 +44,22 @@ static void colour_of_cost(const ob_motion *m, float out[3])
 	out[2] = (float)(.22 * fmax(0, 1 - 2 * share) + .10 * share);
 }
 
+// The colour of a worker, of its rank, or of the first worker of its process.
+static void colour_of_home(const ob_colouring *c, uint32_t home, float out[3])
+{
+	uint32_t first = 0;
+	if (home >= c->workers) {
+		memcpy(out, none, 3 * sizeof *out);
+		return;
+	}
+	while (c->place[first].pid != c->place[home].pid)
+		first++;
+	colour_of_number(c->key == OB_COLOUR_WORKER ? home
+			 : c->key == OB_COLOUR_RANK ? c->place[home].rank
+						    : first,
+			 out);
+}
+
 static bool has_simulator(const ob_snapshot *s, uint32_t id)
 {
 	return !(s->passport[id].flags & OB_OBJECT_PRESCRIBED);
@@ -52,7 +68,6 @@ static bool has_simulator(const ob_snapshot *s, uint32_t id)
 void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, float colour[3])
 {
 	const ob_motion *m = &s->motion[id];
-	const uint32_t home = s->home && s->home[id] < c->workers ? s->home[id] : UINT32_MAX;
 	if (c->key == OB_COLOUR_OWN)
 		memcpy(colour, s->passport[id].colour, 3 * sizeof *colour);
 	else if (!has_simulator(s, id))
@@ -65,16 +80,6 @@ void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, f
 		colour_of_rest(m, colour);
 	else if (c->key == OB_COLOUR_COST)
 		colour_of_cost(m, colour);
-	else if (home == UINT32_MAX)
-		memcpy(colour, none, 3 * sizeof *colour);
-	else if (c->key == OB_COLOUR_WORKER)
-		colour_of_number(home, colour);
-	else if (c->key == OB_COLOUR_RANK)
-		colour_of_number(c->place[home].rank, colour);
-	else { // the first worker of its process
-		uint32_t first = 0;
-		while (c->place[first].pid != c->place[home].pid)
-			first++;
-		colour_of_number(first, colour);
-	}
+	else
+		colour_of_home(c, s->home ? s->home[id] : UINT32_MAX, colour);
 }

@@ -68,8 +68,9 @@ int main(void)
 	ask(h, (ob_request){ .kind = OB_REQUEST_TORQUE, .id = 2, .twist = { 0, 0, 9 } });
 	ask(h, (ob_request){ .kind = OB_REQUEST_PUSH, .id = 3, .force = { 90, 0, 0 }, .point = { 0, 0, .1 } });
 	ask(h, (ob_request){ .kind = OB_REQUEST_FRICTION, .id = 0, .friction = .1 });
-	ask(h, (ob_request){
-		       .kind = OB_REQUEST_STATE, .id = PATHS, .state = { { { 3, 0, 2 }, { NAN } }, { 0 }, { NAN } } });
+	ask(h, (ob_request){ .kind = OB_REQUEST_STATE,
+			     .id = PATHS,
+			     .state = { { { 3, 0, 2 }, { .w = NAN } }, { 0 }, { .x = NAN } } });
 	go(h, SAVED);
 	CHECK(ob_saved_run_make(&r, &f, h, "test", &e));
 	ob_checkpoint_seal(&f);
