@@ -86,8 +86,10 @@ static bool load_point(ob_sync_comparison *c, ob_sync_point *p, const ob_argumen
 			c->duration = r.duration;
 		hash = ob_hash_on(hash, &c->duration, sizeof c->duration);
 		p->seed = r.scene_options.has_seed ? r.scene_options.seed : s->seed;
-		snprintf(p->key, sizeof p->key, "%.80s%s%s @%016" PRIx64, slash ? slash + 1 : c->scene,
-			 *p->define ? " " : "", p->define, hash);
+		char key[sizeof p->key];
+		snprintf(key, sizeof key, "%.80s%s%s @%016" PRIx64, slash ? slash + 1 : c->scene, *p->define ? " " : "",
+			 p->define, hash);
+		memcpy(p->key, key, sizeof key);
 	}
 	ob_scene_free(s);
 	free(own.define);
