@@ -12,6 +12,7 @@
 #include <lauxlib.h>
 
 #include "base/clock.h"
+#include "base/sanitizer.h"
 
 // Lua shortens long file names in its messages, so it gets this one, and the path is put in its place at the end.
 #define CHUNK "scene"
@@ -358,7 +359,7 @@ ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, 
 		.memory = OB_SANDBOX_MEMORY,
 		.string = OB_SANDBOX_STRING,
 		.instructions = OB_SANDBOX_INSTRUCTIONS,
-		.seconds = OB_SANDBOX_SECONDS,
+		.seconds = OB_SANITIZED ? 3 * OB_SANDBOX_SECONDS : OB_SANDBOX_SECONDS, // it is that slow
 		.out_of_memory = "the scene needs more than 64 MiB of memory",
 		.out_of_string = "a string grew beyond 1 MiB",
 		.out_of_instructions = "stopped after 50 million instructions: does a loop never end?",
