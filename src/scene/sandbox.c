@@ -359,7 +359,7 @@ ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, 
 		.memory = OB_SANDBOX_MEMORY,
 		.string = OB_SANDBOX_STRING,
 		.instructions = OB_SANDBOX_INSTRUCTIONS,
-		.seconds = OB_SANITIZED ? 3 * OB_SANDBOX_SECONDS : OB_SANDBOX_SECONDS, // it is that slow
+		.seconds = OB_SANITIZED ? 3 * OB_SANDBOX_SECONDS : OB_SANDBOX_SECONDS, // a sanitizer needs them
 		.out_of_memory = "the scene needs more than 64 MiB of memory",
 		.out_of_string = "a string grew beyond 1 MiB",
 		.out_of_instructions = "stopped after 50 million instructions: does a loop never end?",
