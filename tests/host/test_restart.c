@@ -174,8 +174,9 @@ static uint64_t end_of_requests(const ob_scene *s, bool kills, bool early, unsig
 	ob_host_times times;
 	ob_error e = { "" };
 	ob_host *h = ob_host_start(s, &c, &e);
-	h->restart.cost = 1e9; // s, of the last checkpoint: the next is due when this is a small share of the time
 	for (uint64_t step = FIRST; step <= LAST; step += EACH) {
+		h->restart.cost =
+			1e9; // s, of the last checkpoint: the next is due when this is a small share of the time
 		ob_object_def d = ball("visitor", .3, .001 * (double)step, 2), near = ball("second", .3, .2, 2.1);
 		ob_passport p = { 0 };
 		ob_host_go(h, step);
@@ -183,7 +184,8 @@ static uint64_t end_of_requests(const ob_scene *s, bool kills, bool early, unsig
 		const bool there = ob_universe_get_passport(ob_host_universe(h), (uint32_t)(step / EACH), &p);
 		if (kills && early) {
 			kill_noticed(h, step % 2);
-			CHECK(ob_restart(h) && steps_of(h) < step);
+			CHECK(ob_restart(h) &&
+			      steps_of(h) <= step); // comings have brought a checkpoint: others follow in time
 			h->started = steps_of(h) > 0;
 		}
 		CHECK(ob_host_request_add(h, &d, &e));
