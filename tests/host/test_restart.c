@@ -175,8 +175,8 @@ static uint64_t end_of_requests(const ob_scene *s, bool kills, bool early, unsig
 	ob_error e = { "" };
 	ob_host *h = ob_host_start(s, &c, &e);
 	for (uint64_t step = FIRST; step <= LAST; step += EACH) {
-		h->restart.cost =
-			1e9; // s, of the last checkpoint: the next is due when this is a small share of the time
+		// s, of the last checkpoint: the next is due when this is a small share of the time
+		h->restart.cost = 1e9;
 		ob_object_def d = ball("visitor", .3, .001 * (double)step, 2), near = ball("second", .3, .2, 2.1);
 		ob_passport p = { 0 };
 		ob_host_go(h, step);
@@ -184,8 +184,8 @@ static uint64_t end_of_requests(const ob_scene *s, bool kills, bool early, unsig
 		const bool there = ob_universe_get_passport(ob_host_universe(h), (uint32_t)(step / EACH), &p);
 		if (kills && early) {
 			kill_noticed(h, step % 2);
-			CHECK(ob_restart(h) &&
-			      steps_of(h) <= step); // comings have brought a checkpoint: others follow in time
+			// at most: comings bring a checkpoint, after which others are due by time
+			CHECK(ob_restart(h) && steps_of(h) <= step);
 			h->started = steps_of(h) > 0;
 		}
 		CHECK(ob_host_request_add(h, &d, &e));
