@@ -7,7 +7,7 @@
 //     the flight                                                             J' v = 0
 //
 // Nine such flights of different lengths, some of them backwards, make a block of the sixth order (Kahan and Li 1997).
-// Where joints pull so hard that a block would have to be very short, the step has single flights: of the second order.
+// A step has single flights, of the second order, if its joints pull so hard that a block would have to be very short.
 //
 // In other islands joints are solved between the contacts' iterations. Bodies go half of the way freely; there J u = -J v
 // reverses what turning has brought, as for contacts whose geometry turns (solver/midpoint.h), so the joints do no work.
