@@ -70,14 +70,9 @@ static bool pass_on(ob_comparison *c, const ob_arguments *a, ob_error *e)
 // Loads the scene with a value of the sweep. Each value is tried before anything runs.
 static bool load_point(ob_sweep_point *p, const ob_arguments *a, ob_error *e)
 {
-	ob_arguments own = *a;
-	own.define = calloc(a->defines + 2, sizeof *own.define);
-	if (!own.define)
-		return ob_fail(e, "out of memory");
-	if (a->defines)
-		memcpy(own.define, a->define, a->defines * sizeof *own.define);
-	if (*p->define)
-		own.define[own.defines++] = p->define;
+	ob_arguments own;
+	if (!ob_options_define(&own, a, p->define, e))
+		return false;
 	ob_run_request request;
 	ob_scene *scene = NULL;
 	bool fine = ob_request_read(&request, &own, e);

@@ -65,16 +65,11 @@ static bool measure(ob_sync_point *p, const ob_scene *s, ob_error *e)
 // Loads the scene with a value of the sweep, so that each is tried before anything runs.
 static bool load_point(ob_sync_comparison *c, ob_sync_point *p, const ob_arguments *a, ob_error *e)
 {
-	ob_arguments own = *a;
+	ob_arguments own;
 	ob_run_request r;
+	if (!ob_options_define(&own, a, p->define, e))
+		return false;
 	own.value[OB_OPTION_SYNC] = NULL;
-	own.define = calloc(a->defines + 2, sizeof *own.define);
-	if (!own.define)
-		return ob_fail(e, "out of memory");
-	if (a->defines)
-		memcpy(own.define, a->define, a->defines * sizeof *own.define);
-	if (*p->define)
-		own.define[own.defines++] = p->define;
 	ob_scene *s = ob_request_read(&r, &own, e) ? ob_scene_load(r.scene, &r.scene_options, e) : NULL;
 	bool fine = s && measure(p, s, e);
 	if (fine) {

@@ -346,6 +346,19 @@ void ob_options_finish(ob_arguments *a)
 	*a = (ob_arguments){ 0 };
 }
 
+bool ob_options_define(ob_arguments *own, const ob_arguments *a, const char *define, ob_error *e)
+{
+	*own = *a;
+	own->define = calloc(a->defines + 2, sizeof *own->define);
+	if (!own->define)
+		return ob_fail(e, "out of memory");
+	if (a->defines)
+		memcpy(own->define, a->define, a->defines * sizeof *own->define);
+	if (*define)
+		own->define[own->defines++] = define;
+	return true;
+}
+
 static const struct {
 	ob_command_bit command;
 	const char *usage, *what;

@@ -133,6 +133,8 @@ typedef struct ob_arguments {
 // ob_options_finish in either case.
 bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **argv, ob_error *e);
 void ob_options_finish(ob_arguments *a);
+// The same arguments with one more -D, unless define is "". Only own->define is its own: release that with free.
+bool ob_options_define(ob_arguments *own, const ob_arguments *a, const char *define, ob_error *e);
 
 // Help of one command (a line for each of its options), and of obsim as a whole.
 void ob_options_help(FILE *f, ob_command_bit command);

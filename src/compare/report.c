@@ -1,5 +1,4 @@
 // Comparison as a folder: one page with the answer first and explanations after it, its diagrams, its figures.
-#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -209,11 +208,8 @@ static void write_setting(ob_page *p, const void *with)
 		      { "Program", c->records.commit } };
 	char runs[64];
 	double took = 0;
-	for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
-		ob_page_markup(p, "<dt>%s</dt><dd>", lines[i].name);
-		ob_page_text(p, *lines[i].text ? lines[i].text : "–");
-		ob_page_markup(p, "</dd>\n");
-	}
+	for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
+		ob_page_term(p, lines[i].name, *lines[i].text ? lines[i].text : "–");
 	for (size_t i = 0; i < c->records.count; i++)
 		took += c->records.record[i].took_s;
 	ob_comparison_print_runs(c, runs, sizeof runs);
@@ -302,26 +298,15 @@ static void write_json(FILE *f, const void *with)
 	ob_comparison_write_json(with, f);
 }
 
-// Prints "cost", or "cost-n-100" for one point among several.
-static const char *name_file(char to[160], const char *of, const char *define)
-{
-	snprintf(to, 160, "%s%s%s", of, *define ? "-" : "", define);
-	for (char *at = to; *at; at++)
-		if (!isalnum((unsigned char)*at) && !strchr(".-", *at))
-			*at = '-';
-	return to;
-}
-
 bool ob_comparison_write_folder(const ob_comparison *c, const char *folder, ob_error *e)
 {
-	char name[160];
 	bool fine = ob_folder_write(folder, "report.html", write_page, c, e) &&
 		    ob_folder_write(folder, "results.json", write_json, c, e) &&
 		    ob_chart_write(chart_growth(c), folder, "growth", e);
 	for (uint32_t i = 0; fine && i < c->points; i++) {
 		const ob_sweep_point *p = &c->point[i];
-		fine = ob_chart_write(chart_cost(c, p), folder, name_file(name, "cost", p->define), e) &&
-		       ob_chart_write(chart_latency(c, p), folder, name_file(name, "latency", p->define), e);
+		fine = ob_chart_write_point(chart_cost(c, p), folder, "cost", p->define, e) &&
+		       ob_chart_write_point(chart_latency(c, p), folder, "latency", p->define, e);
 	}
 	return fine;
 }

@@ -1,5 +1,4 @@
 // A comparison of lockstep with free simulators as text, and as a folder with one page.
-#include <ctype.h>
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -184,13 +183,6 @@ static void write_recommendation(ob_page *p, const void *with)
 	write_paragraph(p, "lead", text);
 }
 
-static void write_term(ob_page *p, const char *name, const char *text)
-{
-	ob_page_markup(p, "<dt>%s</dt><dd>", name);
-	ob_page_text(p, text);
-	ob_page_markup(p, "</dd>\n");
-}
-
 static void write_setting(ob_page *p, const void *with)
 {
 	const ob_sync_comparison *c = with;
@@ -198,12 +190,12 @@ static void write_setting(ob_page *p, const void *with)
 	double took = 0;
 	for (size_t i = 0; i < c->records.count; i++)
 		took += c->records.record[i].took_s;
-	write_term(p, "Scene", c->scene);
-	write_term(p, "Machine", c->records.machine);
-	write_term(p, "Program", c->records.commit);
+	ob_page_term(p, "Scene", c->scene);
+	ob_page_term(p, "Machine", c->records.machine);
+	ob_page_term(p, "Program", c->records.commit);
 	snprintf(text, sizeof text, "%g s simulated, %" PRIu32 " seeds of each configuration; %.0f s in all",
 		 c->duration, c->seeds, took);
-	write_term(p, "Runs", text);
+	ob_page_term(p, "Runs", text);
 }
 
 static void write_figure(ob_page *p, ob_chart *d)
@@ -297,7 +289,7 @@ static void write_threats(ob_page *p, const void *with)
 static void write_meanings(ob_page *p, const void *with)
 {
 	for (int m = 0; m <= OB_SYNC_LAG; m++)
-		write_term(p, ob_sync_metrics[m].title, ob_sync_metrics[m].meaning);
+		ob_page_term(p, ob_sync_metrics[m].title, ob_sync_metrics[m].meaning);
 }
 
 static void write_page(FILE *f, const void *with)
@@ -310,27 +302,17 @@ static void write_page(FILE *f, const void *with)
 	ob_page_fill(&page, text_sync_html, slots, sizeof slots / sizeof *slots, with);
 }
 
-// Prints "error", or "error-n-100" for one point among several.
-static const char *name_file(char to[160], const char *of, const char *define)
-{
-	snprintf(to, 160, "%s%s%s", of, *define ? "-" : "", define);
-	for (char *at = to; *at; at++)
-		if (!isalnum((unsigned char)*at) && !strchr(".-", *at))
-			*at = '-';
-	return to;
-}
-
 bool ob_sync_write_folder(const ob_sync_comparison *c, const char *folder, ob_error *e)
 {
-	char name[160];
 	bool fine = ob_folder_write(folder, "report.html", write_page, c, e);
 	for (uint32_t i = 0; fine && i < c->points; i++) {
 		const ob_sync_point *p = &c->point[i];
-		fine = ob_chart_write(chart_lags(c, p, OB_SYNC_SIZES, "Worst penetration / size", true), folder,
-				      name_file(name, "error", p->define), e) &&
-		       ob_chart_write(chart_lags(c, p, OB_SYNC_ENERGY, "Energy gained / energy at the start", false),
-				      folder, name_file(name, "energy", p->define), e) &&
-		       ob_chart_write(chart_cost(c, p), folder, name_file(name, "cost", p->define), e);
+		fine = ob_chart_write_point(chart_lags(c, p, OB_SYNC_SIZES, "Worst penetration / size", true), folder,
+					    "error", p->define, e) &&
+		       ob_chart_write_point(
+			       chart_lags(c, p, OB_SYNC_ENERGY, "Energy gained / energy at the start", false), folder,
+			       "energy", p->define, e) &&
+		       ob_chart_write_point(chart_cost(c, p), folder, "cost", p->define, e);
 	}
 	return fine;
 }

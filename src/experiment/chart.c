@@ -1,5 +1,6 @@
 #include "experiment/chart.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -113,6 +114,16 @@ bool ob_chart_write(ob_chart *c, const char *dir, const char *name, ob_error *e)
 	}
 	ob_chart_free(c);
 	return fine;
+}
+
+bool ob_chart_write_point(ob_chart *c, const char *dir, const char *of, const char *define, ob_error *e)
+{
+	char name[160];
+	snprintf(name, sizeof name, "%s%s%s", of, *define ? "-" : "", define);
+	for (char *at = name; *at; at++)
+		if (!isalnum((unsigned char)*at) && !strchr(".-", *at))
+			*at = '-';
+	return ob_chart_write(c, dir, name, e);
 }
 
 void ob_chart_html(ob_chart *c, ob_page *p)

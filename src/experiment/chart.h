@@ -37,6 +37,8 @@ ob_plot_point *ob_chart_add(ob_chart *c, double x, double y, const char *label, 
 const ob_plot *ob_chart_plot(ob_chart *c);
 // Writes DIR/plots/NAME.svg and .png, and makes the folder. Frees c. An empty chart (NULL, or no points) is no error.
 bool ob_chart_write(ob_chart *c, const char *dir, const char *name, ob_error *e);
+// The same, under a name as "cost" or, for one point of a sweep (n=100), "cost-n-100". define: "" for none.
+bool ob_chart_write_point(ob_chart *c, const char *dir, const char *of, const char *define, ob_error *e);
 // Writes it as SVG into a page; frees c.
 void ob_chart_html(ob_chart *c, ob_page *p);
 

@@ -59,6 +59,13 @@ void ob_page_text(ob_page *p, const char *text)
 	}
 }
 
+void ob_page_term(ob_page *p, const char *name, const char *text)
+{
+	ob_page_markup(p, "<dt>%s</dt><dd>", name);
+	ob_page_text(p, text);
+	ob_page_markup(p, "</dd>\n");
+}
+
 // True if v is easier to read as digits than with an exponent.
 static bool is_plain(double v)
 {

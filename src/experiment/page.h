@@ -23,6 +23,8 @@ void ob_page_style(ob_page *p);
 // printf of markup; the arguments must not need escaping.
 void ob_page_markup(ob_page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ob_page_text(ob_page *p, const char *text);
+// Term of a list, and what it means; the name must not need escaping.
+void ob_page_term(ob_page *p, const char *name, const char *text);
 
 // Prints a number of three digits with its unit: "0.5 mm²" from "mm^2"; unit "1" = a bare number, a dash for NaN.
 void ob_page_print_quantity(char *to, size_t room, double v, const char *unit);

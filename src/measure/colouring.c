@@ -5,8 +5,12 @@
 
 static const double golden_turn = .6180339887498949; // of a circle: neighbouring numbers get distant hues
 static const float none[3] = { .28f, .30f, .33f };
-static const float touching[3] = { .85f, .30f, .04f }, flying[3] = { .08f, .55f, .80f };
-static const float balanced[3] = { .10f, .50f, .20f }, asleep[3] = { .09f, .13f, .40f };
+static const float rest[][3] = {
+	[OB_REST_TOUCHES] = { .85f, .30f, .04f },
+	[OB_REST_FLIES] = { .08f, .55f, .80f },
+	[OB_REST_EQUILIBRIUM] = { .10f, .50f, .20f },
+	[OB_REST_ASLEEP] = { .09f, .13f, .40f },
+};
 static const double most_substeps = 512;
 
 // Colour of a number: a hue of its own, bright for even, darker for odd turns.
@@ -20,15 +24,11 @@ static void colour_of_number(uint32_t number, float out[3])
 	}
 }
 
-static void colour_of_rest(const ob_motion *m, float out[3])
+ob_rest ob_rest_of(const ob_motion *m)
 {
-	const bool flies = !(m->flags & OB_MOTION_SWINGS) && ob_norm2(m->a) > 0;
-	memcpy(out,
-	       m->flags & OB_MOTION_ASLEEP        ? asleep
-	       : m->flags & OB_MOTION_EQUILIBRIUM ? balanced
-	       : flies                            ? flying
-						  : touching,
-	       3 * sizeof *out);
+	if (m->flags & OB_MOTION_RESTS)
+		return m->flags & OB_MOTION_ASLEEP ? OB_REST_ASLEEP : OB_REST_EQUILIBRIUM;
+	return !(m->flags & OB_MOTION_SWINGS) && ob_norm2(m->a) > 0 ? OB_REST_FLIES : OB_REST_TOUCHES;
 }
 
 // From dark blue by red to light yellow.
@@ -77,7 +77,7 @@ void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, f
 	else if (c->key == OB_COLOUR_ISLAND)
 		colour_of_number(m->flags & OB_MOTION_SWINGS ? id : m->island, colour);
 	else if (c->key == OB_COLOUR_REST)
-		colour_of_rest(m, colour);
+		memcpy(colour, rest[ob_rest_of(m)], 3 * sizeof *colour);
 	else if (c->key == OB_COLOUR_COST)
 		colour_of_cost(m, colour);
 	else

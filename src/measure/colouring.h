@@ -29,6 +29,16 @@ typedef struct ob_colouring {
 	uint32_t workers;
 } ob_colouring;
 
+// Whether a body rests, and if not, whether it touches something. The page of a server knows them by these numbers.
+typedef enum ob_rest {
+	OB_REST_TOUCHES,
+	OB_REST_FLIES,
+	OB_REST_EQUILIBRIUM,
+	OB_REST_ASLEEP,
+} ob_rest;
+
+ob_rest ob_rest_of(const ob_motion *m);
+
 // Colour, linear RGB, of a present object. Objects without a simulator are grey, except for OB_COLOUR_OWN.
 void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, float colour[3]);
 

@@ -5,6 +5,7 @@
 
 #include <ob/motion.h>
 
+#include "measure/colouring.h"
 #include "shape/shape.h"
 
 static const double tolerated = 1. / 256; // of the radius
@@ -513,13 +514,6 @@ ob_message *ob_feed_contacts(ob_feed *f)
 	return whole_or_none(out);
 }
 
-static unsigned state_of(const ob_motion *m)
-{
-	if (m->flags & OB_MOTION_RESTS)
-		return m->flags & OB_MOTION_ASLEEP ? 3 : 2;
-	return !(m->flags & OB_MOTION_SWINGS) && ob_norm2(m->a) > 0;
-}
-
 ob_message *ob_feed_simulators(ob_feed *f)
 {
 	uint32_t sent = 0, before = UINT32_MAX;
@@ -542,7 +536,7 @@ ob_message *ob_feed_simulators(ob_feed *f)
 		put_number(out, housed ? 1 + home : 0);
 		put_number(out, m.flags & OB_MOTION_SWINGS ? k->id : m.island);
 		put_number(out, rests ? 0 : m.substeps);
-		ob_message_put_u8(out, state_of(&m));
+		ob_message_put_u8(out, ob_rest_of(&m));
 		before = k->id;
 		sent++;
 	}
