@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "base/sanitizer.h"
 #include "check.h"
 #include "host/host_state.h"
 #include "host/restart.h"
@@ -12,12 +13,8 @@
 #include "step/now.h"
 #include "workers.h"
 
-#ifdef __SANITIZE_THREAD__
-enum { BALLS = 15 }; // a fork takes .1 s there
-#else
-enum { BALLS = 40 };
-#endif
-enum { STEPS = 400 };
+// A fork takes .1 s under the thread sanitizer.
+enum { STEPS = OB_SANITIZED ? 240 : 400, BALLS = OB_SANITIZED ? 15 : 40 };
 
 // FNV-1a over the state at the end.
 static uint64_t hash_of(const ob_host *h)
