@@ -115,8 +115,8 @@ int main(int argc, char **argv)
 	corner c[200];
 	fast = argc > 1 && strcmp(argv[1], "fast") == 0;
 	const int n = find_corners(c);
-	for (int i = 0; i < n; i++)
-		for (int m = OB_SANITIZED ? i % 3 : 0; m < 3; m += OB_SANITIZED ? 3 : 1) // of sanitizers one mass a shape
+	for (int i = 0; i < n; i++) // under sanitizers with one mass each
+		for (int m = OB_SANITIZED ? i % 3 : 0; m < 3; m += OB_SANITIZED ? 3 : 1)
 			for (int k = 0; k < (fast ? 8 : 1); k++) {
 				const double spin = fmin(OB_SPIN_MOST, .9 * OB_SPEED_MOST / c[i].radius);
 				run(&c[i], masses[m], k & 1 ? OB_SPEED_MOST : 0, k & 2 ? spin : 0, k >> 2);
