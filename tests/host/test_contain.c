@@ -17,7 +17,7 @@
 #include "measure/measure.h"
 #include "workers.h"
 
-enum { STEPS = OB_SANITIZED ? 100 : 200, BALLS = OB_SANITIZED ? 30 : 60 };
+enum { STEPS = OB_SANITIZED ? 100 : 200, BALLS = OB_SANITIZED ? 30 : 60, SEEDS = OB_SANITIZED ? 1 : 2 };
 
 typedef struct scribbler {
 	ob_host *h;
@@ -221,7 +221,7 @@ static void test_each_measure(const ob_scene *s, uint64_t expected)
 int main(int argc, char **argv)
 {
 	const uint64_t first = argc > 1 ? strtoull(argv[1], NULL, 10) : 1,
-		       seeds = argc > 2 ? strtoull(argv[2], NULL, 10) : OB_SANITIZED ? 1 : 2;
+		       seeds = argc > 2 ? strtoull(argv[2], NULL, 10) : SEEDS;
 	static const int words[] = { 1, 10, 500 };
 	uint32_t deaths, sum = 0, failed = 0, wrong = 0, runs = 0;
 	uint64_t written = 0;
