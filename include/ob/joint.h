@@ -10,7 +10,11 @@
 //   universal   the turns about x of the first, y of the second   x and y: arms of the cross
 //   distance    all but the distance of the two origins           any; the origins lie apart
 //
-// Units: m, rad. Thread-safety: as <ob/universe.h>.
+// Along the free axis of a hinge (rad), a slider (m) and a distance (m) limits, a spring with a damper, dry friction and a
+// motor may act. The value of an axis is the first object's turn, or shift, relative to the second since the scene began;
+// of a distance the length itself.
+//
+// Units: m, rad, N along sliders and distances, N m about hinges. Thread-safety: as <ob/universe.h>.
 #ifndef OB_JOINT_H
 #define OB_JOINT_H
 
@@ -32,9 +36,28 @@ typedef enum ob_joint_kind {
 
 enum { // ob_joint_passport.flags
 	OB_JOINT_COLLIDES = 1 << 0, // its two objects may touch each other
+	OB_JOINT_DRIVEN = 1 << 1, // something acts along its free axis; a distance with this flag is free to change
 };
 
-// Properties of a joint. It holds while both objects are present with these generations. 144 bytes.
+typedef enum ob_joint_motor {
+	OB_MOTOR_NONE,
+	OB_MOTOR_RATE, // holds the rate "target" with at most the force "most"
+	OB_MOTOR_VALUE, // pulls to the value "target" with stiffness and damping, at most with the force "most"
+	OB_MOTORS,
+} ob_joint_motor;
+
+// What acts along the free axis of a joint. Forces are torques of a hinge.
+typedef struct ob_joint_axis {
+	double low, high; // limits of the value; infinite: none
+	double restitution; // of hits on a limit, 0..1
+	double stiffness, rest, damping; // N/m, m, N s/m: a spring, its natural value, a damper
+	double friction; // N, dry
+	uint32_t motor, reserved; // ob_joint_motor
+	double target, most; // m/s or m; N, may be infinite
+	double motor_stiffness, motor_damping; // N/m, N s/m
+} ob_joint_axis;
+
+// Properties of a joint. It holds while both objects are present with these generations. 240 bytes.
 typedef struct ob_joint_passport {
 	uint32_t object[2]; // ids; the second may be OB_JOINT_WORLD
 	uint32_t generation[2]; // of the objects
@@ -42,6 +65,7 @@ typedef struct ob_joint_passport {
 	uint32_t flags; // OB_JOINT_*
 	ob_pose frame[2]; // frame of the joint in the frame of each object, as of a body; in the world's
 	double length; // m, of a distance; else 0
+	ob_joint_axis axis; // if the joint is OB_JOINT_DRIVEN
 } ob_joint_passport;
 
 // Name of a kind, as scenes have it ("hinge"). NULL: no such kind.

@@ -1,5 +1,6 @@
 // ball, hinge, slider, fixed, universal, distance: joints of two objects, or of one and the world.
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,12 +11,15 @@
 #include "scene/text.h"
 
 #define OB_SCENE_JOINTS_MAX 1000000
+#define OB_TURN_MOST 6.2 // rad, between the limits of a hinge
+#define OB_JOINT_MOST 1e15 // forces, stiffness, damping
 
 // Fields of a call; NaN = not set.
 typedef struct joint {
 	ob_vec3 at, axis, across, from, to;
 	double length;
-	bool collide;
+	bool collide, motor;
+	ob_joint_axis along; // low, high, rest and motor_target may be NaN
 } joint;
 
 #define F(member, ...) OB_FIELD(joint, member, .name = #member, __VA_ARGS__)
@@ -23,17 +27,36 @@ typedef struct joint {
 #define REQUIRED_PLACE(member) \
 	F(member, .kind = OB_FIELD_VECTOR, .low = -OB_PLACE_MOST, .high = OB_PLACE_MOST, .required = true)
 #define DIRECTION(member) F(member, .kind = OB_FIELD_DIRECTION, .required = true)
+#define ALONG(member, ...) OB_FIELD(joint, along.member, .name = #member, .kind = OB_FIELD_NUMBER, __VA_ARGS__)
+#define AXIS(most_value) \
+	ALONG(low, .low = -(most_value), .high = (most_value)), \
+		ALONG(high, .low = -(most_value), .high = (most_value)), ALONG(restitution, .high = 1), \
+		ALONG(stiffness, .high = OB_JOINT_MOST), ALONG(rest, .low = -(most_value), .high = (most_value)), \
+		ALONG(damping, .high = OB_JOINT_MOST), ALONG(friction, .high = OB_JOINT_MOST), \
+		F(motor, .kind = OB_FIELD_TABLE)
 #define COLLIDE F(collide, .kind = OB_FIELD_BOOLEAN)
 
 static const ob_field ball_fields[] = { REQUIRED_PLACE(at), COLLIDE };
 static const ob_field fixed_fields[] = { PLACE(at), COLLIDE };
-static const ob_field hinge_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), COLLIDE };
-static const ob_field slider_fields[] = { PLACE(at), DIRECTION(axis), COLLIDE };
+static const ob_field hinge_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), AXIS(2 * M_PI), COLLIDE };
+static const ob_field slider_fields[] = { PLACE(at), DIRECTION(axis), AXIS(2 * OB_PLACE_MOST), COLLIDE };
 static const ob_field universal_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), DIRECTION(across), COLLIDE };
 static const ob_field distance_fields[] = {
 	PLACE(from), PLACE(to), F(length, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST, .high = 2 * OB_PLACE_MOST),
-	COLLIDE
+	AXIS(2 * OB_PLACE_MOST), COLLIDE
 };
+
+// Fields of a motor; NaN = not set.
+typedef struct motor {
+	double rate, to, most, stiffness, damping;
+} motor;
+
+#define MOTOR(member, ...) OB_FIELD(motor, member, .name = #member, .kind = OB_FIELD_NUMBER, __VA_ARGS__)
+static const ob_field motor_fields[] = { MOTOR(rate, .low = -OB_JOINT_MOST, .high = OB_JOINT_MOST),
+					 MOTOR(to, .low = -OB_JOINT_MOST, .high = OB_JOINT_MOST),
+					 MOTOR(most, .high = OB_JOINT_MOST, .above = true),
+					 MOTOR(stiffness, .high = OB_JOINT_MOST, .above = true),
+					 MOTOR(damping, .high = OB_JOINT_MOST) };
 
 static const struct {
 	const ob_field *field;
@@ -177,6 +200,54 @@ static void set_frames(lua_State *L, const ob_scene *s, const joint *d, ob_joint
 		j->frame[side] = in_object(s, j->object[side], frame[side]);
 }
 
+// ---- what acts along the axis
+
+// Reads the motor's table, of the call's table at place 1.
+static void read_motor(lua_State *L, const char *kind, ob_joint_axis *a)
+{
+	enum { NAME = 40 };
+	char where[NAME];
+	motor m = { NAN, NAN, INFINITY, NAN, 0 };
+	snprintf(where, sizeof where, "%s.motor", kind);
+	lua_getfield(L, 1, "motor");
+	ob_fields_read(L, lua_gettop(L), where, motor_fields, sizeof motor_fields / sizeof *motor_fields, &m);
+	lua_pop(L, 1);
+	if (isnan(m.rate) == isnan(m.to))
+		ob_sandbox_fail(L, "%s: expected the rate that it holds, or the value that it pulls to", where);
+	if (isnan(m.to) != isnan(m.stiffness))
+		ob_sandbox_fail(L, "%s: expected a stiffness where it pulls to a value, and only there", where);
+	if (!isnan(m.rate) && m.damping > 0)
+		ob_sandbox_fail(L, "%s: expected damping only where it pulls to a value", where);
+	a->motor = isnan(m.to) ? OB_MOTOR_RATE : OB_MOTOR_VALUE;
+	a->target = isnan(m.to) ? m.rate : m.to;
+	a->most = m.most;
+	a->motor_stiffness = isnan(m.to) ? 0 : m.stiffness;
+	a->motor_damping = m.damping;
+}
+
+static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_passport *j)
+{
+	ob_joint_axis *a = &j->axis;
+	*a = d->along;
+	const bool limited = !isnan(a->low) || !isnan(a->high);
+	a->low = isnan(a->low) ? -INFINITY : a->low;
+	a->high = isnan(a->high) ? INFINITY : a->high;
+	if (isnan(a->rest))
+		a->rest = j->kind == OB_JOINT_DISTANCE ? j->length : 0;
+	if (!(a->low <= a->high))
+		ob_sandbox_fail(L, "%s.high: expected at least low, %.10g, got %.10g", kind, a->low, a->high);
+	if (j->kind == OB_JOINT_HINGE && limited && isfinite(a->high - a->low) && !(a->high - a->low <= OB_TURN_MOST))
+		ob_sandbox_fail(L, "%s.high: expected at most %.10g (rad) above low, got %.10g", kind, OB_TURN_MOST,
+				a->high - a->low);
+	if (d->motor)
+		read_motor(L, kind, a);
+	if (limited || a->stiffness > 0 || a->damping > 0 || a->friction > 0 || d->motor)
+		j->flags |= OB_JOINT_DRIVEN;
+	if (j->flags & OB_JOINT_DRIVEN && j->kind == OB_JOINT_DISTANCE && !isnan(d->length))
+		ob_sandbox_fail(L, "distance.length: expected rest, low and high in its place where a spring, limits, "
+				   "friction or a motor let the distance change");
+}
+
 static void add(lua_State *L, ob_builder *b, const char *kind, const ob_joint_passport *j)
 {
 	ob_scene *s = b->scene;
@@ -199,7 +270,7 @@ int ob_scene_call_joint(lua_State *L)
 	ob_builder *b = ob_sandbox_user(L);
 	ob_joint_passport j = { .generation = { 1, 1 }, .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
 	const ob_vec3 none = { NAN, NAN, NAN };
-	joint d = { none, none, none, none, none, NAN, false };
+	joint d = { none, none, none, none, none, NAN, false, false, { .low = NAN, .high = NAN, .rest = NAN } };
 	const char *kind = ob_joint_kind_name(j.kind);
 	if (b->options->joining)
 		ob_sandbox_fail(L, "%s: joints cannot be added to a universe that runs", kind);
@@ -208,6 +279,7 @@ int ob_scene_call_joint(lua_State *L)
 	ob_fields_read(L, 1, kind, calls[j.kind].field, calls[j.kind].fields, &d);
 	j.flags = d.collide ? OB_JOINT_COLLIDES : 0;
 	set_frames(L, b->scene, &d, &j);
+	set_axis(L, kind, &d, &j);
 	add(L, b, kind, &j);
 	return 0;
 }

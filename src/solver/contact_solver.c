@@ -233,7 +233,7 @@ static void solve_joints(ob_solver *s, double threshold, bool *any)
 	if (!w->joints.count)
 		return;
 	memcpy(w->delta, w->u, w->rows * sizeof *w->u);
-	ob_joints_solve(w, w->u);
+	ob_joints_iterate(w);
 	for (uint32_t i = 1; i <= w->bodies; i++) {
 		const ob_body *body = &w->body[i];
 		const ob_vec3 v = ob_sub(ob_row_linear(w->u[i]), ob_row_linear(w->delta[i])),

@@ -5,13 +5,14 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "solver/joint_axis.h"
 
 static const double compliance = 1e-9; // of a row, as a share of its own response
 
 // ---- rows
 
 typedef struct row_rule {
-	enum { NO_ROW, ALONG, ACROSS, LENGTH } type;
+	enum { NO_ROW, ALONG, ACROSS, LENGTH, TURN } type;
 	int a, b; // axes of the first and the second end
 } row_rule;
 
@@ -39,6 +40,17 @@ static const row_rule rules[OB_JOINT_KINDS][OB_JOINT_ROWS] = {
 	[OB_JOINT_DISTANCE] = { { LENGTH, 0, 0 } },
 };
 
+static const row_rule axis_rules[OB_JOINT_KINDS] = {
+	[OB_JOINT_HINGE] = { TURN, 2, 2 },
+	[OB_JOINT_SLIDER] = { ALONG, 0, 2 },
+	[OB_JOINT_DISTANCE] = { LENGTH, 0, 0 },
+};
+
+static const row_rule *rule_of(const ob_held_joint *j, uint32_t r)
+{
+	return r < j->base ? &rules[j->kind][r] : &axis_rules[j->kind];
+}
+
 static void set_row(double *row, ob_vec3 linear, ob_vec3 angular)
 {
 	row[0] = linear.x, row[1] = linear.y, row[2] = linear.z;
@@ -63,12 +75,14 @@ static void find_end(const ob_island_work *w, ob_joint_end *e, double time)
 		e->axis[i] = ob_column(&axes, i);
 }
 
-// Finds the violation of each row.
-static void find_errors(ob_held_joint *j)
+// Finds the violation of each row, at this time (s) of the run.
+static void find_errors(ob_held_joint *j, double time)
 {
 	const ob_joint_end *a = &j->end[0], *b = &j->end[1];
 	const ob_vec3 apart = ob_sub(a->at, b->at);
-	for (uint32_t r = 0; r < j->rows.rows; r++) {
+	if (j->axis)
+		ob_axis_find(j, time);
+	for (uint32_t r = 0; r < j->base; r++) {
 		const row_rule *rule = &rules[j->kind][r];
 		j->error[r] = rule->type == ALONG    ? ob_dot(b->axis[rule->b], apart)
 			      : rule->type == ACROSS ? ob_dot(a->axis[rule->a], b->axis[rule->b])
@@ -78,11 +92,12 @@ static void find_errors(ob_held_joint *j)
 
 void ob_joints_find(ob_island_work *w, double time)
 {
+	w->joints.now = time;
 	for (uint32_t i = 0; i < w->joints.count; i++) {
 		ob_held_joint *j = &w->joints.joint[i];
 		find_end(w, &j->end[0], time);
 		find_end(w, &j->end[1], time);
-		find_errors(j);
+		find_errors(j, time);
 	}
 }
 
@@ -95,6 +110,11 @@ static void find_row(const ob_held_joint *j, const row_rule *rule, double *of_a,
 		const ob_vec3 turn = ob_cross(a->axis[rule->a], b->axis[rule->b]);
 		set_row(of_a, none, turn);
 		set_row(of_b, none, ob_scale(turn, -1));
+		return;
+	}
+	if (rule->type == TURN) {
+		set_row(of_a, none, b->axis[rule->b]);
+		set_row(of_b, none, ob_scale(b->axis[rule->b], -1));
 		return;
 	}
 	const bool along = rule->type == ALONG;
@@ -122,12 +142,14 @@ static double find_response(const ob_island_work *w, uint32_t body, const double
 void ob_joint_find_rows(const ob_island_work *w, ob_held_joint *j)
 {
 	const bool swapped = j->end[0].row == 0;
-	for (uint32_t r = 0; r < j->rows.rows; r++) {
+	for (uint32_t r = 0; r < j->base + (j->axis ? OB_AXIS_ROWS : 0); r++) {
 		double *child = j->rows.child[r], *parent = j->rows.parent[r];
-		find_row(j, &rules[j->kind][r], swapped ? parent : child, swapped ? child : parent);
+		find_row(j, rule_of(j, r), swapped ? parent : child, swapped ? child : parent);
 		j->rows.compliance[r] = compliance * (find_response(w, j->child, child, j->response[0][r]) +
 						      find_response(w, j->parent, parent, j->response[1][r]));
 	}
+	if (j->along.softness > 0)
+		j->rows.compliance[j->base + j->along.engaged] += j->along.softness;
 }
 
 static void set_inertia(ob_island_work *w, uint32_t body)
@@ -182,6 +204,20 @@ void ob_joint_respond(const ob_held_joint *j, const double *impulse, ob_body_row
 		}
 }
 
+double ob_joint_axis_rate(const ob_held_joint *j, const ob_body_row *rows)
+{
+	return ob_joint_row_velocity(j, j->base, rows);
+}
+
+void ob_joint_push_axis(const ob_held_joint *j, double impulse, ob_body_row *rows)
+{
+	for (int i = 0; i < 6; i++) {
+		rows[1 + j->child][i] += impulse * j->response[0][j->base][i];
+		if (j->parent != OB_SPARSE_FIXED)
+			rows[1 + j->parent][i] += impulse * j->response[1][j->base][i];
+	}
+}
+
 void ob_joints_find_impulses(ob_island_work *w)
 {
 	ob_joint_set *set = &w->joints;
@@ -201,6 +237,9 @@ void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
 			ob_held_joint *j = &w->joints.joint[i];
 			for (uint32_t r = 0; r < j->rows.rows; r++)
 				j->rows.y[r] = j->target[r] - ob_joint_row_velocity(j, r, rows);
+			if (j->along.softness > 0)
+				j->rows.y[j->base + j->along.engaged] -=
+					j->along.softness * j->sum[j->base + j->along.engaged];
 		}
 		ob_joints_find_impulses(w);
 		for (uint32_t i = 0; i < w->joints.count; i++) {
@@ -209,6 +248,27 @@ void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
 			for (uint32_t r = 0; r < j->rows.rows; r++)
 				j->sum[r] += j->rows.x[r];
 		}
+	}
+}
+
+void ob_joints_iterate(ob_island_work *w)
+{
+	enum { MOST_CHANGES = 8 };
+	ob_joints_solve(w, w->u);
+	for (int round = 0; w->joints.axes && round < MOST_CHANGES; round++) {
+		bool changed = false;
+		for (uint32_t i = 0; i < w->joints.count; i++) {
+			ob_held_joint *j = &w->joints.joint[i];
+			double more;
+			if (!j->axis || !ob_axis_settle(j, ob_joint_axis_rate(j, w->u), w->h, &more))
+				continue;
+			ob_joint_push_axis(j, more, w->u);
+			changed = true;
+		}
+		if (!changed)
+			return;
+		ob_joints_factor(w);
+		ob_joints_solve(w, w->u);
 	}
 }
 
@@ -236,8 +296,15 @@ static void load_joint(ob_island_work *w, const ob_island_input *in, const ob_is
 		j->end[side].frame = from->joint->frame[side];
 		load_end(w, in, from->object[side], &j->end[side]);
 	}
-	while (j->rows.rows < OB_JOINT_ROWS && rules[j->kind][j->rows.rows].type != NO_ROW)
-		j->rows.rows++;
+	if (from->joint->flags & OB_JOINT_DRIVEN && axis_rules[j->kind].type != NO_ROW) {
+		j->axis = &from->joint->axis;
+		w->joints.axes++;
+	}
+	while (j->base < OB_JOINT_ROWS && rules[j->kind][j->base].type != NO_ROW)
+		j->base++;
+	if (j->axis && j->kind == OB_JOINT_DISTANCE)
+		j->base = 0;
+	j->rows.rows = j->base;
 	const uint32_t a = j->end[0].row, b = j->end[1].row;
 	j->child = (a ? a : b) - 1;
 	j->parent = a && b ? b - 1 : OB_SPARSE_FIXED;
@@ -256,16 +323,22 @@ void ob_joints_load(ob_solver *s, const ob_island_input *in)
 		set->joint = ob_reallocate(set->joint, set->max * sizeof *set->joint);
 	}
 	set->step_begin = (double)in->step * s->settings->step_length;
-	set->stiffness = 0;
+	set->stiffness = set->last_share = 0;
+	set->axes = 0;
 	set->failed = false;
 	ob_sparse_begin(&set->sparse, w->bodies);
 	for (uint32_t i = 0; i < in->joints; i++)
 		load_joint(w, in, &in->joint[i]);
 	ob_sparse_analyse(&set->sparse, UINT32_MAX);
+	if (set->axes && w->bodies > set->kept_max) {
+		set->kept_max = w->bodies + w->bodies / 2;
+		set->kept = ob_reallocate(set->kept, set->kept_max * sizeof *set->kept);
+	}
 }
 
 void ob_joints_finish(ob_joint_set *j)
 {
 	free(j->joint);
+	free(j->kept);
 	ob_sparse_finish(&j->sparse);
 }

@@ -1,11 +1,15 @@
 // Rows of an island's joints: equality constraints, solved together by sparse elimination (solver/sparse_solver.h).
 //
 // A row is one number g of the poses of its two ends that must stay 0, with its derivative J by their motions. There are
-// three types; a kind of joint is a list of them.
+// four types; a kind of joint is a list of them.
 //
 //   along    n . (p_a - p_b)   n an axis of the second end: the origins part along it
 //   across   x . y             x an axis of the first end, y of the second: they lean
 //   length   |p_a - p_b| - l   a distance
+//   turn     angle             about the z axes of both ends
+//
+// What acts along a free axis adds a row for it (solver/joint_axis.h) while something holds it, and among contacts another
+// one, with the compliance of its spring and damper.
 //
 // The elimination needs some compliance, which also makes rows that depend on each other harmless. What it leaves is solved
 // for again, so nothing of it is left in the solution.
@@ -31,6 +35,11 @@ void ob_joint_respond(const ob_held_joint *j, const double *impulse, ob_body_row
 void ob_joints_find_impulses(ob_island_work *w);
 // Changes velocities such that each row moves as its target says. Adds the impulses to the joints' sums.
 void ob_joints_solve(ob_island_work *w, ob_body_row *rows);
+// Solves the joints on the velocities u that contacts have left; rows of axes change until they are within their bounds.
+void ob_joints_iterate(ob_island_work *w);
+// Rate (m/s, rad/s) of a joint's axis at the velocities in rows; gives it an impulse (N s, N m s).
+double ob_joint_axis_rate(const ob_held_joint *j, const ob_body_row *rows);
+void ob_joint_push_axis(const ob_held_joint *j, double impulse, ob_body_row *rows);
 
 void ob_joints_finish(ob_joint_set *j);
 

@@ -6,6 +6,7 @@
 #include "solver/bodies.h"
 #include "solver/budget.h"
 #include "solver/contacts.h"
+#include "solver/joint_axis.h"
 #include "solver/joint_rows.h"
 #include "solver/midpoint.h"
 
@@ -40,18 +41,67 @@ static void clear_sums(ob_island_work *w)
 		memset(w->joints.joint[i].sum, 0, sizeof w->joints.joint[i].sum);
 }
 
-static void clear_targets(ob_island_work *w)
+// Rates of all rows: none, but for the axes that something moves.
+static void set_targets(ob_island_work *w)
 {
-	for (uint32_t i = 0; i < w->joints.count; i++)
-		memset(w->joints.joint[i].target, 0, sizeof w->joints.joint[i].target);
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		memset(j->target, 0, sizeof j->target);
+		if (j->along.engaged)
+			j->target[j->base] = j->along.goal_rate;
+	}
 }
 
 // Half of the change by external torques, before or after a flight of h (s).
-static void twist(ob_island_work *w, double h)
+static void twist_bodies(ob_island_work *w, double h)
 {
 	for (uint32_t row = 1; w->torques && row <= w->bodies; row++)
 		ob_row_add(w->v[row], ob_v3(0, 0, 0),
 			   ob_scale(ob_body_turned_by(&w->body[row], w->body[row].torque), .5 * h));
+}
+
+// Half of the change by external torques and by what acts along axes, before a flight of h (s).
+static void twist(ob_island_work *w, double h)
+{
+	twist_bodies(w, h);
+	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
+		const ob_held_joint *j = &w->joints.joint[i];
+		if (j->axis)
+			ob_joint_push_axis(j, .5 * h * ob_axis_force(j, ob_joint_axis_rate(j, w->v), h), w->v);
+	}
+}
+
+// Half of the change by what acts along axes, after a flight of h (s): by the rates that it leaves. Returns the largest
+// change (m/s, rad/s) since the last call.
+static double twist_again(ob_island_work *w, double h)
+{
+	double most = 0;
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		if (!j->axis)
+			continue;
+		const double impulse = .5 * h * ob_axis_force(j, ob_joint_axis_rate(j, w->v), h),
+			     more = impulse - j->along.applied;
+		ob_joint_push_axis(j, more, w->v);
+		j->along.applied = impulse;
+		most = ob_max(most, ob_axis_is_damped(j) ? fabs(more) * j->along.response : 0);
+	}
+	return most;
+}
+
+// Finds the velocities after a flight of h (s) that the joints allow, with the forces along axes that go with them.
+static void settle_axes(ob_island_work *w, double h)
+{
+	enum { MOST_ROUNDS = 40 };
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		w->joints.joint[i].along.applied = 0;
+	double before = INFINITY, change = twist_again(w, h);
+	for (int round = 0; round < MOST_ROUNDS && change > exact && change < before; round++) {
+		ob_joints_solve(w, w->v);
+		before = change;
+		change = twist_again(w, h);
+	}
+	ob_joints_solve(w, w->v);
 }
 
 // Flies from the start of the flight for h (s) with the velocities u, which are of the start.
@@ -133,6 +183,8 @@ static void note_stiffness(ob_island_work *w, double h)
 		const double force = 2 * ob_norm(pull) / fabs(h);
 		for (int side = 0; side < 2; side++)
 			most = ob_max(most, swing_rate2(w, &j->end[side], force));
+		if (j->axis)
+			most = ob_max(most, ob_axis_swing(j) * ob_axis_swing(j));
 	}
 	w->joints.stiffness = ob_max(w->joints.stiffness, sqrt(most));
 }
@@ -149,9 +201,12 @@ static void fly(ob_island_work *w, double h, double end)
 	}
 	aim(w, h, end);
 	ob_joints_factor(w);
-	twist(w, h);
+	twist_bodies(w, h);
 	clear_sums(w);
-	ob_joints_solve(w, w->v);
+	if (w->joints.axes)
+		settle_axes(w, h);
+	else
+		ob_joints_solve(w, w->v);
 	note_stiffness(w, h);
 }
 
@@ -180,11 +235,29 @@ static void update_poses(ob_island_work *w)
 			ob_body_update_pose(w, row);
 }
 
+// Leaves the rows of axes that are beyond a limit.
+static void keep_limits_alone(ob_island_work *w)
+{
+	update_poses(w);
+	ob_joints_find(w, w->joints.step_begin + w->time);
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		if (!j->axis)
+			continue;
+		j->along.softness = 0;
+		ob_axis_disengage(j);
+		if (j->along.value > j->axis->high || j->along.value < j->axis->low)
+			ob_axis_rest(j, j->along.value > j->axis->high ? 1 : -1, w->joints.now);
+	}
+}
+
 void ob_joints_project(ob_solver *s)
 {
 	enum { ROUNDS = 16 };
 	ob_island_work *w = &s->island;
 	double before = INFINITY, none;
+	if (w->joints.axes)
+		keep_limits_alone(w);
 	for (int round = 0; w->joints.count && round < ROUNDS; round++) {
 		update_poses(w);
 		ob_joints_find(w, w->joints.step_begin + w->time);
@@ -210,40 +283,260 @@ static const double shares[] = { .39216144400731413928,  .33259913678935943860, 
 				 -.70624617255763935981, .33259913678935943860, .39216144400731413928 };
 static const double single[] = { 1 };
 
-bool ob_joints_fly(ob_solver *s)
+// How a step is divided: into parts of h (s), each of so many flights.
+typedef struct division {
+	uint32_t parts, flights;
+	const double *share;
+	double h;
+} division;
+
+static division divide(const ob_solver *s)
+{
+	const uint32_t usual = s->settings->substeps, n = s->island.substeps;
+	const bool blocks = n >= usual && n <= MOST_BLOCKS * usual;
+	const uint32_t parts = blocks ? n / usual : n;
+	return (division){ parts, blocks ? sizeof shares / sizeof *shares : 1, blocks ? shares : single,
+			   s->settings->step_length / parts };
+}
+
+// Flies from part "from" of the step, a share of it may have been done, for h (s).
+static void fly_part(ob_solver *s, const division *d, double from, double h)
 {
 	enum { WORK_OF_FLIGHT = 64 }; // for a joint
 	ob_island_work *w = &s->island;
-	const uint32_t usual = s->settings->substeps, n = w->substeps;
-	const bool blocks = n >= usual && n <= MOST_BLOCKS * usual;
-	const uint32_t parts = blocks ? n / usual : n, flights = blocks ? sizeof shares / sizeof *shares : 1;
-	const double *share = blocks ? shares : single, step = s->settings->step_length, h = step / parts;
-	double last = 0, none;
+	double done = 0;
+	for (uint32_t i = 0; i < d->flights && !w->joints.failed; i++) {
+		done += d->share[i];
+		if (w->joints.last_share != 0)
+			guess(w, d->share[i] / w->joints.last_share * (h / w->joints.last_length));
+		ob_budget_note(s, WORK_OF_FLIGHT * w->joints.count);
+		const double part = (i + 1 < d->flights ? done : 1) * (h / d->h);
+		fly(w, d->share[i] * h, w->joints.step_begin + (from + part) * d->h);
+		w->joints.last_share = d->share[i], w->joints.last_length = h;
+	}
+}
+
+// Lets velocities be those that the rows allow, after these have changed.
+static void change_rows(ob_island_work *w)
+{
+	ob_joints_factor(w);
+	set_targets(w);
+	clear_sums(w);
+	ob_joints_solve(w, w->v);
+	clear_sums(w);
+	w->joints.last_share = 0;
+}
+
+// ---- events along axes
+
+static void keep_states(ob_island_work *w)
+{
+	for (uint32_t row = 1; row <= w->bodies; row++) {
+		ob_joint_kept *k = &w->joints.kept[row - 1];
+		k->p = w->body[row].p, k->q = w->body[row].q;
+		memcpy(k->v, w->v[row], sizeof k->v);
+	}
+}
+
+// Goes back to the states kept, of this time (s).
+static void put_back(ob_island_work *w, double time)
+{
+	for (uint32_t row = 1; row <= w->bodies; row++) {
+		const ob_joint_kept *k = &w->joints.kept[row - 1];
+		ob_body_place(&w->body[row], k->p, k->q);
+		memcpy(w->v[row], k->v, sizeof k->v);
+	}
+	ob_joints_find(w, time);
+	ob_joints_factor(w);
+	clear_sums(w);
+	w->joints.last_share = 0;
+}
+
+// An event along the axis of a joint, and how far its state is from it.
+typedef struct axis_event {
+	double margin;
+	uint32_t joint;
+	ob_axis_event kind;
+} axis_event;
+
+// Returns the event that has happened most, or that is nearest.
+static axis_event next_event(const ob_island_work *w)
+{
+	const double half = .5 * w->joints.last_share * w->joints.last_length;
+	axis_event next = { INFINITY, 0, OB_AXIS_NONE };
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		const ob_held_joint *j = &w->joints.joint[i];
+		ob_axis_event kind;
+		if (!j->axis)
+			continue;
+		const double force = j->along.engaged ? j->sum[j->base] / half : 0,
+			     margin = ob_axis_margin(j, ob_joint_axis_rate(j, w->v), force, &kind);
+		if (margin < next.margin)
+			next = (axis_event){ margin, i, kind };
+	}
+	return next;
+}
+
+static void enter_axes(ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		if (!j->axis)
+			continue;
+		ob_axis_find_response(j);
+		ob_axis_enter(j, ob_joint_axis_rate(j, w->v), w->joints.now);
+	}
+}
+
+// Frees one limit that the last solution pulls at. false: none.
+static bool free_limit(ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		if (j->axis && j->along.limit * j->sum[j->base] > 0) {
+			ob_axis_disengage(j);
+			return true;
+		}
+	}
+	return false;
+}
+
+// A limit is hit: an impulse, to which limits on which others rest give their share. Forces give none.
+static void hit_limit(ob_island_work *w, ob_held_joint *hit, int limit)
+{
+	const double rate = ob_joint_axis_rate(hit, w->v), e = ob_axis_restitution(hit, rate);
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		if (j->axis && j->along.engaged && !j->along.limit && (j == hit || !ob_axis_is_driven(j)))
+			ob_axis_disengage(j);
+	}
+	ob_axis_rest(hit, limit, w->joints.now);
+	keep_states(w);
+	do {
+		for (uint32_t row = 1; row <= w->bodies; row++)
+			memcpy(w->v[row], w->joints.kept[row - 1].v, sizeof *w->v);
+		ob_joints_factor(w);
+		set_targets(w);
+		hit->target[hit->base] = -e * rate;
+		clear_sums(w);
+		ob_joints_solve(w, w->v);
+	} while (free_limit(w));
+	const bool rests = hit->along.limit && !(e > 0);
+	enter_axes(w);
+	if (rests)
+		ob_axis_rest(hit, limit, w->joints.now);
+}
+
+static void pass(ob_island_work *w, const axis_event *event)
+{
+	ob_held_joint *j = &w->joints.joint[event->joint];
+	if (event->kind == OB_AXIS_LOW || event->kind == OB_AXIS_HIGH)
+		hit_limit(w, j, event->kind == OB_AXIS_LOW ? -1 : 1);
+	else
+		ob_axis_pass(j, event->kind, w->joints.now);
+	change_rows(w);
+}
+
+// Bracket of an event's instant, in seconds from the start of a flight.
+typedef struct bracket {
+	double low, high, low_margin, high_margin;
+	int side; // that moved last
+} bracket;
+
+// Next instant to try: a false position (Illinois), or the middle where that says nothing.
+static double try_at(const bracket *b)
+{
+	const double little = 1e-9,
+		     t = (b->low * b->high_margin - b->high * b->low_margin) / (b->high_margin - b->low_margin);
+	return b->low_margin > little && t > b->low && t < b->high ? t : .5 * (b->low + b->high);
+}
+
+static void narrow(bracket *b, double t, double margin)
+{
+	const int side = margin < 0 ? 1 : -1;
+	if (side > 0)
+		b->high = t, b->high_margin = margin, b->low_margin *= b->side == side ? .5 : 1;
+	else
+		b->low = t, b->low_margin = margin, b->high_margin *= b->side == side ? .5 : 1;
+	b->side = side;
+}
+
+// Flies up to the first event found within h (s), and passes it. Returns the time flown.
+static double fly_to_event(ob_solver *s, const division *d, double from, double h)
+{
+	enum { MOST_ROUNDS = 48 };
+	const double shortest = 1e-3 * d->h,
+		     exact_time = 1e-10 * d->h; // shorter flights find no forces, but for rounding
+	ob_island_work *w = &s->island;
+	keep_states(w);
+	fly_part(s, d, from, h);
+	axis_event event = next_event(w);
+	if (w->joints.failed || event.margin >= 0 || ob_budget_spent(s))
+		return h;
+	bracket b = { 0, h, 0, event.margin, 0 };
+	double t = h;
+	for (int round = 0; round < MOST_ROUNDS && b.high - b.low > exact_time && b.high > shortest; round++) {
+		put_back(w, w->joints.step_begin + from * d->h);
+		t = try_at(&b);
+		fly_part(s, d, from, t);
+		const axis_event now = next_event(w);
+		narrow(&b, t, now.margin);
+		if (now.margin < 0)
+			event = now;
+	}
+	if (t != b.low) {
+		put_back(w, w->joints.step_begin + from * d->h);
+		if (b.low > 0)
+			fly_part(s, d, from, b.low);
+	}
+	pass(w, &event);
+	return b.low;
+}
+
+// Flies through a part of the step, from one event along an axis to the next.
+static void fly_with_axes(ob_solver *s, const division *d, uint32_t part)
+{
+	enum { MOST_EVENTS = 64 };
+	ob_island_work *w = &s->island;
+	double done = 0;
+	for (int event = 0; done < d->h && event < MOST_EVENTS && !w->joints.failed && !ob_budget_spent(s); event++)
+		done += fly_to_event(s, d, (double)part + done / d->h, d->h - done);
+	if (done < d->h && !w->joints.failed)
+		fly_part(s, d, (double)part + done / d->h, d->h - done);
+}
+
+// Puts bodies where their joints hold them as the step begins, and takes away velocities that these do not allow.
+static void begin_flights(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	double none;
 	ob_joints_find(w, w->joints.step_begin);
+	if (w->joints.axes) {
+		ob_joints_factor(w);
+		enter_axes(w);
+		ob_joints_find(w, w->joints.step_begin);
+	}
 	if (largest_error(w, &none) > misplaced) {
 		ob_joints_project(s);
 		ob_joints_find(w, w->joints.step_begin);
 	}
-	ob_joints_factor(w);
-	clear_targets(w);
-	clear_sums(w);
-	ob_joints_solve(w, w->v);
-	clear_sums(w);
-	for (uint32_t k = 0; k < parts && !w->joints.failed && !ob_budget_spent(s); k++) {
-		double done = 0;
-		for (uint32_t i = 0; i < flights && !w->joints.failed; i++) {
-			done += share[i];
-			if (last != 0)
-				guess(w, share[i] / last);
-			last = share[i];
-			ob_budget_note(s, WORK_OF_FLIGHT * w->joints.count);
-			const double part = i + 1 < flights ? done : 1;
-			fly(w, share[i] * h, w->joints.step_begin + ((double)k + part) * h);
-		}
-		note_paths(w, h);
+	change_rows(w);
+}
+
+bool ob_joints_fly(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	const division d = divide(s);
+	begin_flights(s);
+	for (uint32_t k = 0; k < d.parts && !w->joints.failed && !ob_budget_spent(s); k++) {
+		if (w->joints.axes)
+			fly_with_axes(s, &d, k);
+		else
+			fly_part(s, &d, k, d.h);
+		note_paths(w, d.h);
 	}
-	w->time = step;
-	return ob_joints_substeps(s) <= n && !w->joints.failed;
+	w->time = s->settings->step_length;
+	return ob_joints_substeps(s) <= w->substeps && !w->joints.failed;
 }
 
 uint32_t ob_joints_substeps(const ob_solver *s)
@@ -264,6 +557,25 @@ uint32_t ob_joints_substeps(const ob_solver *s)
 
 // ---- among contacts
 
+static void disengage_axes(ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		w->joints.joint[i].along.softness = 0;
+		ob_axis_disengage(&w->joints.joint[i]);
+	}
+}
+
+// Finds the rows of all axes at the midpoint.
+static void begin_axes(ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		if (j->axis)
+			ob_axis_begin(j, ob_joint_axis_rate(j, w->v), w->h);
+	}
+	ob_joints_factor(w);
+}
+
 void ob_joints_begin(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
@@ -271,9 +583,11 @@ void ob_joints_begin(ob_solver *s)
 	if (!w->joints.count)
 		return;
 	update_poses(w);
+	if (w->joints.axes)
+		disengage_axes(w);
 	ob_joints_find(w, begin);
 	ob_joints_factor(w);
-	clear_targets(w);
+	set_targets(w);
 	ob_joints_solve(w, w->v); // impacts know no joints
 	for (uint32_t row = 1; row <= w->bodies; row++)
 		if (w->body[row].joints)
@@ -283,9 +597,14 @@ void ob_joints_begin(ob_solver *s)
 	clear_sums(w);
 	for (uint32_t i = 0; i < w->joints.count; i++) {
 		ob_held_joint *j = &w->joints.joint[i];
-		for (uint32_t r = 0; r < j->rows.rows; r++)
+		for (uint32_t r = 0; r < j->base; r++)
 			j->target[r] = -ob_joint_row_velocity(j, r, w->v);
 	}
+	if (w->joints.axes)
+		begin_axes(w);
 	ob_contacts_prepare(s);
 	ob_bodies_warm_start(s);
+	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++)
+		if (w->joints.joint[i].axis)
+			ob_joint_push_axis(&w->joints.joint[i], w->joints.joint[i].along.applied, w->dv);
 }

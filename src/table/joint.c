@@ -56,6 +56,11 @@ bool ob_joint_parts(const ob_universe *u, uint32_t a, uint32_t b)
 
 // ---- readers
 
+static bool axis_makes_sense(const ob_joint_axis *a)
+{
+	return a->low <= a->high && a->motor < OB_MOTORS && a->most >= 0 && isfinite(a->target);
+}
+
 uint32_t ob_universe_joints(const ob_universe *u)
 {
 	return u->step_data.joints;
@@ -79,6 +84,6 @@ bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passpo
 		if (!ob_universe_get_passport(u, out->object[side], &p) || p.generation != out->generation[side])
 			return false;
 	}
-	return out->kind < OB_JOINT_KINDS && pose_makes_sense(&out->frame[0]) && pose_makes_sense(&out->frame[1]) &&
-	       isfinite(out->length);
+	return out->kind < OB_JOINT_KINDS && axis_makes_sense(&out->axis) && pose_makes_sense(&out->frame[0]) &&
+	       pose_makes_sense(&out->frame[1]) && isfinite(out->length);
 }

@@ -469,6 +469,179 @@ static void test_kinds(void)
 	}
 }
 
+// ---- along axes
+
+// Lets something act along the axis of the last joint.
+static ob_joint_axis *drive(mechanism *m)
+{
+	ob_joint_passport *j = &m->joint[m->joints - 1];
+	j->flags |= OB_JOINT_DRIVEN;
+	j->axis = (ob_joint_axis){ .low = -INFINITY, .high = INFINITY };
+	return &j->axis;
+}
+
+// A ball of 2 kg on a slide along x.
+static mechanism *create_slide(void)
+{
+	mechanism *m = create(gravity);
+	add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 2, ob_v3(0, 0, 0));
+	join(m, OB_JOINT_SLIDER, 0, OB_JOINT_WORLD, ob_v3(0, 0, 0), (ob_quat){ M_SQRT1_2, 0, M_SQRT1_2, 0 });
+	return m;
+}
+
+static void steps(mechanism *m, int n)
+{
+	for (int i = 0; i < n; i++)
+		step(m);
+}
+
+// A pendulum falls on its limit: each hit takes 1 - e^2 of the energy above that of the limit, and in the end it rests.
+static void test_limit(void)
+{
+	const double at = 1.2, e = .5, rest = -gravity * cos(M_PI / 2 - at);
+	mechanism *m = create_pendulum(M_PI / 2);
+	ob_joint_axis *a = drive(m);
+	a->high = at, a->restitution = e;
+	double energy = energy_of(m);
+	for (int hits = 0; hits < 4;) {
+		step(m);
+		const double now = energy_of(m);
+		if (fabs(now - energy) < 1e-3 * (energy - rest))
+			continue;
+		CHECK_NEAR(now - rest, e * e * (energy - rest), 1e-7 * (energy - rest));
+		energy = now;
+		hits++;
+	}
+	steps(m, 300);
+	CHECK_NEAR(atan2(m->motion[0].p.x, -m->motion[0].p.z), M_PI / 2 - at, 1e-10);
+	CHECK(ob_norm(m->motion[0].w) < 1e-10);
+	destroy(m);
+}
+
+// A link between two limits that hits them while its neighbour rests on another one: nothing passes a limit.
+static void test_limits_of_links(void)
+{
+	mechanism *m = create(gravity);
+	for (uint32_t i = 0; i < 3; i++) {
+		add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(i + 1, 0, 0));
+		join(m, OB_JOINT_HINGE, i, i ? i - 1 : OB_JOINT_WORLD, ob_v3(i, 0, 0), y_axis);
+		ob_joint_axis *a = drive(m);
+		a->low = -.2, a->high = .3, a->restitution = .3;
+	}
+	const double begin = energy_of(m);
+	double last = begin;
+	for (int i = 0; i < 600; i++) {
+		step(m);
+		CHECK(energy_of(m) < last + 1e-7 * begin + 1e-6);
+		last = energy_of(m);
+	}
+	for (int i = 0; i < 3; i++)
+		CHECK_NEAR(2 * asin(m->motion[i].q.y), .3 * (i + 1), 1e-9);
+	destroy(m);
+}
+
+static void test_spring(void)
+{
+	const double k = 50, stretch = .3, rate = sqrt(k / 2);
+	mechanism *m = create_slide();
+	ob_joint_axis *a = drive(m);
+	a->stiffness = k, a->rest = stretch;
+	for (int i = 1; i <= 600; i++) {
+		step(m);
+		CHECK_NEAR(m->motion[0].p.x, stretch * (1 - cos(rate * i * step_length)), 1e-7);
+	}
+	destroy(m);
+}
+
+static void test_damped_spring(void)
+{
+	const double k = 50, c = 3, decay = c / 4, rate = sqrt(k / 2 - decay * decay);
+	mechanism *m = create_slide();
+	ob_joint_axis *a = drive(m);
+	a->stiffness = k, a->damping = c, a->rest = .3;
+	for (int i = 1; i <= 300; i++) {
+		const double t = i * step_length;
+		step(m);
+		CHECK_NEAR(m->motion[0].p.x, .3 - .3 * exp(-decay * t) * (cos(rate * t) + decay / rate * sin(rate * t)),
+			   1e-7);
+	}
+	destroy(m);
+}
+
+// A spring between two free bodies, along their distance.
+static void test_spring_between(void)
+{
+	mechanism *m = create(0);
+	add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(0, 0, 0));
+	add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 3, ob_v3(1.2, 0, 0));
+	ob_joint_passport *j = join(m, OB_JOINT_DISTANCE, 0, 1, ob_v3(0, 0, 0), ob_quat_identity());
+	j->frame[1].p = ob_v3(0, 0, 0), j->length = 1.2;
+	ob_joint_axis *a = drive(m);
+	a->stiffness = 30, a->rest = 1;
+	const double rate = sqrt(30 / .75);
+	for (int i = 1; i <= 300; i++) {
+		step(m);
+		CHECK_NEAR(m->motion[1].p.x - m->motion[0].p.x, 1 + .2 * cos(rate * i * step_length), 1e-7);
+	}
+	destroy(m);
+}
+
+// Dry friction stops a slide where it must, and then holds it.
+static void test_friction(void)
+{
+	mechanism *m = create_slide();
+	ob_joint_axis *a = drive(m);
+	a->friction = 3;
+	m->motion[0].v = ob_v3(2, 0, 0);
+	steps(m, 120);
+	CHECK_NEAR(m->motion[0].p.x, 2. * 2 / (2 * 3. / 2), 1e-9);
+	CHECK(ob_norm(m->motion[0].v) < 1e-12);
+	m->passport[0].force = ob_v3(2.9, 0, 0);
+	steps(m, 60);
+	CHECK_NEAR(m->motion[0].p.x, 4. / 3, 1e-9);
+	m->passport[0].force = ob_v3(-3.5, 0, 0);
+	steps(m, 60);
+	CHECK_NEAR(m->motion[0].p.x, 4. / 3 - .5 * .5 / 2, 1e-8);
+	destroy(m);
+}
+
+// The work of a motor is the energy gained: while its torque is all that it has, and while it holds a rate.
+static void test_motor(void)
+{
+	mechanism *m = create_pendulum(0);
+	ob_joint_axis *a = drive(m);
+	const double most = 12, begin = energy_of(m);
+	a->motor = OB_MOTOR_RATE, a->target = -20, a->most = most;
+	double turned = 0, last = 0;
+	for (int i = 0; i < 120; i++) {
+		step(m);
+		const double angle = atan2(m->motion[0].p.x, -m->motion[0].p.z);
+		turned += remainder(angle - last, 2 * M_PI);
+		last = angle;
+		if (m->motion[0].w.y > -20 + 1e-6)
+			CHECK_NEAR(energy_of(m) - begin, most * turned, 1e-6 * most * fabs(turned) + 1e-9);
+	}
+	CHECK(turned > 4 * M_PI);
+	steps(m, 300);
+	CHECK_NEAR(m->motion[0].w.y, -20, 1e-9); // it holds the rate
+	destroy(m);
+}
+
+// A motor pulls to a value against the weight; one that is too weak hangs where its force allows.
+static void test_servo(void)
+{
+	mechanism *m = create_pendulum(0);
+	ob_joint_axis *a = drive(m);
+	a->motor = OB_MOTOR_VALUE, a->target = -1, a->motor_stiffness = 1000, a->motor_damping = 60, a->most = INFINITY;
+	steps(m, 300);
+	const double angle = atan2(m->motion[0].p.x, -m->motion[0].p.z);
+	CHECK_NEAR(1000 * (1 - angle), gravity * sin(angle), 1e-6);
+	a->most = 5;
+	steps(m, 3000);
+	CHECK(fabs(atan2(m->motion[0].p.x, -m->motion[0].p.z)) < 1.2);
+	destroy(m);
+}
+
 int main(void)
 {
 	test_period();
@@ -481,5 +654,13 @@ int main(void)
 	test_double_pendulum();
 	test_loop();
 	test_kinds();
+	test_limit();
+	test_limits_of_links();
+	test_spring();
+	test_damped_spring();
+	test_spring_between();
+	test_friction();
+	test_motor();
+	test_servo();
 	return check_end();
 }
