@@ -5,6 +5,7 @@
 
 #include <limits.h>
 
+#include "fmu/archive.h"
 #include "scene/fields.h"
 #include "scene/random.h"
 #include "scene/scene.h"
@@ -55,6 +56,11 @@ typedef struct ob_builder {
 	char param[OB_SCENE_PARAMS_MAX][OB_NAME_MAX]; // names that the scene requested
 	uint32_t params;
 	uint32_t states_room;
+	uint32_t fmus; // files read:
+	struct {
+		char name[OB_NAME_MAX];
+		ob_fmu_file file;
+	} fmu[OB_SCENE_FMUS_MAX];
 	const char *path; // the scene's path, to find files of scripts; NULL: there are none
 	ob_random random;
 	bool random_used;
@@ -77,6 +83,13 @@ void ob_builder_find_file(lua_State *L, const ob_builder *b, const char *where, 
 uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ob_mesh_source *source);
 // Number of the script in an object's field `script`, which is added if it is new. Raises an error if it is invalid.
 uint32_t ob_builder_script(lua_State *L, ob_builder *b, const char *where, const char *script);
+// Adds a script, and takes ownership of its text, from malloc; NULL: no memory. Raises an error if there are too many.
+uint32_t ob_builder_add_script(lua_State *L, ob_builder *b, const char *where, const char *name, char *text,
+			       size_t size);
+// Number of the script for the fields `fmu`, `inputs` and `outputs` of the table at index 1, which is added if it is new.
+// The starts of its `parameters` become the object's state. Raises an error if one is invalid.
+uint32_t ob_builder_fmu(lua_State *L, ob_builder *b, const char *where, const char *name, uint32_t *state_at,
+			uint32_t *state_bytes);
 // Stores an object's state; returns its offset in the scene's states.
 uint32_t ob_builder_keep_state(lua_State *L, ob_builder *b, const unsigned char *bytes, uint32_t size);
 

@@ -115,7 +115,7 @@ enum { UNSAID = UINT32_MAX, DYNAMIC = 0, STATIC, KINEMATIC }; // UNSAID: not set
 
 // Fields of a call; NaN = not set.
 typedef struct body {
-	const char *name, *material, *script;
+	const char *name, *material, *script, *fmu;
 	ob_flat state; // the script's
 	ob_vec3 given[OB_SHAPE_KEYS]; // numbers of the shape's size; a single one is in x
 	ob_vec3 at, velocity, spin, force, normal, surface_velocity;
@@ -128,7 +128,7 @@ typedef struct body {
 	ob_points points;
 	const ob_hull *hull; // in the scene; NULL: another shape
 	float colour[4];
-	bool fixed, grid, path, varying_force;
+	bool fixed, grid, path, varying_force, inputs, outputs, parameters;
 	bool own_colour, own_surface; // set by the object or its material
 } body;
 
@@ -144,7 +144,9 @@ typedef struct body {
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), WITHIN(at, OB_PLACE_MOST), \
 		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
 		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
-		F(script, .kind = OB_FIELD_SOURCE, .high = OB_SCENE_SCRIPT_BYTES), F(state, .kind = OB_FIELD_FLAT)
+		F(script, .kind = OB_FIELD_SOURCE, .high = OB_SCENE_SCRIPT_BYTES), F(state, .kind = OB_FIELD_FLAT), \
+		F(fmu, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), F(inputs, .kind = OB_FIELD_TABLE), \
+		F(outputs, .kind = OB_FIELD_TABLE), F(parameters, .kind = OB_FIELD_TABLE)
 #define MOVING \
 	F(mass, .kind = OB_FIELD_NUMBER, .low = OB_MASS_LEAST, .high = OB_MASS_MOST), \
 		F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
@@ -304,6 +306,10 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 		ob_sandbox_fail(L, "%s.varying_force: expected none for a %s object", kind, named);
 	if (d->script && d->varying_force)
 		refuse_together(L, kind, "script", "varying_force");
+	if (d->fmu && (d->script || d->varying_force))
+		refuse_together(L, kind, "fmu", d->script ? "script" : "varying_force");
+	if (d->kind != DYNAMIC && d->fmu)
+		ob_sandbox_fail(L, "%s.fmu: expected none for a %s object", kind, named);
 	if (d->kind != KINEMATIC && d->path)
 		ob_sandbox_fail(L, "%s.path: expected kind = \"kinematic\" with it", kind);
 	if (d->path && ob_norm2(d->velocity) > 0)
@@ -386,6 +392,17 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 		take_hull_frame(b->scene, d->hull, o);
 	o->state.v = d->velocity;
 	o->state.w = d->spin;
+	if (!d->fmu && (d->inputs || d->outputs || d->parameters))
+		ob_sandbox_fail(L, "%s.%s: expected none where there is no fmu", kind,
+				d->inputs    ? "inputs"
+				: d->outputs ? "outputs"
+					     : "parameters");
+	if (d->fmu) {
+		uint32_t at, bytes;
+		const uint32_t script = ob_builder_fmu(L, b, kind, d->fmu, &at, &bytes);
+		o = &b->scene->object[b->scene->objects - 1];
+		o->script = script, o->state_at = at, o->state_bytes = bytes;
+	}
 	if (d->state.size && !d->script)
 		ob_sandbox_fail(L, "%s.state: expected none where there is no script", kind);
 	if (d->script) {

@@ -67,8 +67,8 @@ static void check_text(lua_State *L, const char *where, const ob_script_def *s)
 	lua_pop(L, 1);
 }
 
-// Takes ownership of text.
-static uint32_t add_script(lua_State *L, ob_builder *b, const char *where, const char *name, char *text)
+uint32_t ob_builder_add_script(lua_State *L, ob_builder *b, const char *where, const char *name, char *text,
+			       size_t size)
 {
 	ob_scene *s = b->scene;
 	ob_script_def *grown = s->scripts < SCRIPTS_MAX ? realloc(s->script, (s->scripts + 1) * sizeof *grown) : NULL;
@@ -80,10 +80,17 @@ static uint32_t add_script(lua_State *L, ob_builder *b, const char *where, const
 	}
 	s->script = grown;
 	ob_script_def *added = &s->script[s->scripts++];
-	*added = (ob_script_def){ .text = text, .size = (uint32_t)strlen(text) };
+	*added = (ob_script_def){ .text = text, .size = (uint32_t)size };
 	snprintf(added->name, sizeof added->name, "%s", name);
-	check_text(L, where, added);
 	return s->scripts;
+}
+
+// Takes ownership of text.
+static uint32_t add_script(lua_State *L, ob_builder *b, const char *where, const char *name, char *text)
+{
+	const uint32_t script = ob_builder_add_script(L, b, where, name, text, text ? strlen(text) : 0);
+	check_text(L, where, &b->scene->script[script - 1]);
+	return script;
 }
 
 static uint32_t find_script(const ob_scene *s, const char *name)

@@ -148,6 +148,8 @@ static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_
 		free(text);
 		ob_fail(e, "%s: no memory", path);
 	}
+	for (uint32_t i = 0; b && i < b->fmus; i++)
+		ob_fmu_finish(&b->fmu[i].file);
 	if (b)
 		free(b->hull_points);
 	free(b);

@@ -5,6 +5,7 @@
 #include <ob/joint.h>
 #include <ob/motion.h>
 
+#include "fmu/instance.h"
 #include "hull/hull.h"
 #include "mesh/mesh.h"
 #include "motion/force.h"
@@ -47,7 +48,7 @@ typedef struct ob_look_def {
 // A script of objects: its own file, or part of the scene.
 typedef struct ob_script_def {
 	char name[OB_NAME_MAX]; // for messages and lookup
-	char *text; // Lua, ends with a 0
+	char *text; // Lua, ends with a 0; or an FMU (ob_fmu_model), its library behind it
 	uint32_t size;
 } ob_script_def;
 
@@ -97,6 +98,8 @@ ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e
 ob_scene *ob_scene_load_text(const char *path, const char *text, size_t size, const ob_scene_options *o, ob_error *e);
 void ob_scene_free(ob_scene *s);
 
+// True if an object of the scene has an FMU.
+bool ob_scene_has_fmu(const ob_scene *s);
 // Thickness (m) of the thinnest object that moves; infinity: none does.
 double ob_scene_thinnest(const ob_scene *s);
 
@@ -105,6 +108,22 @@ bool ob_scene_read_colour(const char *text, float linear[4]);
 // Appends the value of a word, a number, true, false, or text, to the values of a message (scene/flat.h). false: no
 // room.
 bool ob_scene_put_value(const char *word, unsigned char *to, uint32_t *size, uint32_t room);
+
+// Quantities of its object that an FMU can be connected with (ob_fmu_port.quantity); SI units, world frame.
+typedef enum ob_fmu_quantity {
+	OB_FMU_POSITION = 0, // and two more for y, z; so for the next
+	OB_FMU_VELOCITY = 3,
+	OB_FMU_SPIN = 6,
+	OB_FMU_ATTITUDE = 9, // w, x, y, z
+	OB_FMU_MASS = 13,
+	OB_FMU_TIME,
+	OB_FMU_FORCE = 15, // from here on outputs
+	OB_FMU_TORQUE = 18,
+	OB_FMU_QUANTITIES = 21
+} ob_fmu_quantity;
+
+enum { OB_SCENE_FMUS_MAX = 16 }; // different files of a scene
+#define OB_SCENE_FMU_BYTES (16 << 20) // of one file
 
 #define OB_SCENE_SCRIPT_BYTES (256 << 10) // of one script
 #define OB_SCENE_ROOM_MAX 100000

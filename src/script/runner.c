@@ -248,20 +248,6 @@ static bool is_still_frozen(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 	return call_counted(r, p, 1, e);
 }
 
-// Removes the script's object: the host does, at once.
-static void leave(ob_script_runner *r)
-{
-	ob_script_cell *c = r->cell;
-	const ob_script_post post = { .kind = OB_SCRIPT_REMOVE,
-				      .object = r->turn->object,
-				      .generation = r->turn->generation };
-	if (c->outbox_bytes + sizeof post > OB_SCRIPT_OUTBOX_BYTES)
-		c->outbox_bytes = 0; // its last requests are lost
-	memcpy(c->outbox + c->outbox_bytes, &post, sizeof post);
-	c->outbox_bytes += (uint32_t)sizeof post;
-	c->asks |= OB_SCRIPT_ASKS_POST;
-}
-
 // Makes all due calls, in this order.
 static bool call_all(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 {
@@ -290,24 +276,19 @@ static bool call_all(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 		r->ended = false;
 		if (!call(r, p, OB_HANDLER_STOP, 0, e))
 			return false;
-		leave(r);
+		ob_script_leave(r);
 	}
 	return is_still_frozen(r, p, e);
 }
 
 static bool attempt(ob_script_runner *r, const ob_script_turn *turn, ob_error *e)
 {
-	ob_script_cell *c = r->cell;
 	ob_interpreter *p = interpreter_of(r, turn->script - 1);
 	if (*p->broken.text) {
 		*e = p->broken;
 		return false;
 	}
-	c->asks = 0;
-	c->outbox_bytes = 0;
-	c->force = ob_passport_of(r->u, turn->object)->force;
-	c->next_torque = c->torque;
-	c->push = c->twist = ob_v3(0, 0, 0);
+	ob_script_clear_requests(r, turn);
 	*p->self = (ob_flat_object){ turn->object, turn->generation };
 	r->ended = false;
 	r->warning = p->warning;
@@ -334,6 +315,8 @@ uint64_t ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c
 	ob_error e = { "" };
 	if (before.script > r->data->script_text->scripts || state_bytes > sizeof state)
 		return 0;
+	if (ob_script_is_foreign(r->data->script_text, before.script))
+		return ob_script_run_foreign(r, t, c);
 	memcpy(state, c->state, state_bytes);
 	r->cell = c;
 	r->step = ob_step_count(r->u);
@@ -356,11 +339,7 @@ uint64_t ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c
 		memcpy(c->state, state, state_bytes);
 		if (memory && again == 0)
 			continue;
-		t->flags |= OB_SCRIPT_STOPPED;
-		c->asks = OB_SCRIPT_ASKS_ERROR;
-		c->outbox_bytes = 0;
-		c->failed_step = (uint32_t)r->step;
-		snprintf(c->error, sizeof c->error, "%s", e.text);
+		ob_script_stop_turn(r, t, &e);
 		r->state.size = state_bytes;
 		break;
 	}
@@ -392,7 +371,9 @@ ob_script_runner *ob_script_runner_create(ob_universe *u)
 	const uint32_t scripts = data->script_text->scripts;
 	r->scene.scripts = scripts < OB_SCRIPTS_MAX ? scripts : OB_SCRIPTS_MAX;
 	for (uint32_t i = 0; i < r->scene.scripts; i++)
-		memcpy(names[i].name, data->script_text->text[i].name, sizeof names[i].name);
+		if (!ob_script_is_foreign(data->script_text, i + 1))
+			memcpy(names[i].name, data->script_text->text[i].name, sizeof names[i].name);
+	ob_script_open_foreign(r);
 	return r;
 }
 
@@ -401,7 +382,7 @@ void ob_script_runner_destroy(ob_script_runner *r)
 	if (!r)
 		return;
 	for (uint32_t i = 0; i < OB_SCRIPTS_MAX; i++)
-		close_interpreter(&r->interpreter[i]);
+		close_interpreter(&r->interpreter[i]), ob_fmu_close(r->fmu[i]);
 	free(r->scene.script);
 	free(r->scene.object);
 	free(r->scene.hull);

@@ -43,6 +43,7 @@ struct ob_script_runner {
 	const ob_step_data *data;
 	const ob_run_settings *settings;
 	ob_interpreter interpreter[OB_SCRIPTS_MAX];
+	ob_fmu *fmu[OB_SCRIPTS_MAX]; // loaded at once: a contained worker cannot do so later; NULL: broken
 	// Data of the running call; turn NULL: a text is being read.
 	ob_script_turn *turn;
 	ob_script_cell *cell;
@@ -52,6 +53,16 @@ struct ob_script_runner {
 	ob_error warning; // the first call without effect
 	bool ended; // it has requested its own removal
 };
+
+// Begins a turn without any request; stops a script for good; removes its object: the host does, at once.
+void ob_script_clear_requests(ob_script_runner *r, const ob_script_turn *turn);
+void ob_script_begin_turn(ob_script_runner *r, ob_script_turn *t, ob_script_cell *c);
+void ob_script_stop_turn(ob_script_runner *r, ob_script_turn *t, const ob_error *why);
+void ob_script_leave(ob_script_runner *r);
+
+// Loads the FMUs among the texts; runs the turn of an object that has one.
+void ob_script_open_foreign(ob_script_runner *r);
+uint64_t ob_script_run_foreign(ob_script_runner *r, ob_script_turn *t, ob_script_cell *c);
 
 // Notes, as "name:line: text", a call without effect; the first is kept.
 void ob_script_warn(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));

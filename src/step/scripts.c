@@ -44,8 +44,12 @@ static uint64_t run(ob_sim *s, uint32_t cell)
 static void run_share(ob_sim *s, uint32_t cell)
 {
 	enum { INSTRUCTIONS_PER_WORK = 4 };
-	ob_budget_begin_share(s, s->data->script_turn[cell].object);
+	const ob_script_turn *turn = &s->data->script_turn[cell];
+	ob_budget_begin_share(s, turn->object);
+	if (ob_script_is_foreign(s->data->script_text, turn->script))
+		ob_worker_enter_foreign(s->u, s->worker);
 	ob_budget_note(&s->solver, run(s, cell) / INSTRUCTIONS_PER_WORK);
+	ob_worker_set_object(s->u, s->worker, turn->object); // foreign code is over
 	ob_budget_spent(&s->solver);
 }
 

@@ -45,6 +45,13 @@ void ob_script_free_cell(ob_universe *u, uint32_t id)
 	data->script_of[id] = 0;
 }
 
+void ob_script_stop(ob_universe *u, uint32_t id)
+{
+	ob_step_data *data = &u->step_data;
+	if (ob_script_turn_of(u, id))
+		data->script_turn[data->script_of[id] - 1].flags |= OB_SCRIPT_STOPPED;
+}
+
 const ob_script_turn *ob_script_turn_of(const ob_universe *u, uint32_t id)
 {
 	const ob_step_data *data = &u->step_data;

@@ -89,6 +89,15 @@ typedef struct ob_script_directory {
 	} text[OB_SCRIPTS_MAX];
 } ob_script_directory;
 
+#define OB_SCRIPT_FOREIGN 0x7f // first byte of a text that is no Lua but an FMU (fmu/instance.h)
+
+// True if the script of this number, from 1, is foreign code.
+static inline bool ob_script_is_foreign(const ob_script_directory *d, uint32_t script)
+{
+	return script >= 1 && script <= OB_SCRIPTS_MAX && d->text[script - 1].size > 0 &&
+	       ((const char *)d)[d->text[script - 1].offset] == OB_SCRIPT_FOREIGN;
+}
+
 // Counts of the run so far, and of the phase in which scripts run.
 typedef struct ob_script_counts {
 	uint32_t cells; // one past the highest that was ever used

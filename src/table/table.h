@@ -85,6 +85,8 @@ bool ob_script_take_cell(ob_universe *u, uint32_t id, uint32_t script, const voi
 			 const uint64_t random[4]);
 // Frees the object's cell, if it has one.
 void ob_script_free_cell(ob_universe *u, uint32_t id);
+// Stops the script of an object for good, if it has one.
+void ob_script_stop(ob_universe *u, uint32_t id);
 // Puts a message of these values, without a sender, into the mail of the object's script. Returns false if it has none,
 // or no room for it. Call from the host, paused.
 bool ob_script_deliver(ob_universe *u, uint32_t id, const void *values, uint32_t bytes);
@@ -209,6 +211,9 @@ void ob_worker_set_objects(ob_universe *u, uint32_t worker, uint32_t objects);
 // the host, which must not trust it.
 #define OB_NO_OBJECT UINT32_MAX
 void ob_worker_set_object(ob_universe *u, uint32_t worker, uint32_t object);
+// Marks that the worker runs foreign code for that object, an FMU, which is to blame for its end; until the next object.
+void ob_worker_enter_foreign(ob_universe *u, uint32_t worker);
+bool ob_worker_is_in_foreign(const ob_universe *u, uint32_t worker);
 uint32_t ob_worker_object(const ob_universe *u, uint32_t worker);
 void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns);
 // The worker's own counters; the host reads them while the universe stands still.

@@ -10,7 +10,7 @@ import unittest
 
 import program
 
-OPTIONAL = r"lib(cairo|EGL|OpenGL|hdf5|Bullet|mujoco|websockets|tinygltf|jpeg)|obsim-\w+\.so"
+OPTIONAL = r"lib(cairo|EGL|OpenGL|hdf5|Bullet|mujoco|websockets|tinygltf|jpeg|zip)|obsim-\w+\.so"
 
 
 def mapped(pid):
