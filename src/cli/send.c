@@ -4,7 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
+#include "base/clock.h"
 #include "base/spelling.h"
 #include "cli/command.h"
 #include "host/ask.h"
@@ -263,6 +265,17 @@ static const struct verb *find_verb(const char *name, ob_error *e)
 	return NULL;
 }
 
+// A universe that starts has neither objects nor an address yet: waits until it runs, but not for ever.
+static void wait_for_start(const ob_universe *u)
+{
+	const double patience = 10, end = ob_clock_wall() + patience; // s
+	ob_universe_info info;
+	do {
+		ob_universe_get_info(u, &info);
+	} while (info.state == OB_UNIVERSE_STARTING && ob_universe_is_hosted(u) && ob_clock_wall() < end &&
+		 nanosleep(&(struct timespec){ .tv_nsec = 1000000 }, NULL) == 0);
+}
+
 int ob_command_send(const ob_arguments *a)
 {
 	ob_error e;
@@ -278,6 +291,8 @@ int ob_command_send(const ob_arguments *a)
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	sending s = { .universe = a->operand, .word = a->operands + 2 };
 	s.u = ob_universe_attach(s.universe, &e);
+	if (s.u)
+		wait_for_start(s.u);
 	const bool fine = s.u && v->send(&s, &e);
 	ob_universe_detach(s.u);
 	return fine ? OB_EXIT_OK : ob_command_fail(OB_EXIT_FAILED, e.text);

@@ -129,4 +129,18 @@ class Send(program.Case):
 		self.assertIsNone(self.run_.poll())
 
 
+class Starting(program.Case):
+	def test_sent_while_it_starts(self):
+		"""A universe that has its name but no objects yet gets the request once it runs."""
+		scene = self.path("many.lua")
+		with open(scene, "w") as f:
+			f.write("for i = 1, 3000 do sphere { radius = .1, at = { i, 0, 0 } } end\nscene { gravity = { 0, 0, 0 } }\n")
+		for _ in range(3):
+			run = self.start_universe(scene, "--pace", "realtime", "--duration", program.FOR_EVER, "--workers", "2")
+			done = program.call("send", self.name, "colour", "sphere#2999", "#ffd700")
+			self.assertEqual(done.returncode, 0, done.stderr)
+			run.terminate()
+			run.wait(program.PATIENCE)
+
+
 unittest.main()
