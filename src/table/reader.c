@@ -278,9 +278,10 @@ size_t ob_universe_get_states(const ob_universe *u, const ob_state_arrays *out, 
 	ob_passport p;
 	ob_motion m;
 	size_t n = 0;
+	const bool whole = out->generation || out->attitude || out->angular_velocity; // else the motion is enough
 	ob_universe_get_info(u, &info);
 	for (uint32_t id = 0; id < info.capacity; id++) {
-		if (!ob_universe_get_motion(u, id, &m) || !ob_universe_get_passport(u, id, &p))
+		if (!ob_universe_get_motion(u, id, &m) || (whole && !ob_universe_get_passport(u, id, &p)))
 			continue;
 		p.id = id;
 		if (n < max)
