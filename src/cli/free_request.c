@@ -9,7 +9,6 @@
 #include "free/schedule.h"
 
 static const double steps_of_lag = 2; // bound of the lag where the clock gives none, in steps of a simulator
-static const double rate_most = 1e5; // Hz
 
 static bool read_max_lag(ob_run_request *r, const char *text, ob_error *e)
 {
@@ -69,7 +68,8 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	if (coupling && !ob_setting_find(OB_COUPLING_NAMES, coupling, &r->free.coupling))
 		return ob_fail(e, "--coupling %s: expected one of %s", coupling, OB_COUPLING_NAMES);
 	return check_replay(a, e) &&
-	       ob_number_real("update-rate", a->value[OB_OPTION_UPDATE_RATE], 0, rate_most, &r->free.update_rate, e) &&
+	       ob_number_real("update-rate", a->value[OB_OPTION_UPDATE_RATE], 0, OB_UPDATE_RATE_MOST,
+			      &r->free.update_rate, e) &&
 	       read_max_lag(r, a->value[OB_OPTION_MAX_LAG], e) &&
 	       (!a->value[OB_OPTION_JITTER] || strcmp(a->value[OB_OPTION_JITTER], "0") == 0 ||
 		ob_number_real("jitter", a->value[OB_OPTION_JITTER], 0, .9, &r->free.jitter, e)) &&
@@ -143,6 +143,9 @@ bool ob_free_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)
 		return false;
 	if (isnan(f->update_rate))
 		f->update_rate = s->free.update_rate > 0 ? s->free.update_rate : 1 / r->run.step_length;
+	f->rate_most = f->update_rate;
+	for (uint32_t i = 0; i < s->objects; i++)
+		f->rate_most = fmax(f->rate_most, s->object[i].update_rate);
 	if (f->coupling == UINT32_MAX)
 		f->coupling = s->free.coupling;
 	if (isnan(f->max_lag) && s->free.max_lag > 0)

@@ -11,18 +11,26 @@
 #include "free/view.h"
 #include "motion/flight.h"
 
-static const double window_seconds = 2; // simulators may be ahead of the common time by so much, unless memory is short
+static const double window_seconds =
+	1.25; // simulators may be ahead of the common time by so much, unless memory is short
 static const double instant = 1e-9; // s: times closer than this are the same
 static const uint64_t history_bytes = 512 << 20; // B, all versions together
+
+// Versions in a second, Hz, that a simulator may publish.
+static double most_rate(const ob_free_settings *f, double step)
+{
+	return OB_FREE_SHORTEST * f->rate_most * (1 + f->jitter) + 1 / step;
+}
 
 void ob_free_plan_depths(const ob_free_settings *f, double step, uint32_t capacity, uint32_t *history,
 			 uint32_t *ledgers)
 {
 	enum { LEAST = 8, MOST = 1 << 15 };
-	const double rate = f->update_rate * (1 + f->jitter) + 1 / step, lag = isinf(f->max_lag) ? 0 : f->max_lag,
+	const double rate = most_rate(f, step), lag = isinf(f->max_lag) ? 0 : f->max_lag,
 		     fits = (double)history_bytes / ((double)capacity * sizeof(ob_motion)),
-		     least = LEAST + ceil(rate * (f->delay + lag + 2 * step)),
-		     depth = ob_max(least, ob_min(fits, ceil(rate * (window_seconds + f->delay + lag))));
+		     least = LEAST + ceil(rate * (f->delay + lag + 4 * step)),
+		     window = ob_free_lead(f, step) > 0 ? 0 : window_seconds,
+		     depth = ob_max(least, ob_min(fits, ceil(rate * (window + f->delay + lag))));
 	*history = (uint32_t)ob_min(MOST, depth);
 	// a ledger is read as of the newest version, unless publications are delayed
 	*ledgers = f->coupling == OB_COUPLING_LEDGER ? 2 + (uint32_t)ob_min(*history - 2, ceil(rate * f->delay)) : 0;
@@ -32,7 +40,7 @@ uint64_t ob_free_window(const ob_universe *u)
 {
 	enum { SLACK = 4, BOUNDED = 2 };
 	const ob_free_settings *f = ob_free_settings_of(u);
-	const double step = ob_universe_settings(u)->step_length, rate = f->update_rate * (1 + f->jitter) + 1 / step,
+	const double step = ob_universe_settings(u)->step_length, rate = most_rate(f, step),
 		     steps = floor((ob_free_depth(u) - SLACK) / (rate * step)) - 1;
 	if (ob_free_lead(f, step) > 0 && steps > BOUNDED)
 		return BOUNDED;

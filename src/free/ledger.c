@@ -127,6 +127,7 @@ bool ob_ledger_receive(ob_free_sim *s, const ob_free_scratch *x, const ob_free_n
 	}
 	memcpy(own->rate, in.rate, sizeof own->rate);
 	own->closed = in.closed;
+	s->step = ob_min(s->step, head.step);
 	return true;
 }
 
@@ -156,6 +157,7 @@ bool ob_ledger_look(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neig
 	// several that correct the same body, each by what it saw long ago, would correct it too far
 	const uint32_t others = x->free->delay > 0 ? head.solvers - (seen->known && !theirs->closed) : 0;
 	seen->share = 1. / (1 + (others < OB_LEDGER_ACCOUNTS ? others : 0));
+	seen->step = head.step;
 	seen->torque = ob_madd(ob_scale(part(theirs->rate, TWIST), -1), seen->share, part(head.torque, 0));
 	seen->now = ob_motion_at(&seen->motion, p->inertia, s->time);
 	if (!own)

@@ -10,11 +10,24 @@
 static const double cover_steps = 8, cover_least = .02; // steps, and s, for which a fat AABB is meant to last
 static const double margin_share = .1, margin_most = .05; // of the radius; m: margin of a fat AABB
 
-// Box that holds the object from some seconds before its own time, as it flies now, until some seconds afterwards.
-static void swept_box(const ob_free_sim *s, double before, double after, double margin, double box[6])
+// The motion from the simulator's time on.
+static ob_motion motion_now(const ob_free_sim *s)
 {
-	const double back[3] = { -s->motion.v.x * before, -s->motion.v.y * before, -s->motion.v.z * before };
-	ob_motion_swept_bounds(&s->motion, (ob_shape)s->passport.shape, s->passport.size, after, box);
+	ob_motion m = s->motion;
+	if (s->time <= m.t0)
+		return m;
+	const ob_state now = ob_motion_at(&m, s->passport.inertia, s->time);
+	m.p = now.pose.p, m.q = now.pose.q, m.v = now.v, m.w = now.w;
+	m.t0 = s->time;
+	return m;
+}
+
+// Box that holds the object from some seconds before its own time, as it flies now, until some seconds afterwards.
+static void swept_box(const ob_free_sim *s, const ob_motion *m, double before, double after, double margin,
+		      double box[6])
+{
+	const double back[3] = { -m->v.x * before, -m->v.y * before, -m->v.z * before };
+	ob_motion_swept_bounds(m, (ob_shape)s->passport.shape, s->passport.size, after, box);
 	for (int c = 0; c < 3; c++) {
 		box[c] += ob_min(0, back[c]) - margin;
 		box[3 + c] += ob_max(0, back[c]) + margin;
@@ -24,21 +37,27 @@ static void swept_box(const ob_free_sim *s, double before, double after, double 
 // Publishes a new fat AABB if the coming step may leave the present one. true: it did.
 static bool renew_bounds(ob_free_sim *s, ob_free_scratch *x, double h)
 {
+	if (s->flies && s->time + h <= s->covered)
+		return false;
 	const double radius = ob_shape_radius((ob_shape)s->passport.shape, s->passport.size),
 		     margin = ob_min(margin_most, margin_share * radius), lead = ob_free_lead(x->free, x->boundary);
 	double box[6];
 	bool fits = s->bounded;
-	swept_box(s, lead, lead + h, margin / 2, box);
+	const ob_motion now = motion_now(s);
+	swept_box(s, &now, lead, lead + h, margin / 2, box);
 	for (int c = 0; c < 3; c++)
 		fits &= box[c] >= (double)s->bounds[c] && box[3 + c] <= (double)s->bounds[3 + c];
-	if (fits)
+	if (fits) {
+		s->covered = s->time + h;
 		return false;
-	swept_box(s, lead, lead + ob_max(cover_steps * h, cover_least), margin, box);
+	}
+	swept_box(s, &now, lead, lead + ob_max(cover_steps * h, cover_least), margin, box);
 	for (int c = 0; c < 3; c++) {
 		s->bounds[c] = nextafterf((float)box[c], -FLT_MAX);
 		s->bounds[3 + c] = nextafterf((float)box[3 + c], FLT_MAX);
 	}
 	s->bounded = true;
+	s->covered = s->time + ob_max(cover_steps * h, cover_least);
 	ob_free_publish_bounds(x->u, s->id, s->bounds);
 	return true;
 }

@@ -28,8 +28,10 @@ bool ob_free_sim_begin(ob_free_sim *s, const ob_universe *u, uint32_t id)
 	if (ob_free_settings_of(u)->coupling == OB_COUPLING_LEDGER)
 		s->present = ob_free_read_ledger(u, id, &s->motion, &s->ledger);
 	ob_free_get_counts(u, id, &s->counts);
+	s->rate = ob_free_rate(u, id);
+	s->step = INFINITY;
 	s->anew = true;
-	s->time = s->base = s->motion.t0;
+	s->time = s->base = ob_max(s->motion.t0, ob_free_time(u, id));
 	s->random = ob_free_settings_of(u)->seed + 0x632be59bd9b4e019u * (1 + id) + s->counts.updates;
 	return true;
 }
@@ -40,27 +42,64 @@ void ob_free_sim_finish(ob_free_sim *s)
 	free(s->neighbour);
 }
 
+// Length (s) of the next step.
+static double length_of(const ob_free_sim *s)
+{
+	const double usual = 1 / s->rate;
+	return ob_max(usual / OB_FREE_SHORTEST, ob_min(usual, s->step));
+}
+
 // A step ends at the host's boundary if it would end within half a step of it, or beyond.
 double ob_free_sim_next(const ob_free_sim *s, const ob_free_scratch *x)
 {
-	const double h = 1 / x->free->update_rate, until = ob_free_until(x->u) * x->boundary;
+	const double h = length_of(s), until = ob_free_until(x->u) * x->boundary;
 	uint64_t random = s->random;
-	double next = s->base + (double)(s->since_base + 1) * h;
-	if (x->free->jitter > 0)
+	double next = s->base + (double)(s->since_base + 1) / s->rate;
+	if (x->free->jitter > 0 || h < 1 / s->rate)
 		next = s->time + h * (1 + x->free->jitter * ob_splitmix_within(&random, -1, 1));
 	return until - next < h / 2 ? until : next;
 }
 
 // Notes the end of a step that began with this plan.
-static void advance_time(ob_free_sim *s, const ob_free_scratch *x, double next)
+static void advance_time(ob_free_sim *s, double next)
 {
-	const bool planned = next == s->base + (double)(s->since_base + 1) / x->free->update_rate;
+	const bool planned = next == s->base + (double)(s->since_base + 1) / s->rate;
 	ob_splitmix(&s->random);
 	s->time = next;
 	if (planned)
 		s->since_base++;
 	else
 		s->base = next, s->since_base = 0;
+}
+
+// As many substeps in a second as the run has at its own rate.
+static uint32_t substeps_of(const ob_free_sim *s, const ob_free_scratch *x)
+{
+	const double n = rint(x->substeps * x->free->update_rate / s->rate);
+	return n > 1 ? (uint32_t)ob_min(n, OB_MAX_SUBSTEPS) : 1;
+}
+
+// True if the object flies on until `next` as published, and so do all that are near.
+static bool flies_on(const ob_free_sim *s, const ob_free_scratch *x, double next)
+{
+	bool flies = s->flies && next <= s->covered;
+	for (uint32_t i = 0; flies && i < s->neighbours; i++) {
+		const ob_free_neighbour *n = &s->neighbour[i];
+		flies = next <= n->apart &&
+			(n->kind != OB_FREE_SIMULATED || ob_free_version(x->u, n->id) == n->version);
+	}
+	return flies;
+}
+
+// Publishes the state at the simulator's time, up to which it has flown.
+static void end_flight(ob_free_sim *s, ob_free_scratch *x)
+{
+	ob_motion *m = &s->motion;
+	const ob_state now = ob_motion_at(m, s->passport.inertia, s->time);
+	m->path += ob_norm(now.v) * (s->time - m->t0);
+	m->p = now.pose.p, m->q = now.pose.q, m->v = now.v, m->w = now.w;
+	m->t0 = s->time;
+	ob_free_publish(x->u, s->id, m, x->free->coupling == OB_COUPLING_LEDGER ? &s->ledger : NULL);
 }
 
 bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
@@ -70,13 +109,24 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 	const double next = replays ? planned.end : ob_free_sim_next(s, x), h = next - s->time;
 	x->sim = s;
 	x->run.step_length = h;
+	x->run.substeps = substeps_of(s, x);
 	const uint64_t version = ob_universe_get_passport_version(x->u, s->id);
 	if (version != s->passport_version) {
+		s->flies = false;
 		ob_universe_get_passport(x->u, s->id, &s->passport);
 		s->hull = ob_hull_of(x->u, &s->passport);
 		s->passport_version = version;
 	}
 	ob_free_neighbours_update(s, x, h);
+	if (!x->schedule && flies_on(s, x, next)) {
+		s->counts.updates++;
+		ob_free_advance(x->u, s->id, next);
+		advance_time(s, next);
+		ob_free_put_counts(x->u, s->id, &s->counts);
+		return true;
+	}
+	if (s->time > s->motion.t0)
+		end_flight(s, x);
 	ob_motion m;
 	ob_free_view_step(s, x, h, &m);
 	m.t0 = next;
@@ -90,11 +140,12 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 		return false;
 	}
 	s->motion = m;
+	s->flies = m.flags & OB_MOTION_FREE && x->near == 0;
 	const ob_ledger *ledger = x->free->coupling == OB_COUPLING_LEDGER ? &s->ledger : NULL;
 	ob_free_schedule_put(x->schedule, x->u, s->id, &m, ledger, s->anew);
 	s->anew = false;
 	ob_free_publish(x->u, s->id, &m, ledger);
-	advance_time(s, x, next);
+	advance_time(s, next);
 	ob_free_put_counts(x->u, s->id, &s->counts);
 	return true;
 }

@@ -28,6 +28,8 @@ typedef struct ob_free_neighbour {
 	const ob_hull *hull;
 	ob_found_contact contact; // in the last step; kept == 0: none
 	ob_vec3 load, twist; // N, N m: the contact's in the last step; with a ledger
+	uint64_t version; // the motion's, in the last step
+	double apart; // s, own time until which the two cannot touch, if it flies on as that version says
 	double bound; // s that the simulator may be ahead of it, as far as contact is concerned
 } ob_free_neighbour;
 
@@ -41,6 +43,7 @@ typedef struct ob_free_seen {
 	ob_account account;
 	bool known;
 	ob_vec3 torque;
+	double step; // s, as its ledger's
 	double share; // the island has so much of its mass: it is shared among all that solve its contacts
 } ob_free_seen;
 
@@ -49,6 +52,8 @@ typedef struct ob_free_sim {
 	bool present, failed;
 	bool anew; // it has not stepped since it began
 	double time; // s, own
+	double rate; // Hz, of its steps
+	double step; // s: longest that the next one should have, by what happens to it and to those that it touches
 	double base; // s: steps are counted from here, so that their lengths do not add up rounding
 	uint64_t since_base;
 	uint64_t random; // of the jitter
@@ -58,6 +63,8 @@ typedef struct ob_free_sim {
 	const ob_hull *hull;
 	float bounds[6]; // as published
 	bool bounded; // they are
+	double covered; // s, own time until which they hold a flight that goes on
+	bool flies; // it touches nothing and has no mail: until something near changes, the newest version holds
 	uint32_t *group; // [ob_free_groups] counters at the last look
 	ob_free_neighbour *neighbour;
 	uint32_t neighbours, neighbours_max;
@@ -76,6 +83,7 @@ typedef struct ob_free_scratch {
 	ob_free_schedule *schedule; // NULL: none
 	ob_run_settings run; // the island solver's: its step is the running simulator's
 	double boundary; // s, between boundaries of the host
+	uint32_t substeps; // each step's, at the run's rate
 	ob_solver solver;
 	ob_free_sim *sim; // running
 	ob_island_object *object;
@@ -89,6 +97,8 @@ typedef struct ob_free_scratch {
 	bool flew; // it touched nothing
 	bool failed;
 } ob_free_scratch;
+
+enum { OB_FREE_SHORTEST = 8 }; // the shortest step of a simulator is so small a part of the usual one
 
 // Longest time, s, by which a simulator may be ahead of any other where the lag is bounded and there is no clock; else 0.
 static inline double ob_free_lead(const ob_free_settings *f, double step)

@@ -57,6 +57,7 @@ bool ob_free_scratch_begin(ob_free_scratch *x, ob_universe *u)
 	x->free = ob_free_settings_of(u);
 	x->run = *ob_universe_settings(u);
 	x->boundary = x->run.step_length;
+	x->substeps = x->run.substeps;
 	x->run.sleeping = 0;
 	x->run.solver = OB_SOLVER_COLOURED;
 	const ob_island_calls calls = { .with = x,
@@ -135,7 +136,9 @@ static bool read_neighbour(ob_free_sim *s, ob_free_scratch *x, const ob_free_nei
 							     x->free->delay > 0 ? NULL : &next);
 	if (!out->version)
 		return false;
-	count_reading(s, asked, out->motion.t0);
+	// a flight is as new as the time that its simulator has reached
+	const bool flies = out->motion.flags & OB_MOTION_FREE;
+	count_reading(s, asked, ob_max(out->motion.t0, flies ? ob_min(asked, ob_free_time(x->u, n->id)) : 0));
 	if (!has_ledger(x))
 		out->now = ob_free_state_at(&out->motion, &next, n->passport.inertia, s->time);
 	return true;
@@ -285,20 +288,27 @@ static void fly(const ob_free_sim *s, const ob_free_scratch *x, double h, const 
 // Reads all neighbours, and lists those that the object may touch in a step of length h (s).
 static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double h)
 {
+	const ob_vec3 outer = ob_external_acceleration(&x->run, &s->passport);
 	x->near = 0;
 	for (uint32_t i = 0; i < s->neighbours; i++) {
 		ob_free_neighbour *n = &s->neighbour[i];
 		ob_free_seen *seen = &x->seen[x->near];
 		seen->neighbour = i;
 		n->bound = 0;
+		n->apart = INFINITY;
 		if (has_ledger(x) && n->kind == OB_FREE_SIMULATED && n->id < s->id)
 			continue; // it solves their contact
-		if (read_neighbour(s, x, n, seen) && may_touch(s, x, n, own, &seen->now, h)) {
+		n->apart = 0;
+		const bool seen_now = read_neighbour(s, x, n, seen);
+		n->version = seen_now ? seen->version : 0;
+		if (seen_now && may_touch(s, x, n, own, &seen->now, h)) {
 			x->near++;
 			continue;
 		}
 		n->contact.kept = 0;
 		n->bound = ob_free_lag_apart(s, n, &seen->now);
+		if (seen_now && (n->kind == OB_FREE_SIMULATED || n->passport.flags & OB_OBJECT_STATIC))
+			n->apart = ob_free_apart(s, n, &seen->now, ob_norm(ob_sub(outer, seen->motion.a)));
 	}
 }
 
@@ -307,8 +317,10 @@ static void receive(ob_free_sim *s, const ob_free_scratch *x, double h, ob_state
 {
 	ob_ledger_begin(s);
 	for (uint32_t i = 0; i < s->neighbours && s->neighbour[i].id < s->id; i++)
-		if (s->neighbour[i].kind == OB_FREE_SIMULATED)
+		if (s->neighbour[i].kind == OB_FREE_SIMULATED) {
+			s->neighbour[i].version = ob_free_version(x->u, s->neighbour[i].id);
 			ob_ledger_receive(s, x, &s->neighbour[i], h);
+		}
 	ob_ledger_shift(s, own);
 }
 
@@ -329,10 +341,36 @@ static void deposit(ob_free_sim *s, ob_free_scratch *x, double h)
 	}
 }
 
+static double thickness_of(const ob_passport *p)
+{
+	return ob_shape_thickness((ob_shape)p->shape, p->size);
+}
+
+// Longest that the next step should be, s. Bodies that hit each other learn of it a step late, and a light one between
+// two heavy ones passes on little in each step: shorter steps keep them apart. own: state at the step's begin; out: at
+// its end.
+static double step_for(const ob_free_sim *s, const ob_free_scratch *x, const ob_state *own, double h,
+		       const ob_motion *out)
+{
+	static const double way = .002; // of the thickness: relative motion in a step
+	const ob_vec3 outer = ob_external_acceleration(&x->run, &s->passport);
+	const double thickness = thickness_of(&s->passport);
+	double step = way * thickness / ob_norm(ob_sub(out->v, ob_madd(own->v, h, outer)));
+	for (uint32_t i = 0; i < x->near; i++) {
+		const ob_free_seen *seen = &x->seen[i];
+		const ob_free_neighbour *n = &s->neighbour[seen->neighbour];
+		if (n->kind == OB_FREE_SIMULATED)
+			step = ob_min(step, way * ob_min(thickness, thickness_of(&n->passport)) /
+						    ob_norm(ob_sub(out->v, seen->now.v)));
+	}
+	return step;
+}
+
 void ob_free_view_step(ob_free_sim *s, ob_free_scratch *x, double h, ob_motion *out)
 {
 	ob_state own = { { s->motion.p, s->motion.q }, s->motion.v, s->motion.w };
 	reserve(x, s->neighbours + 2);
+	s->step = INFINITY;
 	if (has_ledger(x))
 		receive(s, x, h, &own);
 	look(s, x, &own, h);
@@ -346,6 +384,13 @@ void ob_free_view_step(ob_free_sim *s, ob_free_scratch *x, double h, ob_motion *
 		fly(s, x, h, &own, out);
 	else
 		*out = x->end;
+	const double touching = s->step;
+	s->step = step_for(s, x, &own, h, out);
+	s->ledger.head.step = s->step;
+	for (uint32_t i = 0; has_ledger(x) && i < x->near; i++)
+		if (s->neighbour[x->seen[i].neighbour].kind == OB_FREE_SIMULATED)
+			s->step = ob_min(s->step, x->seen[i].step);
+	s->step = ob_min(s->step, touching);
 	if (has_ledger(x)) {
 		deposit(s, x, h);
 		ob_ledger_end(s, x, &own, h, out);

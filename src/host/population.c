@@ -198,6 +198,8 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	pass.inertia = inertia_of(p, &pass);
 	ob_write_passport(p->u, id, &pass);
 	ob_sim_place(p->u, id, &def->state);
+	if (ob_free_settings_of(p->u))
+		ob_free_set_rate(p->u, id, def->update_rate);
 	p->slots[id].use = SLOT_PRESENT;
 	p->slots[id].created = false;
 	p->slots[id].origin = 0;

@@ -22,6 +22,7 @@ typedef struct ob_material {
 	double friction, restitution; // NaN, also in colour[0]: not set
 	double roughness, metal;
 	double density; // kg/m^3
+	double update_rate; // Hz
 	float colour[4];
 } ob_material;
 

@@ -24,6 +24,8 @@ static const ob_field material_fields[] = {
 	OB_FIELD(ob_material, density, .name = "density", .kind = OB_FIELD_NUMBER, .low = 0, .above = true,
 		 .high = 1e9),
 	OB_FIELD(ob_material, colour, .name = "colour", .kind = OB_FIELD_COLOUR),
+	OB_FIELD(ob_material, update_rate, .name = "update_rate", .kind = OB_FIELD_NUMBER, .low = 0, .above = true,
+		 .high = OB_UPDATE_RATE_MOST),
 	OB_FIELD(ob_material, roughness, .name = "roughness", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
 	OB_FIELD(ob_material, metal, .name = "metal", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
 };
@@ -32,6 +34,7 @@ static const ob_material not_given = {
 	.friction = NAN,
 	.restitution = NAN,
 	.density = NAN,
+	.update_rate = NAN,
 	.colour = { NAN },
 	.roughness = NAN,
 	.metal = NAN,
@@ -120,7 +123,7 @@ typedef struct body {
 	ob_vec3 given[OB_SHAPE_KEYS]; // numbers of the shape's size; a single one is in x
 	ob_vec3 at, velocity, spin, force, normal, surface_velocity;
 	uint32_t kind;
-	double height, mass, density, friction, restitution, roughness, metal, born, dies;
+	double height, mass, density, friction, restitution, roughness, metal, born, dies, update_rate;
 	ob_quat q, rotation, mesh_rotation;
 	const char *mesh;
 	ob_vec3 mesh_at;
@@ -150,6 +153,7 @@ typedef struct body {
 #define MOVING \
 	F(mass, .kind = OB_FIELD_NUMBER, .low = OB_MASS_LEAST, .high = OB_MASS_MOST), \
 		F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
+		F(update_rate, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = OB_UPDATE_RATE_MOST), \
 		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
 		WITHIN(velocity, OB_SPEED_MOST), WITHIN(spin, OB_SPIN_MOST), WITHIN(force, OB_FORCE_MOST), \
 		F(kind, .kind = OB_FIELD_CHOICE, .choices = "dynamic|static|kinematic"), \
@@ -177,6 +181,7 @@ static const body nothing = {
 	.kind = UNSAID,
 	.mass = NAN,
 	.density = NAN,
+	.update_rate = NAN,
 	.friction = NAN,
 	.restitution = NAN,
 	.roughness = NAN,
@@ -265,6 +270,8 @@ static void apply_material(lua_State *L, const ob_builder *b, const char *kind, 
 		d->restitution = isnan(m->restitution) ? 0 : m->restitution;
 	if (isnan(d->density) && isnan(d->mass))
 		d->density = isnan(m->density) ? DENSITY : m->density;
+	if (isnan(d->update_rate))
+		d->update_rate = isnan(m->update_rate) ? 0 : m->update_rate;
 	d->own_surface = !isnan(d->roughness) || !isnan(d->metal) || !isnan(m->roughness) || !isnan(m->metal);
 	if (isnan(d->roughness))
 		d->roughness = isnan(m->roughness) ? usual_finish.roughness : m->roughness;
@@ -293,6 +300,8 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 	const char *named = d->kind == STATIC ? "static" : "kinematic";
 	if (d->kind != DYNAMIC && !isnan(d->mass))
 		ob_sandbox_fail(L, "%s.mass: expected none for a %s object, got %.10g", kind, named, d->mass);
+	if (d->kind != DYNAMIC && !isnan(d->update_rate))
+		ob_sandbox_fail(L, "%s.update_rate: expected none for a %s object, which has no steps", kind, named);
 	const struct {
 		const char *name;
 		ob_vec3 value;
@@ -412,6 +421,7 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 		o->script = script;
 		o->state_at = at, o->state_bytes = d->state.size;
 	}
+	o->update_rate = d->kind == DYNAMIC ? d->update_rate : 0;
 	o->born = d->born;
 	o->dies = d->dies;
 	if (d->path) {

@@ -27,7 +27,7 @@ static const ob_field own_fields[] = {
 	F(seed, .kind = OB_FIELD_WHOLE, .low = 0, .high = 0x1p53),
 	F(sync, .kind = OB_FIELD_CHOICE, .choices = OB_SYNC_NAMES),
 	F(coupling, .kind = OB_FIELD_CHOICE, .choices = OB_COUPLING_NAMES),
-	F(update_rate, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e5),
+	F(update_rate, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = OB_UPDATE_RATE_MOST),
 	F(max_lag, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e3),
 };
 #undef F

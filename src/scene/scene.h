@@ -24,6 +24,7 @@ typedef struct ob_object_def {
 	uint32_t state_at, state_bytes; // its script's initial state (scene/flat.h), in ob_scene.states
 	ob_path *path; // motion of a kinematic one; NULL: its initial motion continues. Owned by the scene
 	ob_force *force; // time-dependent force, beside the passport's; NULL: none. Owned like path
+	double update_rate; // Hz, of its simulator in a free run; 0: the run's
 	double born, dies; // s; born = 0 and dies = infinity: always present
 } ob_object_def;
 

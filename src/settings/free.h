@@ -12,9 +12,12 @@ typedef enum ob_coupling {
 #define OB_COUPLING_NAMES "own|ledger"
 #define OB_SYNC_NAMES "lockstep|free"
 
+#define OB_UPDATE_RATE_MOST 1e5 // Hz
+
 // They lie in the table: a fixed size, no pointers.
 typedef struct ob_free_settings {
-	double update_rate; // Hz; 0: the run is in lockstep
+	double update_rate; // Hz, of objects without one of their own; 0: the run is in lockstep
+	double rate_most; // Hz, of any object
 	double max_lag; // s that a simulator may be ahead of a neighbour; infinity: no bound
 	double jitter; // 0 .. 1: share by which lengths of steps vary
 	double delay; // s of own time after which a publication is seen

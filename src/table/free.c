@@ -102,17 +102,11 @@ uint64_t ob_free_read(const ob_universe *u, uint32_t id, double t, ob_motion *ou
 	return 0;
 }
 
-void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_ledger *ledger)
+void ob_free_advance(ob_universe *u, uint32_t id, double t)
 {
 	ob_free_cell *c = cell_of(u, id);
-	const uint64_t next = __atomic_load_n(&c->version, __ATOMIC_ACQUIRE) + 1;
 	uint64_t time;
-	memcpy(&time, &m->t0, sizeof time);
-	put_words(place(u, id, next), m, sizeof *m);
-	if (ledger)
-		put_words(ledger_place(u, id, next), ledger,
-			  offsetof(ob_ledger, account) + ledger->head.accounts * sizeof *ledger->account);
-	__atomic_store_n(&c->version, next, __ATOMIC_RELEASE);
+	memcpy(&time, &t, sizeof time);
 	// In one order with the waiter's store of `awaited` and its load of `time`: one of the two sees the other's.
 	__atomic_store_n(&c->time, time, __ATOMIC_SEQ_CST);
 	if (__atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST)) {
@@ -122,12 +116,31 @@ void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_l
 	}
 }
 
+void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_ledger *ledger)
+{
+	ob_free_cell *c = cell_of(u, id);
+	const uint64_t next = __atomic_load_n(&c->version, __ATOMIC_ACQUIRE) + 1;
+	put_words(place(u, id, next), m, sizeof *m);
+	if (ledger)
+		put_words(ledger_place(u, id, next), ledger,
+			  offsetof(ob_ledger, account) + ledger->head.accounts * sizeof *ledger->account);
+	__atomic_store_n(&c->version, next, __ATOMIC_RELEASE);
+	ob_free_advance(u, id, m->t0);
+}
+
 double ob_free_time(const ob_universe *u, uint32_t id)
 {
 	const uint64_t bits = __atomic_load_n(&cell_of(u, id)->time, __ATOMIC_SEQ_CST);
 	double t;
 	memcpy(&t, &bits, sizeof t);
 	return t;
+}
+
+double ob_free_rate(const ob_universe *u, uint32_t id)
+{
+	float f;
+	__atomic_load(&cell_of(u, id)->update_rate, &f, __ATOMIC_RELAXED);
+	return f > 0 ? (double)f : u->free.control->settings.update_rate;
 }
 
 ob_free_kind ob_free_kind_of(const ob_universe *u, uint32_t id, uint32_t *generation)
@@ -256,13 +269,19 @@ void ob_free_wait_for_host(const ob_universe *u, uint32_t step)
 
 void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t generation, const ob_motion *m)
 {
-	const ob_ledger none = { 0 };
+	const ob_ledger none = { .head.step = INFINITY };
 	ob_free_cell *c = cell_of(u, id);
 	if (kind == OB_FREE_SIMULATED)
 		ob_free_publish(u, id, m, u->header.sizes.ledgers ? &none : NULL);
 	__atomic_store_n(&c->generation, generation, __ATOMIC_RELAXED);
 	__atomic_store_n(&c->kind, kind, __ATOMIC_RELEASE);
 	__atomic_fetch_add(&u->free.group[id / OB_FREE_GROUP], 1, __ATOMIC_RELEASE);
+}
+
+void ob_free_set_rate(ob_universe *u, uint32_t id, double rate)
+{
+	const float f = (float)rate;
+	__atomic_store(&cell_of(u, id)->update_rate, &f, __ATOMIC_RELAXED);
 }
 
 void ob_free_run_until(ob_universe *u, uint64_t step)

@@ -53,6 +53,7 @@ typedef struct ob_ledger_head {
 	uint32_t accounts;
 	uint32_t solvers; // simulators that solve contacts of the object: itself, and lower partners
 	double torque[3]; // N m, on the object: goes on after the version's time, as its motion's acceleration does
+	double step; // s: longest that its next step should have, by what happens to it; infinity: any
 } ob_ledger_head;
 
 typedef struct ob_ledger {
@@ -78,13 +79,13 @@ typedef struct ob_free_counts {
 
 typedef struct ob_free_cell {
 	_Alignas(64) uint64_t version; // 0 = never published
-	uint64_t time; // bits of a double: own time, s, of the newest version
+	uint64_t time; // bits of a double: own time, s; beyond the newest version's while that holds
 	uint32_t kind; // ob_free_kind
 	uint32_t generation; // as in the passport
 	_Alignas(64) uint32_t moved; // futex word: publications that were awaited
 	uint32_t awaited; // 1 = a simulator sleeps on it, or is about to
 	uint32_t blocker; // 1 + the object that it waits for; 0 = none
-	uint32_t zero;
+	float update_rate; // Hz; 0: the run's
 	ob_free_counts counts;
 } ob_free_cell;
 
@@ -96,7 +97,7 @@ typedef struct ob_free_control {
 } ob_free_control;
 
 static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 448, "free run");
-static_assert(sizeof(ob_account) == 160 && sizeof(ob_ledger) == 32 + OB_LEDGER_ACCOUNTS * 160, "mail");
+static_assert(sizeof(ob_account) == 160 && sizeof(ob_ledger) == 40 + OB_LEDGER_ACCOUNTS * 160, "mail");
 
 // NULL: the run is in lockstep.
 const ob_free_settings *ob_free_settings_of(const ob_universe *u);
@@ -108,6 +109,8 @@ uint32_t ob_free_depth(const ob_universe *u);
 // Enters an object that the host has placed or removed. m: first motion of a simulated one, with its own time. Before
 // simulators run, or while all wait.
 void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t generation, const ob_motion *m);
+// Sets the rate (Hz) of an object's simulator, before the object is entered; 0: the run's.
+void ob_free_set_rate(ob_universe *u, uint32_t id, double rate);
 // Lets simulators run until so many steps are complete. The first call starts their clock.
 void ob_free_run_until(ob_universe *u, uint64_t step);
 
@@ -116,6 +119,7 @@ void ob_free_run_until(ob_universe *u, uint64_t step);
 ob_free_kind ob_free_kind_of(const ob_universe *u, uint32_t id, uint32_t *generation); // generation may be NULL
 double ob_free_time(const ob_universe *u, uint32_t id); // own time, s
 uint64_t ob_free_version(const ob_universe *u, uint32_t id);
+double ob_free_rate(const ob_universe *u, uint32_t id); // Hz, of its simulator's steps
 // Copies the newest version that is not after t (s), or the oldest kept, and returns its number; 0: none. next, if not
 // NULL: the version after it; next->t0 is NaN if there is none.
 uint64_t ob_free_read(const ob_universe *u, uint32_t id, double t, ob_motion *out, ob_motion *next);
@@ -136,6 +140,8 @@ bool ob_free_blocker(const ob_universe *u, uint32_t id, uint32_t *blocker);
 
 // Publishes a version; ledger: NULL without a ledger. Wakes those who wait for it.
 void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_ledger *ledger);
+// Moves an object's own time on to t (s), where its newest version still holds. Wakes those who wait for it.
+void ob_free_advance(ob_universe *u, uint32_t id, double t);
 void ob_free_put_counts(ob_universe *u, uint32_t id, const ob_free_counts *c);
 void ob_free_publish_bounds(ob_universe *u, uint32_t id, const float box[6]);
 // Counter of a group of OB_FREE_GROUP objects; and a box.

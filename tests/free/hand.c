@@ -19,6 +19,7 @@ hand *hand_create(ob_free_settings f, ob_vec3 gravity)
 	setup.run.gravity = gravity;
 	setup.run.tolerance = 0;
 	setup.run.substeps = 1;
+	f.rate_most = ob_max(f.rate_most, f.update_rate);
 	ob_free_plan_depths(&f, setup.run.step_length, HAND_OBJECTS, &setup.history, &setup.ledgers);
 	ob_ode_init();
 	h->u = ob_universe_create(&setup, &e);

@@ -125,6 +125,76 @@ static void test_ground(void)
 	hand_destroy(h);
 }
 
+// A flight that nothing is near costs no versions; one that comes near is hit as always.
+static void test_flight_costs_nothing(void)
+{
+	hand *h = hand_create(settings(1000, .002), down);
+	hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+	const uint32_t ball = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 1, ob_v3(0, 0, 3), none, 0);
+	hand_until(h, 30);
+	uint64_t random = 1;
+	CHECK(hand_run(h, &random, .01));
+	CHECK(h->sim[ball].counts.updates >= 500);
+	CHECK(ob_free_version(h->u, ball) < 50);
+	CHECK_NEAR(h->sim[ball].time, .5, 1e-12);
+	CHECK(ob_free_complete(h->u, 30) == 30);
+	CHECK_NEAR(motion_of(h, ball).p.z, 3 - .5 * 9.81 * .25, 1e-9);
+	hand_until(h, 90);
+	CHECK(hand_run(h, &random, .01));
+	CHECK(ob_free_complete(h->u, 90) == 90);
+	CHECK_NEAR(motion_of(h, ball).p.z, .5, 1e-3);
+	hand_destroy(h);
+}
+
+// A heavy ball falls on a light one on the ground: steps get shorter, or the light one would pass on its load too late.
+static void test_light_between_heavy(void)
+{
+	ob_free_settings f = settings(1000, .002);
+	f.coupling = OB_COUPLING_LEDGER;
+	hand *h = hand_create(f, down);
+	hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+	const uint32_t low = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 10, ob_v3(0, 0, .5), none, 0),
+		       light = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 1, ob_v3(0, 0, 1.5), none, 0),
+		       heavy = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 10, ob_v3(0, 0, 2.9), ob_v3(0, 0, -8), 0);
+	double least = 1;
+	uint64_t random = 1;
+	for (uint64_t step = 1; step <= 12; step++) {
+		hand_until(h, step);
+		CHECK(hand_run(h, &random, 0));
+		CHECK(ob_free_complete(h->u, step) == step);
+		const double z[3] = { motion_of(h, low).p.z, motion_of(h, light).p.z, motion_of(h, heavy).p.z };
+		least = ob_min(least, ob_min(z[0] + .5, ob_min(z[1] - z[0], z[2] - z[1])));
+	}
+	CHECK(least > 1 - .045);
+	CHECK(h->sim[light].counts.updates > 205); // of 200 at the usual length
+	hand_destroy(h);
+}
+
+// Each simulator steps at its own rate, and a slow one is hit as well.
+static void test_rates(void)
+{
+	hand *h = hand_create((ob_free_settings){ .update_rate = 100,
+						  .rate_most = 1000,
+						  .max_lag = .02,
+						  .end = INFINITY,
+						  .coupling = OB_COUPLING_LEDGER },
+			      none);
+	const uint32_t slow = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 1, ob_v3(0, 0, 0), none, 0),
+		       fast = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.5, 0, 0), 1, ob_v3(1.2, 0, 0), ob_v3(-1, 0, 0), 0);
+	ob_free_set_rate(h->u, fast, 1000);
+	uint64_t random = 1;
+	for (uint64_t step = 10; step <= 60; step += 10) {
+		hand_until(h, step);
+		CHECK(hand_run(h, &random, 0));
+	}
+	CHECK(ob_free_complete(h->u, 60) == 60);
+	CHECK(h->sim[slow].counts.updates >= 98 && h->sim[slow].counts.updates < 200);
+	CHECK(h->sim[fast].counts.updates >= 998);
+	CHECK_NEAR(motion_of(h, slow).v.x + motion_of(h, fast).v.x, -1, 1e-9);
+	CHECK_NEAR(motion_of(h, slow).v.x, -.5, .1);
+	hand_destroy(h);
+}
+
 // Argument: number of worlds; 100 without one.
 int main(int argc, char **argv)
 {
@@ -133,5 +203,8 @@ int main(int argc, char **argv)
 	test_bound();
 	test_no_deadlock(argc > 1 ? strtoull(argv[1], NULL, 10) : 100);
 	test_ground();
+	test_flight_costs_nothing();
+	test_light_between_heavy();
+	test_rates();
 	return check_end();
 }

@@ -13,9 +13,13 @@
 static ob_host *start(const ob_scene *s, ob_isolation isolation, uint32_t workers, double lag)
 {
 	ob_error e = { "" };
-	const ob_free_settings f = {
-		.update_rate = 200, .max_lag = lag, .jitter = .2, .pace = INFINITY, .end = 1e3, .seed = 1
-	};
+	const ob_free_settings f = { .update_rate = 200,
+				     .rate_most = 200,
+				     .max_lag = lag,
+				     .jitter = .2,
+				     .pace = INFINITY,
+				     .end = 1e3,
+				     .seed = 1 };
 	ob_host_config c = { .isolation = isolation, .workers = workers, .spare = 2, .run = s->run, .free = &f };
 	c.run.substeps = 1;
 	c.run.iterations = 16;

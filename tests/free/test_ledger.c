@@ -114,9 +114,9 @@ static uint64_t run_world(uint64_t seed, bool mass_first)
 static void test_momentum(void)
 {
 	uint64_t solved = 0;
-	for (uint64_t seed = 1; seed <= 60; seed++)
+	for (uint64_t seed = 1; seed <= 30; seed++)
 		solved += run_world(seed, false) + run_world(seed, true);
-	CHECK(solved > 2000);
+	CHECK(solved > 1000);
 	run_world(120, false); // bodies that touch and part within a step
 	run_world(413, false); // a hit that ends the load of one whose other side was just hit
 	run_world(585, false);

@@ -108,6 +108,19 @@ sphere { radius = .1, at = {9, 0, 1} }
 			r, _ = self.run_free(scene, "--update-rate", 240, *more)
 			self.assertEqual((r["steps"], r["objects"]), (60, 2))
 
+	def test_rates_of_objects(self):
+		"""Objects step at rates of their own; --update-rate is for the others."""
+		scene = self.scene("""
+scene { duration = 1, sync = 'free', update_rate = 100 }
+material "fast" { update_rate = 400 }
+sphere { radius = .1, at = {0, 0, 20}, material = "fast" }
+sphere { radius = .1, at = {9, 0, 20}, material = "fast", update_rate = 250 }
+sphere { radius = .1, at = {19, 0, 20} }
+""")
+		for more, expected in ((), 750), (("--update-rate", 50), 700), (("--workers", "objects"), 750):
+			r, _ = self.run_free(scene, *more)
+			self.assertTrue(expected <= r["updates"] < 1.3 * expected, r["updates"])
+
 	def test_frames_of_the_common_time(self):
 		series = self.path("series.csv")
 		self.run_free(self.scene(FLIGHT), "--update-rate", 111, "--series", series)

@@ -86,6 +86,13 @@ static void check_free(void)
 	ob_scene *s = load_good("scene { sync = 'free', update_rate = 500, max_lag = .01 }\nground {}");
 	CHECK(s && s->free.update_rate == 500 && s->free.max_lag == .01 && s->free.coupling == OB_COUPLING_OWN);
 	ob_scene_free(s);
+	s = load_good("material 'slow' { update_rate = 30 }\nbox { size = {1, 1, 1}, material = 'slow' }\n"
+		      "sphere { radius = 1, at = {3, 0, 0}, material = 'slow', update_rate = 2000 }\n"
+		      "sphere { radius = 1, at = {6, 0, 0} }\nbox { size = {1, 1, 1}, at = {9, 0, 0}, static = true, "
+		      "material = 'slow' }");
+	CHECK(s && s->object[0].update_rate == 30 && s->object[1].update_rate == 2000);
+	CHECK(s && s->object[2].update_rate == 0 && s->object[3].update_rate == 0);
+	ob_scene_free(s);
 	s = load_good("scene { sync = 'free' }\nground {}");
 	CHECK(s && s->free.update_rate < 0 && s->free.max_lag == 0);
 	ob_scene_free(s);

@@ -21,7 +21,9 @@ static ob_universe *u;
 static void create(void)
 {
 	ob_error e;
-	const ob_free_settings settings = { .update_rate = 1000, .objects = 2, .coupling = OB_COUPLING_LEDGER };
+	const ob_free_settings settings = {
+		.update_rate = 1000, .rate_most = 1000, .objects = 2, .coupling = OB_COUPLING_LEDGER
+	};
 	const ob_universe_setup setup = { .capacity = 2,
 					  .workers = 1,
 					  .isolation = "thread",
