@@ -1,5 +1,6 @@
 -- A plaza where people walk about, push crates and greet each other: a script each, a simulator each. They stand by
 -- torques and walk by forces, so that crates and collisions act on them as on any body.
+-- `obsim serve plaza` gives each visitor a person to steer: W A S D, and E to greet.
 --   -D people=20
 --   -D crates=60
 local people = param("people", 20, { min = 0, max = 500 })
@@ -15,6 +16,7 @@ material "stone" { friction = .6, colour = "#a79c8c" }
 material "leaf" { friction = .5, roughness = .95, colour = "#4d7d3a" }
 material "wood" { friction = .5, colour = "#6f4e37" }
 camera "main" { eye = { -10.6, -10.6, 6.6 }, target = { .2, .2, .4 }, fov = 42 }
+camera "behind" { on = "visitor", eye = { -3.4, 0, 1.5 }, target = { 1.5, 0, .3 }, fov = 60 }
 camera "eyes" { on = "person 1", eye = { -2.6, 0, 1.3 }, target = { 2, 0, .3 }, fov = 60 }
 script "plaza/person.lua"
 
@@ -67,6 +69,16 @@ for i = 1, crates do
 		box { size = { size, size, size }, at = { x, y, size / 2 }, material = "crate", rotation = { axis = { 0, 0, 1 }, degrees = random(0, 90) }, colour = wares[1 + i % #wares] }
 	end
 end
+capsule {
+	avatar = true, name = "visitor", radius = .24, length = 1.2, at = { -3.6, -3.6, .84 }, material = "person", colour = "#f2f4f6",
+	script = "plaza/person.lua", state = { colour = "#f2f4f6", speed = 1.5, far = 8, led = true, vx = 0, vy = 0 },
+}
+controls { key = "w", label = "Ahead", sends = "go", values = { 1, 0 } }
+controls { key = "s", label = "Back", sends = "go", values = { -.6, 0 } }
+controls { key = "a", label = "Left", sends = "go", values = { 0, 1 } }
+controls { key = "d", label = "Right", sends = "go", values = { 0, -1 } }
+controls { key = "e", label = "Greet", sends = "greet" }
+
 local coats = { "#3d6fa5", "#a33f3f", "#3f7f5c", "#7a4d8f", "#c08a2d", "#46505c", "#b35f86", "#2f8f96" }
 for i = 1, people do
 	local x, y = free_place(2.4, 6 + people / 40, .4)

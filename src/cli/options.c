@@ -121,7 +121,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 			    0 },
 
 	[OB_OPTION_RECORD] = { "What is kept", "record", "FILE",
-			       "trajectories, and all that it takes to draw them again, as HDF5", RUN, 0 },
+			       "trajectories, and all that it takes to draw them again, as HDF5", RUN | SERVE, 0 },
 	[OB_OPTION_SERIES] = { NULL, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN, 0 },
 	[OB_OPTION_JSON] = { NULL, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE, 0 },
 	[OB_OPTION_MEASURE] = { NULL, "measure", "step|profile|end",

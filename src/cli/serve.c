@@ -4,6 +4,8 @@
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "base/clock.h"
@@ -14,10 +16,13 @@
 #include "cli/request.h"
 #include "cli/rerun.h"
 #include "cli/version.h"
+#include "measure/measure.h"
+#include "record/record.h"
 #include "serve/film.h"
 
 static const double patience = .05; // s, in which requests are taken while no step is due
-static const double go_time = .02; // s that the universe runs between checks if it is not paced
+static const double go_time = .02; // s that the universe runs between checks if it cannot keep its pace
+static const uint64_t paced_steps = 8; // that it may be behind, at a usual pace, and does in one go
 
 typedef struct serve_request {
 	ob_run_request run;
@@ -49,60 +54,202 @@ static bool read_request(serve_request *q, const ob_arguments *a, ob_error *e)
 	       read_count(a, OB_OPTION_ROOM, 1000000, &q->room, e);
 }
 
-// Runs the universe at its pace until Ctrl-C. After the duration's end it stands still for viewers.
-static bool live(ob_host *h, ob_pace *pace, const serve_request *s, uint64_t last, ob_error *e)
+// A run that is served. Parameters that viewers have set replace it by another one.
+typedef struct serving {
+	const ob_arguments *a; // of the command line
+	ob_arguments own; // with the parameters that viewers have set; define is its own
+	ob_define *set; // [sets], those parameters
+	uint32_t sets;
+	serve_request q;
+	ob_scene *scene;
+	ob_host *host;
+	ob_pace pace;
+	ob_server *server;
+	ob_recorder *recorder; // NULL: none
+	ob_snapshot shown; // the latest recorded one
+	uint64_t recorded; // its step; UINT64_MAX: none
+	uint64_t last; // step at which the run ends
+} serving;
+
+static bool load(serving *s, ob_error *e)
 {
-	const ob_run_request *q = &s->run;
+	ob_run_request *q = &s->q.run;
+	s->scene = ob_scene_load(q->scene, &q->scene_options, e);
+	s->q.server.scene = s->scene;
+	// a motion carries its step as 32 bits
+	s->last = UINT32_MAX - 2;
+	if (!s->scene || !ob_request_resolve(q, s->scene, e))
+		return false;
+	if (s->a->value[OB_OPTION_DURATION])
+		s->last = ob_request_steps(q->duration, q->run.step_length);
+	s->q.server.fixed = q->record          ? "it is recorded (--record)"
+			    : s->scene->meshes ? "viewers have its meshes already"
+					       : NULL;
+	return true;
+}
+
+static bool start(serving *s, ob_error *e)
+{
+	const ob_run_request *q = &s->q.run;
+	ob_host_config config = ob_request_host(q);
+	if (!s->a->value[OB_OPTION_ON_DEATH] && !config.run.monolith && !s->scene->scripts) // neither can be frozen
+		config.on_death = OB_ON_DEATH_KEEP;
+	config.spare = s->q.room;
+	config.returns = !q->record;
+	config.log = s->q.log;
+	s->host = ob_host_start(s->scene, &config, e);
+	if (!s->host || !q->record)
+		return s->host;
+	ob_record_facts facts = { .scene = s->scene,
+				  .path = q->scene,
+				  .options = &q->scene_options,
+				  .settings = &q->run,
+				  .duration = q->duration,
+				  .commit = ob_version_commit };
+	ob_universe_get_info(ob_host_universe(s->host), &facts.universe);
+	facts.universe.capacity = s->scene->objects; // spare slots get columns once they are used
+	s->recorder = ob_recorder_create(q->record, &facts, e);
+	return s->recorder;
+}
+
+// Records the step that the universe has reached.
+static bool record(serving *s, ob_error *e)
+{
+	const uint64_t step = ob_step_count(ob_host_universe(s->host));
+	if (!s->recorder || step % s->scene->record_every != 0 || step == s->recorded)
+		return true;
+	s->recorded = step;
+	return ob_snapshot_take(&s->shown, ob_host_universe(s->host), false, e) &&
+	       ob_recorder_append(s->recorder, &s->shown, e);
+}
+
+// Copies the parameters that viewers have set, with another one in place of its former value.
+static bool keep_parameter(serving *s, const ob_define *wish, ob_error *e)
+{
+	const size_t name = strcspn(wish->text, "=") + 1;
+	const ob_define *before = s->set;
+	uint32_t i = 0;
+	s->set = calloc(s->sets + 1, sizeof *s->set);
+	if (!s->set)
+		return ob_fail(e, "out of memory");
+	if (s->sets)
+		memcpy(s->set, before, s->sets * sizeof *before);
+	while (i < s->sets && strncmp(s->set[i].text, wish->text, name) != 0)
+		i++;
+	s->sets += i == s->sets;
+	s->set[i] = *wish;
+	return true;
+}
+
+// Makes the arguments of the next run: those of the command line, and behind them what viewers have set.
+static bool make_arguments(const serving *s, ob_arguments *own, ob_error *e)
+{
+	*own = *s->a;
+	own->define = calloc(s->a->defines + s->sets + 1, sizeof *own->define);
+	if (!own->define)
+		return ob_fail(e, "out of memory");
+	for (uint32_t i = 0; i < s->a->defines; i++)
+		own->define[i] = s->a->define[i];
+	for (uint32_t i = 0; i < s->sets; i++)
+		own->define[own->defines++] = s->set[i].text;
+	return true;
+}
+
+// Starts the scene anew, as an operator wishes. An invalid scene is told to viewers, and the run goes on. false and e: the
+// next run cannot be started.
+static bool start_anew(serving *s, const ob_define *wish, ob_error *e)
+{
+	serving next = *s;
+	ob_error why;
+	next.scene = NULL;
+	next.own.define = NULL;
+	if (!keep_parameter(&next, wish, &why) || !make_arguments(&next, &next.own, &why) ||
+	    !read_request(&next.q, &next.own, &why) || !load(&next, &why)) {
+		ob_scene_free(next.scene);
+		free(next.own.define);
+		free(next.set);
+		ob_server_notify(s->server, &why);
+		return true;
+	}
+	ob_server_hold(s->server);
+	ob_host_stop(s->host);
+	ob_scene_free(s->scene);
+	free(s->own.define);
+	free(s->set);
+	*s = next;
+	ob_pace_restart(&s->pace);
+	return start(s, e) && ob_server_go_on(s->server, s->scene, s->host, e);
+}
+
+// Lets the run go to the next step that is due, for a while at most. Returns that step.
+static uint64_t go_on(serving *s, uint64_t done, uint64_t *batch, bool *at_once)
+{
+	uint64_t due = ob_pace_wait(&s->pace, done, s->q.run.run.step_length, patience);
+	const uint64_t every = s->scene->record_every, state = s->recorder ? (done / every + 1) * every : UINT64_MAX;
+	const uint64_t most = due < UINT64_MAX && *batch < paced_steps ? paced_steps : *batch;
+	*at_once = due > done + most && done < s->last;
+	due = *at_once ? done + most : due;
+	due = due < s->last ? due : s->last;
+	due = due < state ? due : state;
+	if (done == s->last) { // the end is reached, and viewers stay
+		ob_host_finish(s->host);
+		nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * patience) }, NULL);
+	}
+	ob_host_go(s->host, due); // while no step is due, requests are still taken
+	return due;
+}
+
+// Runs the universe at its pace until Ctrl-C. After the duration's end it stands still for viewers.
+static bool live(serving *s, ob_error *e)
+{
 	uint64_t done = 0, batch = 1, next_state = 0;
+	ob_define wish;
 	double began = ob_clock_wall();
 	bool at_once = false;
-	ob_host_go(h, 0);
-	while (ob_host_wait(h, e)) {
+	ob_host_go(s->host, 0);
+	while (ob_host_wait(s->host, e) && record(s, e)) {
 		double took = ob_clock_wall() - began;
-		ob_rerun_log_state(s->log, h, &next_state);
-		if (ob_host_operate(h)) {
-			done = ob_step_count(ob_host_universe(h));
-			ob_pace_restart(pace);
+		ob_rerun_log_state(s->q.log, s->host, &next_state);
+		if (ob_server_take_wish(s->server, &wish)) {
+			if (!start_anew(s, &wish, e))
+				return false;
+			done = 0;
+			ob_host_go(s->host, 0);
+			continue;
+		}
+		if (ob_host_operate(s->host)) {
+			done = ob_step_count(ob_host_universe(s->host));
+			ob_pace_restart(&s->pace);
 		}
 		if (at_once && took < .5 * go_time)
 			batch *= 2;
 		else if (took > 2 * go_time && batch > 1)
 			batch /= 2;
-		uint64_t due = ob_pace_wait(pace, done, q->run.step_length, patience);
-		at_once = due == UINT64_MAX && done < last;
-		due = at_once ? done + batch : due;
-		due = due < last ? due : last;
-		if (done == last) { // the end is reached, and viewers stay
-			ob_host_finish(h);
-			nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * patience) }, NULL);
-		}
 		began = ob_clock_wall();
-		ob_host_go(h, due); // while no step is due, requests are still taken
-		done = due;
+		done = go_on(s, done, &batch, &at_once);
 	}
-	return ob_host_interrupted(h);
+	return s->host && ob_host_interrupted(s->host);
 }
 
-static int carry_out(ob_host *h, const serve_request *q, uint64_t last)
+static int carry_out(serving *s)
 {
 	ob_error e;
-	ob_pace pace;
 	bool ended = false;
-	ob_warn_of_overlap(h);
-	ob_pace_begin(&pace, q->run.pace, q->paused);
-	ob_server *server = ob_server_start(&q->server, h, &pace, &e);
-	if (server) {
-		printf("%s is at %s\n", q->server.scene->title, ob_server_url(server, OB_ROLE_OPERATE));
+	ob_warn_of_overlap(s->host);
+	ob_pace_begin(&s->pace, s->q.run.pace, s->q.paused);
+	s->server = ob_server_start(&s->q.server, s->host, &s->pace, &e);
+	if (s->server) {
+		printf("%s is at %s\n", s->q.server.scene->title, ob_server_url(s->server, OB_ROLE_OPERATE));
 		for (ob_role r = OB_ROLE_OPERATE; r-- > OB_ROLE_WATCH;)
-			if (*ob_server_url(server, r))
-				printf("To %s: %s\n", ob_role_name(r), ob_server_url(server, r));
+			if (*ob_server_url(s->server, r))
+				printf("To %s: %s\n", ob_role_name(r), ob_server_url(s->server, r));
 		printf("Ctrl-C ends it.\n");
 		fflush(stdout);
-		ended = live(h, &pace, q, last, &e);
+		ended = live(s, &e);
 	}
-	ob_server_stop(server);
-	ob_pace_end(&pace);
-	const int failed = ob_host_broke_invariant(h) ? OB_EXIT_BROKEN : OB_EXIT_FAILED;
+	ob_server_stop(s->server);
+	ob_pace_end(&s->pace);
+	const int failed = s->host && ob_host_broke_invariant(s->host) ? OB_EXIT_BROKEN : OB_EXIT_FAILED;
 	return ended ? OB_EXIT_OK : ob_command_fail(failed, e.text);
 }
 
@@ -160,35 +307,29 @@ int ob_command_serve(const ob_arguments *a)
 {
 	if (a->value[OB_OPTION_REPLAY])
 		return serve_replay(a);
-	serve_request q;
+	serving s = { .a = a, .recorded = UINT64_MAX };
 	ob_error e;
-	if (!ob_serve_check(&e) || !read_request(&q, a, &e))
-		return ob_command_fail(OB_EXIT_USAGE, e.text);
-	ob_scene *scene = ob_scene_load(q.run.scene, &q.run.scene_options, &e);
-	if (!scene || !ob_request_resolve(&q.run, scene, &e)) {
-		ob_scene_free(scene);
+	if (!ob_serve_check(&e) || !read_request(&s.q, a, &e) || !load(&s, &e)) {
+		ob_scene_free(s.scene);
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	}
-	q.server.scene = scene;
-	ob_host_config config = ob_request_host(&q.run);
-	if (!a->value[OB_OPTION_ON_DEATH] && !config.run.monolith && !scene->scripts) // neither can be frozen
-		config.on_death = OB_ON_DEATH_KEEP;
-	config.spare = q.room;
-	config.returns = true;
-	// a motion carries its step as 32 bits
-	uint64_t last =
-		a->value[OB_OPTION_DURATION] ? ob_request_steps(q.run.duration, q.run.run.step_length) : UINT32_MAX - 2;
 	signal(SIGPIPE, SIG_IGN);
 	ob_interrupt_watch(); // before there is anything to clean up after Ctrl-C
 	const char *path = a->value[OB_OPTION_LOG_REQUESTS];
-	const ob_request_log_head head = ob_rerun_head(&q.run, scene, q.room);
-	config.log = q.log = path ? ob_request_log_create(path, &head, &e) : NULL;
-	ob_host *h = !path || q.log ? ob_host_start(scene, &config, &e) : NULL;
-	int code = h ? carry_out(h, &q, last) : ob_command_fail(OB_EXIT_FAILED, e.text);
-	ob_host_stop(h);
-	if (!ob_request_log_close(q.log, &e))
+	const ob_request_log_head head = ob_rerun_head(&s.q.run, s.scene, s.q.room);
+	s.q.log = path ? ob_request_log_create(path, &head, &e) : NULL;
+	if (path)
+		s.q.server.fixed = "its requests are logged (--log-requests)";
+	int code = (!path || s.q.log) && start(&s, &e) ? carry_out(&s) : ob_command_fail(OB_EXIT_FAILED, e.text);
+	if (s.recorder && !ob_recorder_close(s.recorder, &e))
+		code = ob_command_fail(OB_EXIT_FAILED, e.text);
+	ob_snapshot_finish(&s.shown);
+	ob_host_stop(s.host);
+	if (!ob_request_log_close(s.q.log, &e))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_interrupt_release();
-	ob_scene_free(scene);
+	ob_scene_free(s.scene);
+	free(s.own.define);
+	free(s.set);
 	return code;
 }

@@ -180,7 +180,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		if (!texts)
 			return ob_fail(e, "out of memory"), NULL;
 		setup.script_text = texts;
-		setup.script_cells = scripted_objects(scene) + scene->room;
+		setup.script_cells = scripted_objects(scene) + scene->room + (scene->avatar ? c->spare : 0);
 		setup.script_cells += !setup.script_cells;
 		if (c->from && c->from->universe.script_cells > setup.script_cells)
 			setup.script_cells = c->from->universe.script_cells;

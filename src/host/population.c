@@ -502,6 +502,30 @@ static void add_asked_for(ob_population *p, const ob_request *r)
 		p->slots[id].origin = r->origin;
 }
 
+bool ob_population_check_avatar(const ob_population *p, const ob_request *r, ob_object_def *def, ob_error *e)
+{
+	if (!p->scene->avatar)
+		return ob_fail(e, "the scene has no object with avatar = true");
+	*def = *p->scene->avatar;
+	def->state.pose.p = r->state.pose.p;
+	const size_t n = strnlen(def->passport.name, OB_NAME_MAX - 12);
+	snprintf(def->passport.name + n, OB_NAME_MAX - n, " %u", r->origin);
+	return ob_object_def_check(def, e);
+}
+
+static void add_avatar(ob_population *p, const ob_request *r)
+{
+	ob_error e;
+	ob_object_def def = { 0 };
+	if (!ob_population_check_avatar(p, r, &def, &e)) {
+		ob_log_warn("no avatar was added: %s", e.text);
+		return;
+	}
+	const uint32_t id = add_on_request(p, &def, p->scene->states + def.state_at);
+	if (id != UINT32_MAX)
+		p->slots[id].origin = r->origin;
+}
+
 static void publish_roster(ob_population *p)
 {
 	bool one_per_object = ob_universe_settings(p->u)->one_per_object;
@@ -566,6 +590,8 @@ static void carry_out_request(ob_population *p, const ob_request *r)
 {
 	if (r->kind == OB_REQUEST_ADD)
 		add_asked_for(p, r);
+	else if (r->kind == OB_REQUEST_AVATAR)
+		add_avatar(p, r);
 	else if (r->kind == OB_REQUEST_RELEASE)
 		ob_pulls_release(&p->pulls, r->id, r->origin);
 	else if (r->id < ob_universe_capacity(p->u) && p->slots[r->id].generation == r->generation &&

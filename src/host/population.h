@@ -47,6 +47,9 @@ void ob_population_pull(ob_population *p);
 // Checks a request that changes an object's motion or friction, against the object as it is now, which exists. Others
 // pass. Any thread.
 bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_error *e);
+// Makes an avatar's definition: the scene's template at the place of the request, with the origin's number behind its name.
+// false and e: the scene has no template, or the place is out of bounds. Any thread.
+bool ob_population_check_avatar(const ob_population *p, const ob_request *r, ob_object_def *def, ob_error *e);
 
 // Copy of all that is not in the universe. k: one to overwrite, or NULL for a new one. NULL: out of memory, and k is freed.
 typedef struct ob_kept_population ob_kept_population;

@@ -54,9 +54,8 @@ static bool check_move(const ob_universe *u, const ob_request *r, const ob_passp
 static bool check_return(const ob_host *h, ob_error *e)
 {
 	if (!h->returns)
-		return ob_fail(e,
-			       "this run cannot be put back on request: obsim serve can, and a program that leads one "
-			       "by obsim control");
+		return ob_fail(e, "this run cannot be put back on request: obsim serve can, without --record, and a "
+				  "program that leads one by obsim control");
 	if (h->log)
 		return ob_fail(e, "this run logs its requests (--log-requests), so it cannot be put back");
 	if (ob_free_settings_of(h->u))
@@ -94,6 +93,8 @@ bool ob_request_check(const ob_host *h, ob_request *r, ob_error *e)
 		return ob_fail(e, "on several ranks, objects can only be moved");
 	if (r->kind == OB_REQUEST_ADD)
 		return check_new(h, r, e);
+	if (r->kind == OB_REQUEST_AVATAR)
+		return ob_population_check_avatar(h->population, r, &(ob_object_def){ 0 }, e);
 	if (r->kind >= OB_REQUEST_KEEP || r->kind == OB_REQUEST_RELEASE)
 		return check_whole(h, r, e);
 	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)

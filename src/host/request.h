@@ -18,6 +18,7 @@ typedef enum ob_request_kind {
 	OB_REQUEST_PUSH, // a force at a point of its body
 	OB_REQUEST_DRAG, // a spring from a point of its body to a target
 	OB_REQUEST_RELEASE, // ends what the same origin does by these three to the object; id UINT32_MAX: to all objects
+	OB_REQUEST_AVATAR, // adds an object of the scene's template for the origin, at state's place
 	OB_REQUEST_AT_ONCE, // the first that is no change of the universe's course, so that no log has it
 	OB_REQUEST_MOVE = OB_REQUEST_AT_ONCE, // its simulator moves to a worker: with several ranks, too (table/home.h)
 	OB_REQUEST_KILL, // the worker that simulates it is killed

@@ -10,6 +10,7 @@ ob_role ob_role_for(ob_request_kind kind)
 {
 	switch (kind) {
 	case OB_REQUEST_ADD:
+	case OB_REQUEST_AVATAR:
 	case OB_REQUEST_MESSAGE:
 	case OB_REQUEST_TORQUE:
 	case OB_REQUEST_PUSH:

@@ -16,6 +16,7 @@
 #define OB_SCENE_MATERIALS_MAX 256
 #define OB_SCENE_CAMERAS_MAX 64
 #define OB_SCENE_PARAMS_MAX 64
+#define OB_SCENE_CONTROLS_MAX 32
 
 typedef struct ob_material {
 	char name[OB_NAME_MAX];
@@ -104,6 +105,7 @@ int ob_scene_call_ground(lua_State *L);
 int ob_scene_call_material(lua_State *L);
 int ob_scene_call_camera(lua_State *L);
 int ob_scene_call_param(lua_State *L);
+int ob_scene_call_controls(lua_State *L);
 int ob_scene_call_random(lua_State *L);
 int ob_scene_call_random_rotation(lua_State *L);
 int ob_scene_call_joint(lua_State *L); // upvalue 1: the kind
@@ -122,5 +124,7 @@ bool ob_builder_check_defines(const ob_builder *b, const char *path, ob_error *e
 // Moves the cameras into the scene, and places those that frame all objects. false and e: no memory, or one follows an
 // object that never exists.
 bool ob_builder_place_cameras(ob_builder *b, const char *path, ob_error *e);
+// False and e if a control has nobody to send to: no object of that name, or no avatar.
+bool ob_builder_check_controls(const ob_builder *b, const char *path, ob_error *e);
 
 #endif

@@ -131,7 +131,7 @@ typedef struct body {
 	ob_points points;
 	const ob_hull *hull; // in the scene; NULL: another shape
 	float colour[4];
-	bool fixed, grid, path, varying_force, inputs, outputs, parameters;
+	bool fixed, grid, path, varying_force, avatar, inputs, outputs, parameters;
 	bool own_colour, own_surface; // set by the object or its material
 } body;
 
@@ -158,7 +158,7 @@ typedef struct body {
 		WITHIN(velocity, OB_SPEED_MOST), WITHIN(spin, OB_SPIN_MOST), WITHIN(force, OB_FORCE_MOST), \
 		F(kind, .kind = OB_FIELD_CHOICE, .choices = "dynamic|static|kinematic"), \
 		F(path, .kind = OB_FIELD_TABLE), F(varying_force, .kind = OB_FIELD_TABLE), \
-		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN)
+		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN), F(avatar, .kind = OB_FIELD_BOOLEAN)
 #define LOOKS \
 	F(mesh, .kind = OB_FIELD_TEXT, .high = OB_SCENE_MESH_NAME_MAX - 1), \
 		F(mesh_scale, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e6), \
@@ -328,6 +328,10 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 				!isnan(d->mesh_scale)  ? "mesh_scale"
 				: !isnan(d->mesh_at.x) ? "mesh_at"
 						       : "mesh_rotation");
+	if (d->avatar && (d->kind != DYNAMIC || !d->script || !d->name || d->born > 0 || isfinite(d->dies)))
+		ob_sandbox_fail(
+			L, "%s.avatar: expected a name, a script and kind = \"dynamic\" with it, and not born or dies",
+			kind);
 	if (d->dies <= d->born)
 		ob_sandbox_fail(L, "%s.dies: expected a time after born = %.10g, got %.10g", kind, d->born, d->dies);
 }
@@ -362,6 +366,17 @@ static ob_mesh_source source_of_mesh(const body *d)
 		source.pose.q = ob_quat_mul((ob_quat){ f.w, -f.x, -f.y, -f.z }, source.pose.q);
 	}
 	return source;
+}
+
+// Takes the object that was added last out of the scene again: each viewer will have one of its kind.
+static void make_template(lua_State *L, ob_scene *s, const char *kind)
+{
+	if (s->avatar)
+		ob_sandbox_fail(L, "%s.avatar: expected one object with it, got a second", kind);
+	s->avatar = malloc(sizeof *s->avatar);
+	if (!s->avatar)
+		ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
+	*s->avatar = s->object[--s->objects];
 }
 
 static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec3 size, body *d)
@@ -436,6 +451,8 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	}
 	if (!ob_object_def_check(o, &e))
 		ob_sandbox_fail(L, "%s.%s", kind, e.text);
+	if (d->avatar)
+		make_template(L, b->scene, kind);
 	return o;
 }
 

@@ -1,7 +1,8 @@
-// param(name, default [, { min =, max =, choices = }]): a value that the command line may replace (-D name=value), by a
+// param(name, default [, { min =, max =, unit =, choices = }]): a value that the command line may replace (-D name=value), by a
 // number or an expression with a number as result (-D name=1/3).
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <lauxlib.h>
@@ -13,11 +14,13 @@
 
 typedef struct limits {
 	double min, max; // NaN: none
+	const char *unit;
 } limits;
 
 static const ob_field limit_fields[] = {
 	OB_FIELD(limits, min, .name = "min", .kind = OB_FIELD_NUMBER, .low = -INFINITY, .high = INFINITY),
 	OB_FIELD(limits, max, .name = "max", .kind = OB_FIELD_NUMBER, .low = -INFINITY, .high = INFINITY),
+	OB_FIELD(limits, unit, .name = "unit", .kind = OB_FIELD_TEXT, .high = sizeof((ob_param_def *)0)->unit - 1),
 };
 
 // Text after "name=" in the last -D of that name; NULL: there is none.
@@ -105,18 +108,40 @@ static void push_defined(lua_State *L, const char *name, const char *text)
 		lua_pushnumber(L, lua_tonumber(L, -1));
 }
 
-// Checks the number at the top against { min =, max = } at index 3.
+// Keeps a number within limits for viewers, who may change it.
+static void offer(lua_State *L, ob_scene *s, const char *name, const limits *l)
+{
+	uint32_t i = 0;
+	while (i < s->params && strcmp(s->param[i].name, name) != 0)
+		i++;
+	if (i == s->params) {
+		ob_param_def *more = realloc(s->param, (i + 1) * sizeof *more);
+		if (!more)
+			ob_sandbox_fail(L, "param.%s: no memory left on this machine", name);
+		s->param = more;
+		s->params++;
+	}
+	s->param[i] = (ob_param_def){
+		.value = lua_tonumber(L, -1), .min = l->min, .max = l->max, .whole = lua_isinteger(L, -1)
+	};
+	snprintf(s->param[i].name, sizeof s->param[i].name, "%s", name);
+	snprintf(s->param[i].unit, sizeof s->param[i].unit, "%s", l->unit ? l->unit : "");
+}
+
+// Checks the number at the top against { min =, max = } at index 3, and keeps one that has both.
 static void check_number(lua_State *L, const char *name)
 {
 	char where[OB_NAME_MAX + 8];
 	snprintf(where, sizeof where, "param.%s", name);
-	limits l = { NAN, NAN };
-	ob_fields_read(L, 3, where, limit_fields, 2, &l);
+	limits l = { NAN, NAN, NULL };
+	ob_fields_read(L, 3, where, limit_fields, sizeof limit_fields / sizeof *limit_fields, &l);
 	double x = lua_tonumber(L, -1);
 	if (x < l.min)
 		ob_sandbox_fail(L, "%s: expected a number of at least %.10g, got %.10g", where, l.min, x);
 	if (x > l.max)
 		ob_sandbox_fail(L, "%s: expected a number of at most %.10g, got %.10g", where, l.max, x);
+	if (isfinite(l.min) && isfinite(l.max))
+		offer(L, ((ob_builder *)ob_sandbox_user(L))->scene, name, &l);
 }
 
 // Checks the text at the top against { "one", "two" } at index 3.

@@ -73,6 +73,7 @@ static bool offer_calls(ob_sandbox *s, ob_error *e)
 		{ NULL, "camera", ob_scene_call_camera },
 		{ NULL, "script", ob_scene_call_script },
 		{ NULL, "param", ob_scene_call_param },
+		{ NULL, "controls", ob_scene_call_controls },
 		{ NULL, "random", ob_scene_call_random },
 		{ NULL, "random_rotation", ob_scene_call_random_rotation },
 		{ "math", "random", ob_scene_call_random_integer },
@@ -123,7 +124,8 @@ static bool build(ob_builder *b, const char *path, ob_error *e)
 		return false;
 	if (b->scene->objects == 0)
 		return ob_fail(e, "%s:1: expected at least one object (box, sphere, ground ...)", path);
-	return ob_builder_resolve_tolerance(b, path, e) && ob_builder_place_cameras(b, path, e);
+	return ob_builder_resolve_tolerance(b, path, e) && ob_builder_place_cameras(b, path, e) &&
+	       ob_builder_check_controls(b, path, e);
 }
 
 // Makes a scene of this text and takes ownership of it; NULL: the text could not be read, and e explains it.
@@ -194,6 +196,9 @@ void ob_scene_free(ob_scene *s)
 		free(s->script[i].text);
 	free(s->script);
 	free(s->states);
+	free(s->avatar);
+	free(s->param);
+	free(s->control);
 	free(s->text);
 	free(s);
 }

@@ -53,6 +53,28 @@ typedef struct ob_script_def {
 	uint32_t size;
 } ob_script_def;
 
+// Number of the scene within limits: viewers may set it, and start the scene anew.
+typedef struct ob_param_def {
+	char name[OB_NAME_MAX], unit[16];
+	double value, min, max; // value: of this scene
+	bool whole;
+} ob_param_def;
+
+enum { OB_CONTROL_VALUES = 4, OB_CONTROL_KEY = 16 };
+
+// Control of viewers: a key, a button or a slider that sends a message to a script.
+typedef struct ob_control_def {
+	char key[OB_CONTROL_KEY]; // as browsers name it, lower case; "" = none
+	char label[OB_NAME_MAX];
+	char sends[OB_NAME_MAX]; // first value of the message
+	char to[OB_NAME_MAX]; // object; "" = the viewer's avatar
+	double value
+		[OB_CONTROL_VALUES]; // numbers behind it while it is held: the sum of all held ones that send the same
+	uint32_t values; // 0: it is sent once, when pressed
+	bool slider;
+	double min, max; // of a slider, which begins at value[0]
+} ob_control_def;
+
 enum { OB_SCENE_MESHES_MAX = 255 }; // limit of passports
 #define OB_SCENE_MESH_BYTES (64u << 20) // of all meshes
 
@@ -80,6 +102,10 @@ typedef struct ob_scene {
 	unsigned char *states; // initial states of all objects' scripts
 	uint32_t states_bytes;
 	uint32_t room; // objects that scripts may have created at the same time
+	ob_object_def *avatar; // template: each viewer has an object of this kind while it is there; NULL: none
+	uint32_t params, controls;
+	ob_param_def *param; // [params]
+	ob_control_def *control; // [controls]
 	char *text; // text of its file: ob_scene_load_text makes the same scene from it
 	size_t text_size;
 } ob_scene;

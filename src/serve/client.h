@@ -33,6 +33,9 @@ typedef struct ob_client {
 	double taken_at; // s: time of its last progress, or of an empty queue
 	bool simulators; // is sent who simulates each object
 	bool contacts; // it shows them
+	bool energy; // likewise, in its plots
+	uint32_t avatar, generation; // its avatar's id and generation; UINT32_MAX: it has none
+	bool missing; // the roster does not have its avatar
 	uint32_t inspected; // id; UINT32_MAX: none
 	uint32_t number; // origin of its requests: from 1, of this connection only
 	ob_role role;

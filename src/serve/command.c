@@ -31,6 +31,8 @@ static const char *const kinds[OB_DO_KINDS] = {
 	[OB_DO_CONTACTS] = "contacts",
 	[OB_DO_INSPECT] = "inspect",
 	[OB_DO_SIMULATORS] = "simulators",
+	[OB_DO_ENERGY] = "energy",
+	[OB_DO_SET] = "set",
 };
 
 enum {
@@ -59,6 +61,7 @@ enum {
 	GENERATION,
 	STEPS,
 	RATE,
+	VALUE,
 	ON,
 	FIELDS
 };
@@ -88,6 +91,7 @@ static const char *const names[FIELDS] = {
 	[GENERATION] = "generation",
 	[STEPS] = "steps",
 	[RATE] = "rate",
+	[VALUE] = "value",
 	[ON] = "on",
 };
 // Numbers of a field (0: a word), and their range. Those of an object are limited as all objects are, and of requests
@@ -116,6 +120,7 @@ static const struct {
 	[GENERATION] = { 1, 0, 4294967295. },
 	[STEPS] = { 1, 1, 1e6 },
 	[RATE] = { 1, 0, 1e6 },
+	[VALUE] = { 1, -DBL_MAX, DBL_MAX },
 };
 
 typedef struct reading {
@@ -346,6 +351,16 @@ static bool make_edit(reading *r, ob_command *c)
 	       fail(r, "expected some of at, attitude, velocity, spin, colour and friction", "edit") == 0;
 }
 
+// Puts each word of the text into a message, as obsim send does.
+static bool put_words(reading *r, ob_request *q)
+{
+	char *rest = NULL;
+	for (char *word = strtok_r(r->word[TEXT], " \t", &rest); word; word = strtok_r(NULL, " \t", &rest))
+		if (!ob_scene_put_value(word, q->values, &q->bytes, sizeof q->values))
+			return fail(r, "too many words", "text") == 0;
+	return q->bytes > 0 || fail(r, "expected words", "text") == 0;
+}
+
 // Makes the requests of a command that goes to the host.
 static bool make_requests(reading *r, ob_command *c)
 {
@@ -370,7 +385,7 @@ static bool make_requests(reading *r, ob_command *c)
 	if (c->kind == OB_DO_EDIT)
 		return make_edit(r, c);
 	if (c->kind == OB_DO_MESSAGE)
-		return ob_scene_put_value(r->word[TEXT], q->values, &q->bytes, sizeof q->values);
+		return put_words(r, q);
 	return c->kind != OB_DO_CREATE || make_object(r, &q->def);
 }
 
@@ -388,6 +403,8 @@ static bool make(reading *r, ob_command *c)
 		[OB_DO_RATE] = 1u << RATE,
 		[OB_DO_CONTACTS] = 1u << ON,
 		[OB_DO_SIMULATORS] = 1u << ON,
+		[OB_DO_ENERGY] = 1u << ON,
+		[OB_DO_SET] = 1u << NAME | 1u << VALUE,
 	};
 	static const unsigned allowed[OB_DO_KINDS] = {
 		[OB_DO_CREATE] = 1u << ATTITUDE | 1u << VELOCITY | 1u << SPIN | 1u << COLOUR | 1u << FRICTION |
@@ -410,7 +427,9 @@ static bool make(reading *r, ob_command *c)
 		.steps = r->given & 1u << STEPS ? (uint32_t)r->value[STEPS][0] : 1,
 		.rate = r->value[RATE][0],
 		.on = r->on,
+		.value = r->value[VALUE][0],
 	};
+	snprintf(c->name, sizeof c->name, "%s", r->word[NAME]);
 	if (kind <= OB_DO_RESTART && !make_requests(r, c))
 		c->kind = OB_DO_NOTHING;
 	return c->kind != OB_DO_NOTHING;

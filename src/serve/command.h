@@ -9,14 +9,15 @@
 //      push      id, generation, force (N); optionally point. Likewise
 //      turn      id, generation, torque (N m). Likewise
 //      release   optionally id: of one object, else of all that this visitor holds
-//      message   id, generation, text: to the object's script
+//      message   id, generation, text: its words to the object's script, numbers as such
 //      edit      id, generation, and some of at, attitude, velocity, spin, colour, friction
 //      kill      id, generation: the worker process that simulates the object
 //      keep      a snapshot of the universe;  return: to that, or to the start;  restart: at the start
 //      pause, resume
 //      step      steps (1), while it is paused
 //      rate      rate (s a s); 0: as fast as possible
-//      contacts  on
+//      set       name, value: the scene starts anew with this value of a parameter
+//      contacts  on;  energy: likewise
 //      inspect   id
 //
 // Other members are errors, and no byte is trusted. Pure; any thread.
@@ -46,6 +47,8 @@ typedef enum ob_command_kind {
 	OB_DO_CONTACTS,
 	OB_DO_INSPECT,
 	OB_DO_SIMULATORS,
+	OB_DO_ENERGY,
+	OB_DO_SET,
 	OB_DO_KINDS,
 } ob_command_kind;
 
@@ -58,7 +61,9 @@ typedef struct ob_command {
 	uint32_t id; // inspect
 	uint32_t steps; // step
 	double rate; // rate; 0: as fast as possible
-	bool on; // contacts
+	bool on; // contacts, simulators, energy
+	char name[OB_NAME_MAX]; // set
+	double value; // set
 } ob_command;
 
 enum { OB_COMMAND_BYTES_MAX = 2048 };

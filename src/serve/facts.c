@@ -25,6 +25,39 @@ static void put_colour(ob_message *m, const char *name, const float c[3])
 	put_numbers(m, name, (double[]){ c[0], c[1], c[2] }, 3);
 }
 
+// Parameters and controls for viewers, and the name of the template of avatars; "" if there is none.
+static void put_offers(ob_message *m, const ob_scene *s)
+{
+	ob_message_print(m, ",\"params\":[");
+	for (uint32_t i = 0; i < s->params; i++) {
+		const ob_param_def *p = &s->param[i];
+		ob_message_print(m, "%s{\"name\":", i ? "," : "");
+		ob_message_put_json(m, p->name);
+		ob_message_print(m, ",\"unit\":");
+		ob_message_put_json(m, p->unit);
+		ob_message_print(m, ",\"value\":%.10g,\"min\":%.10g,\"max\":%.10g,\"whole\":%s}", p->value, p->min,
+				 p->max, p->whole ? "true" : "false");
+	}
+	ob_message_print(m, "],\"controls\":[");
+	for (uint32_t i = 0; i < s->controls; i++) {
+		const ob_control_def *c = &s->control[i];
+		ob_message_print(m, "%s{\"key\":", i ? "," : "");
+		ob_message_put_json(m, c->key);
+		ob_message_print(m, ",\"label\":");
+		ob_message_put_json(m, c->label);
+		ob_message_print(m, ",\"sends\":");
+		ob_message_put_json(m, c->sends);
+		ob_message_print(m, ",\"to\":");
+		ob_message_put_json(m, c->to);
+		put_numbers(m, "values", c->value, c->slider ? 1 : (int)c->values);
+		if (c->slider)
+			put_numbers(m, "range", (double[]){ c->min, c->max }, 2);
+		ob_message_print(m, "}");
+	}
+	ob_message_print(m, "],\"avatar\":");
+	ob_message_put_json(m, s->avatar ? s->avatar->passport.name : "");
+}
+
 ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
 			     const ob_content *mesh)
 {
@@ -60,7 +93,9 @@ ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_u
 		ob_message_put_json(m, camera->follow);
 		ob_message_print(m, "}");
 	}
-	ob_message_print(m, "],\"meshes\":[");
+	ob_message_print(m, "]");
+	put_offers(m, scene);
+	ob_message_print(m, ",\"meshes\":[");
 	for (uint32_t i = 0; mesh && i < scene->meshes; i++) {
 		ob_message_print(m, i ? "," : "");
 		ob_message_put_json(m, mesh[i].path + 1); // the path in the page
@@ -122,15 +157,16 @@ ob_message *ob_facts_workers(const ob_host *h)
 	return m;
 }
 
-ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
+ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy)
 {
 	const ob_universe *u = ob_host_universe(h);
 	ob_universe_info info;
 	ob_snapshot s = { 0 };
 	char hash[20] = "";
 	ob_universe_get_info(u, &info);
-	const bool taken = ob_snapshot_take(&s, u, false, NULL), ended = info.state == OB_UNIVERSE_FINISHED;
-	const double energy = taken ? ob_measure_energy(&s, info.gravity) : NAN;
+	const bool ended = info.state == OB_UNIVERSE_FINISHED,
+		   taken = (energy || ended) && ob_snapshot_take(&s, u, false, NULL);
+	const double joules = taken && energy ? ob_measure_energy(&s, info.gravity) : NAN;
 	if (taken && ended)
 		snprintf(hash, sizeof hash, "%016llx", (unsigned long long)ob_measure_hash(&s));
 	ob_snapshot_finish(&s);
@@ -143,7 +179,7 @@ ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers)
 			 viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step,
 			 info.frozen, ended ? "true" : "false", info.deaths, hash);
 	ob_message_put_json(m, info.last_death);
-	ob_message_print(m, isfinite(energy) ? ",\"energy\":%.9g}}" : ",\"energy\":null}}", energy);
+	ob_message_print(m, isfinite(joules) ? ",\"energy\":%.9g}}" : ",\"energy\":null}}", joules);
 	return m;
 }
 
@@ -155,7 +191,7 @@ static const ob_death *latest_frozen(const ob_death *death, uint32_t n)
 	return n ? &death[n - 1] : NULL;
 }
 
-static ob_message *notice(const char *text)
+ob_message *ob_facts_notice(const char *text)
 {
 	ob_message *m = ob_message_new(true);
 	if (!m)
@@ -179,7 +215,7 @@ ob_message *ob_facts_frozen(ob_host *h, uint64_t *since)
 		ob_death_print(d, text.text, sizeof text.text);
 		size_t end = strlen(text.text);
 		snprintf(text.text + end, sizeof text.text - end, "; frozen for it: %u", d->frozen);
-		return notice(text.text);
+		return ob_facts_notice(text.text);
 	}
 	return NULL;
 }
@@ -198,7 +234,15 @@ ob_message *ob_facts_own_frozen(ob_host *h, uint32_t id, uint32_t more)
 		snprintf(others, sizeof others, " and %u more of yours", more);
 	snprintf(text, sizeof text, "your object %u%s%s%s%s was frozen: %s", id, *entry.name ? " (" : "", entry.name,
 		 *entry.name ? ")" : "", others, why.text);
-	return notice(text);
+	return ob_facts_notice(text);
+}
+
+ob_message *ob_facts_avatar(uint32_t id, uint32_t generation)
+{
+	ob_message *m = ob_message_new(true);
+	if (m)
+		ob_message_print(m, "{\"avatar\":{\"id\":%u,\"generation\":%u}}", id, generation);
+	return m;
 }
 
 static const char *state_of(const ob_passport *p, const ob_motion *m)

@@ -7,12 +7,17 @@
 #include "serve/message.h"
 #include "serve/serve.h"
 
-// {"welcome": title, isolation, role, gravity, look, cameras, paths of meshes ..}: the first message. mesh: contents of the
+// {"welcome": title, isolation, role, gravity, look, cameras, params, controls, avatar's name, meshes ..}: the first message. mesh: contents of the
 // scene's meshes, by their numbers, less 1; NULL: they are sent otherwise.
 ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
 			     const ob_content *mesh);
 // {"statistics": objects, awake, pairs, islands, step, viewers, energy (J), deaths, ended, then the hash of the state ..}
-ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers);
+// energy: someone looks at it; else it is null.
+ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy);
+// {"notice": text}
+ob_message *ob_facts_notice(const char *text);
+// {"avatar": {id, generation}}
+ob_message *ob_facts_avatar(uint32_t id, uint32_t generation);
 // {"workers": [[pid, rank, objects of the last step, CPU (s), object that it is busy with, or null], ..]}
 ob_message *ob_facts_workers(const ob_host *h);
 // The universe's figures in the text format of Prometheus (version 0.0.4), of less than 4 kB

@@ -22,6 +22,26 @@ const char *ob_server_url(const ob_server *s, ob_role role)
 	return ((const ob_server_base *)s)->part->url(s, role);
 }
 
+bool ob_server_take_wish(ob_server *s, ob_define *out)
+{
+	return ((ob_server_base *)s)->part->take_wish(s, out);
+}
+
+void ob_server_notify(ob_server *s, const ob_error *text)
+{
+	((ob_server_base *)s)->part->notify(s, text);
+}
+
+void ob_server_hold(ob_server *s)
+{
+	((ob_server_base *)s)->part->hold(s);
+}
+
+bool ob_server_go_on(ob_server *s, const ob_scene *scene, ob_host *h, ob_error *e)
+{
+	return ((ob_server_base *)s)->part->go_on(s, scene, h, e);
+}
+
 void ob_server_stop(ob_server *s)
 {
 	if (s)

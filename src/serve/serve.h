@@ -43,10 +43,15 @@ typedef struct ob_server_config {
 	uint32_t viewers; // at most
 	const ob_scene *scene;
 	const char *version;
+	const char *fixed; // why the scene cannot start anew with other parameters; NULL: it can
 	const ob_message *film; // shown instead of a universe (film.h), to each viewer at a time of its own; NULL: none
 } ob_server_config;
 
 enum { OB_SERVER_STUCK = 20 }; // s
+
+typedef struct ob_define {
+	char text[OB_NAME_MAX + 32];
+} ob_define;
 
 typedef struct ob_server ob_server;
 
@@ -58,6 +63,14 @@ ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace,
 // Address of the page for visitors of a role, with its token, if there is one. The first is for all that is allowed;
 // "" for another: the server gives out no address of its own for that role.
 const char *ob_server_url(const ob_server *s, ob_role role);
+// Takes the latest wish of an operator to start the scene anew: "name=value". false: there is none. Any thread.
+bool ob_server_take_wish(ob_server *s, ob_define *out);
+// Sends all viewers a line. Any thread.
+void ob_server_notify(ob_server *s, const ob_error *text);
+// Holds the server, whose viewers stay connected, and lets it go on with another run of the scene; before the host is stopped,
+// and after the next one is started. go_on: false and e if it cannot.
+void ob_server_hold(ob_server *s);
+bool ob_server_go_on(ob_server *s, const ob_scene *scene, ob_host *h, ob_error *e);
 void ob_server_stop(ob_server *s); // NULL is allowed
 
 #endif

@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "base/interrupt.h"
+#include "serve/avatar.h"
 #include "serve/client.h"
 #include "serve/door.h"
 #include "serve/facts.h"
@@ -53,8 +54,11 @@ struct ob_server {
 	ob_content *own; // a film's page and the film itself, else the scene's meshes; ends with one without a path
 
 	pthread_t thread;
-	pthread_mutex_t lock; // guards ending
+	bool held; // the thread has ended
+	pthread_mutex_t lock; // guards the next three
 	bool ending;
+	ob_define wish; // for another run; "" = none
+	ob_error notice; // for all viewers; "" = none
 
 	struct lws_context *context; // this and all below: the thread's own
 	lws_sorted_usec_list_t tick, door_tick;
@@ -64,6 +68,7 @@ struct ob_server {
 	uint32_t count, numbers; // numbers: given to clients so far
 	double details_at; // s
 	uint64_t frozen_sent; // ns: time of the latest failure that viewers were sent
+	bool anew; // viewers do not know yet that another run has begun
 	bool called; // the library has called back in this turn of the loop
 };
 
@@ -152,6 +157,49 @@ static void send_frozen(ob_server *s)
 	}
 }
 
+static void tell_avatar(ob_client *c)
+{
+	send_one(c, ob_facts_avatar(c->avatar, c->generation));
+}
+
+static void send_all_about(ob_server *s, ob_client *c)
+{
+	ob_pace_state pace = ob_pace_get(s->pace);
+	ob_universe_info info;
+	ob_universe_get_info(ob_host_universe(s->host), &info);
+	send_one(c, ob_facts_welcome(&s->config, c->role, &info, s->own));
+	send_one(c, ob_feed_whole(s->feed, &pace));
+	send_one(c, ob_facts_statistics(s->host, s->count, c->energy));
+	ob_avatar_ask(s->host, s->config.scene, c);
+}
+
+// Sends news of the host's thread: another run, and a line.
+static void send_news(ob_server *s)
+{
+	pthread_mutex_lock(&s->lock);
+	const ob_error notice = s->notice;
+	s->notice.text[0] = 0;
+	pthread_mutex_unlock(&s->lock);
+	if (*notice.text)
+		send_all(s, ob_facts_notice(notice.text), false);
+	for (ob_client *c = s->anew ? s->clients : NULL; c; c = c->next) {
+		c->avatar = c->inspected = UINT32_MAX;
+		send_all_about(s, c);
+	}
+	s->anew = false;
+}
+
+// Sends what need not be new in each frame.
+static void send_details(ob_server *s)
+{
+	bool energy = false;
+	for (ob_client *c = s->clients; c; c = c->next)
+		energy |= c->energy;
+	send_frozen(s);
+	send_simulators(s);
+	send_all(s, ob_facts_statistics(s->host, s->count, energy), false);
+}
+
 static void look(lws_sorted_usec_list_t *tick)
 {
 	ob_server *s = lws_container_of(tick, ob_server, tick);
@@ -160,6 +208,7 @@ static void look(lws_sorted_usec_list_t *tick)
 	ob_pace_state pace = ob_pace_get(s->pace);
 	bool details = begin >= s->details_at;
 	bool contacts = false;
+	send_news(s);
 	if (s->clients)
 		send_all(s, ob_feed_next(s->feed, &pace), false);
 	for (ob_client *c = s->clients; c; c = c->next) {
@@ -173,10 +222,10 @@ static void look(lws_sorted_usec_list_t *tick)
 	}
 	if (contacts)
 		send_all(s, ob_feed_contacts(s->feed), true);
-	if (details && s->clients) {
-		send_frozen(s);
-		send_simulators(s);
-		send_all(s, ob_facts_statistics(s->host, s->count), false);
+	if (details) {
+		ob_avatars_update(s->host, s->config.scene, s->clients, tell_avatar);
+		if (s->clients)
+			send_details(s);
 		s->details_at = begin + detail_interval;
 	}
 	double wait = fmax(interval, (ob_clock_wall() - begin) / share);
@@ -194,10 +243,14 @@ static bool may(ob_client *c, ob_role needed)
 	return false;
 }
 
-// Sends a visitor's request to the host.
+// Sends a visitor's request to the host. Another's avatar is for operators.
 static void ask(ob_server *s, ob_client *c, ob_request *r)
 {
 	ob_error e;
+	ob_roster_entry entry;
+	if (ob_roster_find(ob_host_roster(s->host), r->id, &entry) && ob_is_avatar(&entry) &&
+	    entry.origin != c->number && r->kind != OB_REQUEST_RELEASE && !may(c, OB_ROLE_OPERATE))
+		return;
 	r->origin = c->number;
 	c->pulls |= r->kind == OB_REQUEST_PUSH || r->kind == OB_REQUEST_DRAG || r->kind == OB_REQUEST_TORQUE;
 	if (!ob_host_ask(s->host, r, &e))
@@ -240,6 +293,30 @@ static void carry_out_requests(ob_server *s, ob_client *c, ob_command *asked)
 	}
 }
 
+// Notes that the scene is to start anew with another value of a parameter.
+static void wish(ob_server *s, ob_client *c, const ob_command *asked)
+{
+	const ob_scene *scene = s->config.scene;
+	const ob_param_def *p = NULL;
+	ob_error e = { "" };
+	for (uint32_t i = 0; i < scene->params && !p; i++)
+		p = strcmp(scene->param[i].name, asked->name) == 0 ? &scene->param[i] : NULL;
+	if (s->config.fixed)
+		ob_fail(&e, "the scene cannot start anew with another %s: %s", asked->name, s->config.fixed);
+	else if (!p)
+		ob_fail(&e, "%s: the scene has no parameter of this name within limits", asked->name);
+	else if (!(asked->value >= p->min && asked->value <= p->max))
+		ob_fail(&e, "%s: expected a number from %.10g to %.10g, got %.10g", p->name, p->min, p->max,
+			asked->value);
+	if (*e.text || !p) {
+		send_error(c, e.text);
+		return;
+	}
+	pthread_mutex_lock(&s->lock);
+	snprintf(s->wish.text, sizeof s->wish.text, p->whole ? "%s=%.0f" : "%s=%.10g", p->name, asked->value);
+	pthread_mutex_unlock(&s->lock);
+}
+
 static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 {
 	switch (asked->kind) {
@@ -248,6 +325,9 @@ static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 		return;
 	case OB_DO_SIMULATORS:
 		c->simulators = asked->on;
+		return;
+	case OB_DO_ENERGY:
+		c->energy = asked->on;
 		return;
 	case OB_DO_INSPECT:
 		c->inspected = asked->id;
@@ -264,6 +344,9 @@ static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 	case OB_DO_PAUSE:
 	case OB_DO_RESUME:
 		ob_pace_set_paused(s->pace, asked->kind == OB_DO_PAUSE);
+		break;
+	case OB_DO_SET:
+		wish(s, c, asked);
 		break;
 	case OB_DO_STEP:
 		ob_pace_allow(s->pace, asked->steps);
@@ -425,14 +508,13 @@ static void look_at_door(lws_sorted_usec_list_t *tick)
 static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 {
 	int bytes = SEND_BUFFER;
-	ob_pace_state pace = ob_pace_get(s->pace);
-	ob_universe_info info;
 	double now = ob_clock_wall();
 	*c = (ob_client){ .wsi = wsi,
 			  .role = role_of(s, wsi),
 			  .next = s->clients,
 			  .taken_at = now,
 			  .inspected = UINT32_MAX,
+			  .avatar = UINT32_MAX,
 			  .number = ++s->numbers,
 			  .commands = { commands_rate, now },
 			  .creations = { creations_rate, now } };
@@ -440,10 +522,7 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 	s->count++;
 	ob_door_move(wsi, OB_AT_VIEWER, now);
 	setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
-	ob_universe_get_info(ob_host_universe(s->host), &info);
-	send_one(c, ob_facts_welcome(&s->config, c->role, &info, s->own));
-	send_one(c, ob_feed_whole(s->feed, &pace));
-	send_one(c, ob_facts_statistics(s->host, s->count));
+	send_all_about(s, c);
 }
 
 static void leave(ob_server *s, ob_client *c)
@@ -700,10 +779,18 @@ static void release_own(ob_server *s)
 	free(s->own);
 }
 
+static bool start_thread(ob_server *s, ob_error *e)
+{
+	sigset_t before;
+	ob_interrupt_leave_to_main(&before);
+	int failure = pthread_create(&s->thread, NULL, serve, s);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	return failure == 0 || ob_fail(e, "the server's thread cannot be started: %s", strerror(failure));
+}
+
 static ob_server *start_server(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e)
 {
 	ob_server *s = calloc(1, sizeof *s);
-	sigset_t before;
 	if (!s) {
 		ob_fail(e, "out of memory");
 		return NULL;
@@ -719,12 +806,8 @@ static ob_server *start_server(const ob_server_config *c, ob_host *h, ob_pace *p
 		if (s->feed)
 			lws_sul_schedule(s->context, 0, &s->tick, look, 1);
 		lws_sul_schedule(s->context, 0, &s->door_tick, look_at_door, 1);
-		ob_interrupt_leave_to_main(&before);
-		int failure = pthread_create(&s->thread, NULL, serve, s);
-		pthread_sigmask(SIG_SETMASK, &before, NULL);
-		if (failure == 0)
+		if (start_thread(s, e))
 			return s;
-		ob_fail(e, "the server's thread cannot be started: %s", strerror(failure));
 	}
 	if (s->context)
 		lws_context_destroy(s->context);
@@ -740,15 +823,52 @@ static const char *url_of(const ob_server *s, ob_role role)
 	return role == OB_ROLE_OPERATE ? s->url[most_of(s)] : most_of(s) == OB_ROLE_WATCH ? "" : s->url[role];
 }
 
-static void stop_server(ob_server *s)
+static bool take_wish(ob_server *s, ob_define *out)
 {
-	if (!s)
-		return;
+	pthread_mutex_lock(&s->lock);
+	*out = s->wish;
+	s->wish.text[0] = 0;
+	pthread_mutex_unlock(&s->lock);
+	return *out->text;
+}
+
+static void notify(ob_server *s, const ob_error *text)
+{
+	pthread_mutex_lock(&s->lock);
+	s->notice = *text;
+	pthread_mutex_unlock(&s->lock);
+}
+
+// Ends the thread; connections stay.
+static void hold(ob_server *s)
+{
 	pthread_mutex_lock(&s->lock);
 	s->ending = true;
 	pthread_mutex_unlock(&s->lock);
 	lws_cancel_service(s->context);
 	pthread_join(s->thread, NULL);
+	s->held = true;
+}
+
+static bool go_on(ob_server *s, const ob_scene *scene, ob_host *h, ob_error *e)
+{
+	ob_feed_destroy(s->feed);
+	s->feed = ob_feed_create(ob_host_universe(h), ob_host_roster(h));
+	s->config.scene = scene;
+	s->host = h;
+	s->anew = true;
+	s->ending = false;
+	s->frozen_sent = 0;
+	s->held = !s->feed || !start_thread(s, e);
+	return s->feed ? !s->held : ob_fail(e, "out of memory");
+}
+
+static void stop_server(ob_server *s)
+{
+	if (!s)
+		return;
+	if (!s->held)
+		hold(s);
 	lws_context_destroy(s->context);
 	ob_feed_destroy(s->feed);
 	release_own(s);
@@ -756,4 +876,11 @@ static void stop_server(ob_server *s)
 	free(s);
 }
 
-OB_PART(ob_serve_part) = { OB_PART_HEAD(ob_serve_part), .start = start_server, .url = url_of, .stop = stop_server };
+OB_PART(ob_serve_part) = { OB_PART_HEAD(ob_serve_part),
+			   .start = start_server,
+			   .url = url_of,
+			   .take_wish = take_wish,
+			   .notify = notify,
+			   .hold = hold,
+			   .go_on = go_on,
+			   .stop = stop_server };

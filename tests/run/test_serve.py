@@ -1,6 +1,7 @@
 """obsim serve: pages over HTTP, the universe over WebSockets, and attacks."""
 
 import glob
+import gzip
 import os
 import random
 import re
@@ -270,6 +271,141 @@ class Serve(Case):
 		other.until(lambda: not any(o["name"] == "guest" for o in other.objects.values()))
 		other.until(lambda: other.objects[i]["p"][0] < 4)
 		self.end(saying="was killed by SIGKILL")
+
+	AVATAR = """ground {}
+local n = param("n", 2, { min = 1, max = 9, unit = "boxes" })
+for i = 1, n do box { size = { 1, 1, 1 }, at = { 3 * i, 0, .5 }, density = 50 } end
+sphere { avatar = true, name = "guest", radius = .4, at = { 0, 0, .4 }, script = [[
+function on_message(_, what, x, y)
+	if what == "roll" then self.state.x, self.state.y = x, y end
+end
+function on_step()
+	self:force(400 * (self.state.x or 0), 400 * (self.state.y or 0), 0)
+end]] }
+controls { key = "D", label = "Right", sends = "roll", values = { 1, 0 } }
+controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
+"""
+
+	def write(self, text):
+		with open(self.path("scene.lua"), "w") as f:
+			f.write(text)
+		return self.path("scene.lua")
+
+	def avatar(self, v):
+		v.until(lambda: v.told.get("avatar", {}).get("id") in v.objects)
+		return v.told["avatar"]
+
+	def refused(self, v, **command):
+		v.told.pop("error", None)
+		v.send(**command)
+		v.until(lambda: "error" in v.told)
+		return v.told["error"]
+
+	def test_avatars(self):
+		"""Each who takes part has an avatar, which goes with it, and steers no other."""
+		token = self.serve_file(self.write(self.AVATAR), "--listen", "0.0.0.0:0")
+		role = {}
+		for _ in range(2):
+			name, url = self.run_.stdout.readline().split(": ")
+			role[name.removeprefix("To ")] = url.strip().rpartition("=")[2]
+		come = lambda t: self.viewer(path="/universe?token=" + t)
+		one, other, watcher, operator = come(role["take part"]), come(role["take part"]), come(role["watch"]), come(token)
+		self.assertEqual([(c["key"], c["sends"], c["values"]) for c in one.told["welcome"]["controls"]],
+			[("d", "roll", [1, 0]), ("", "power", [1])])
+		own, foreign = self.avatar(one), self.avatar(other)
+		self.assertNotEqual(own["id"], foreign["id"])
+		self.assertEqual(one.objects[own["id"]]["name"][:6], "guest ")
+		for command in {"do": "message", "text": "roll 0 1"}, {"do": "drag", "target": [0, 0, 9]}, {"do": "push", "force": [0, 0, 9]}, \
+				{"do": "turn", "torque": [0, 0, 9]}, {"do": "remove"}, {"do": "edit", "friction": 0}, {"do": "kill"}:
+			self.assertIn("this is for those who operate", self.refused(one, **command, **foreign))
+			self.assertIn("may change nothing", self.refused(watcher, **command, **foreign))
+		self.assertNotIn("avatar", watcher.told)
+		one.send(do="message", text="roll 1 0", **own)
+		other.until(lambda: other.objects.get(own["id"], {}).get("p", [0])[0] > 2.4) # against the box, which it pushes
+		box = next(i for i, o in other.objects.items() if o["name"].startswith("box"))
+		other.until(lambda: other.objects[box]["p"][0] > 3.2)
+		self.assertLess(abs(other.objects[foreign["id"]]["p"][0]), 2)
+		operator.send(do="message", text="roll 0 1", **own) # an operator may
+		other.until(lambda: other.objects[own["id"]]["p"][1] > 1)
+		operator.send(do="restart") # and all are there again
+		one.until(lambda: one.told["avatar"]["generation"] != own["generation"] or one.objects.get(own["id"], {}).get("p", [9, 9])[1] < 1)
+		gone = self.avatar(one)
+		one.close()
+		other.until(lambda: gone["id"] not in other.objects)
+		self.end()
+
+	def test_other_parameters(self):
+		"""The scene starts anew with another value of a parameter; viewers stay connected."""
+		self.serve_file(self.write(self.AVATAR), "--listen", "127.0.0.1:0")
+		v, other = self.viewer(), self.viewer()
+		self.avatar(v)
+		self.assertEqual(v.told["welcome"]["params"], [{"name": "n", "unit": "boxes", "value": 2, "min": 1, "max": 9, "whole": True}])
+		for n in 7, 3:
+			v.send(do="set", name="n", value=n)
+			other.until(lambda: other.told["welcome"]["params"][0]["value"] == n)
+			other.until(lambda: sum(o["name"].startswith("box") for o in other.objects.values()) == n)
+			v.until(lambda: sum(o["name"].startswith("guest") for o in v.objects.values()) == 2)
+		self.assertIn("from 1 to 9, got 10", self.refused(v, do="set", name="n", value=10))
+		self.assertIn("no parameter of this name", self.refused(v, do="set", name="m", value=1))
+		self.write("ground {}\n") # a scene that is wrong by now
+		v.send(do="set", name="n", value=4)
+		v.until(lambda: "unknown parameter" in v.told.get("notice", ""))
+		v.send(do="pause")
+		v.until(lambda: v.paused)
+		self.assertEqual(sum(o["name"].startswith("box") for o in v.objects.values()), 3)
+		self.end()
+		self.serve("--log-requests", self.path("log"))
+		self.assertIn("--log-requests", self.refused(self.viewer(), do="set", name="n", value=4))
+		self.end()
+
+	def test_logged_avatars(self):
+		"""A log repeats avatars, too: how they came, walked and went."""
+		scene, log = self.write(self.AVATAR), self.path("log")
+		self.serve_file(scene, "--listen", "127.0.0.1:0", "--log-requests", log)
+		v, other = self.viewer(), self.viewer()
+		own = self.avatar(v)
+		v.send(do="message", text="roll 1 0", **own)
+		other.until(lambda: other.objects.get(own["id"], {}).get("p", [0])[0] > 1)
+		v.close()
+		other.until(lambda: own["id"] not in other.objects)
+		other.until(lambda: other.told["statistics"]["step"] > 30)
+		self.end()
+		done = program.call("run", scene, "--replay-requests", log, "--workers", "1")
+		self.assertIn("states equal those of the log", done.stdout, done.stderr)
+
+	def test_record(self):
+		"""A served run is recorded, with all that viewers did, and plays back."""
+		path = self.path("session.h5")
+		self.serve("--record", path)
+		v = self.viewer()
+		v.send(do="create", shape="box", size=[.2, .2, .2], at=[4, 0, 1], mass=5, name="gift")
+		v.until(lambda: any(o["name"] == "gift" for o in v.objects.values()))
+		self.assertIn("--record", self.refused(v, do="restart"))
+		step = v.told["statistics"]["step"]
+		v.until(lambda: v.told["statistics"]["step"] > step + 20)
+		self.end()
+		self.run_ = program.start("serve", "--replay", path, "--listen", "127.0.0.1:0")
+		self.addCleanup(lambda: (self.run_.stdout.close(), self.run_.stderr.close()))
+		self.port = int(self.run_.stdout.readline().strip().rstrip("/").rsplit(":", 1)[1])
+		_, page = self.http("GET /index.html HTTP/1.1\nHost: HOST\nConnection: close")
+		self.assertIn(b"recording", page)
+		film = gzip.decompress(self.http("GET /recording HTTP/1.1\nHost: HOST\nConnection: close")[1])
+		self.assertIn(b"gift", film)
+		self.end()
+
+	def test_fast(self):
+		"""Far faster than it can go, a universe still answers its viewers."""
+		self.serve("--pace", "1e6")
+		v = self.viewer()
+		for _ in range(3):
+			v.send(do="pause")
+			v.until(lambda: v.paused)
+			v.send(do="resume")
+			v.until(lambda: not v.paused)
+		self.assertIsNone(v.told["statistics"]["energy"]) # nobody looks at it
+		v.send(do="energy", on=True)
+		v.until(lambda: v.told["statistics"]["energy"] is not None)
+		self.end()
 
 	def test_look_only(self):
 		self.serve("--readonly")

@@ -190,6 +190,50 @@ class Viewer(server.Case):
 		self.assertEqual(b.console(), [])
 		self.end()
 
+	def test_avatar(self):
+		"""A visitor's avatar walks by keys, the viewpoint behind it, and pushes a crate, which another visitor sees."""
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("""ground {}
+local n = param("n", 1, { min = 1, max = 9 })
+for i = 1, n do box { name = "crate " .. i, size = { 1, 1, 1 }, at = { 3 * i, 0, .5 }, density = 20 } end
+camera "main" { eye = { 0, -9, 5 }, target = { 0, 0, .5 } }
+camera "behind" { on = "guest", eye = { -4, 0, 2 }, target = { 2, 0, 0 } }
+box { avatar = true, name = "guest", size = { .5, .5, .5 }, at = { 0, 0, .25 }, friction = .1, script = [[
+function on_message(_, what, x)
+	if what == "go" then self.state.x = x end
+end
+function on_step()
+	self:force(600 * (self.state.x or 0), 0, 0)
+end]] }
+controls { key = "w", label = "Ahead", sends = "go", values = { 1 } }
+""")
+		self.serve_file(self.path("scene.lua"))
+		one, other = self.open(), self.open()
+		one.wait("obsim.avatar() && obsim.universe.objects.has(obsim.avatar().id) && obsim.camera.goes")
+		crate = "obsim.universe.pose([...obsim.universe.objects.values()].find((o) => o.name === 'crate 1')).p[0]"
+		own = one.run("return obsim.avatar().id")
+		place = f"obsim.universe.pose(obsim.universe.objects.get({own})).p"
+		self.assertNotEqual(own, other.wait("obsim.avatar()?.id"))
+		eye = one.run("return obsim.camera.eye[0]")
+		keys = lambda *actions: one.ask("POST", "/actions", {"actions": [{"type": "key", "id": "keys",
+			"actions": [{"type": what, "value": "w"} for what in actions]}]})
+		keys("keyDown")
+		other.wait(f"{crate} > 3.3")
+		keys("keyUp")
+		one.wait(f"obsim.camera.eye[0] > {eye} + 1")
+		self.assertGreater(other.run(f"return {place}[0]"), 1)
+		self.keep(one, "avatar.png")
+		self.keep(other, "avatar-seen.png")
+		one.run("const n = document.querySelector('#params input'); n.value = 4; n.dispatchEvent(new Event('change'))")
+		for b in one, other: # who is there again
+			b.wait("obsim.universe.objects.size === 1 + 4 + 2")
+			b.wait("obsim.avatar() && obsim.universe.objects.has(obsim.avatar().id)")
+		self.keep(one, "again.png")
+		one.run("window.obsim.universe.socket.close()")
+		for b in one, other:
+			self.assertEqual(b.console(), [])
+		self.end()
+
 	def test_viewpoint(self):
 		"""Each looks from elsewhere: round it, along, with the head turned."""
 		self.serve("--paused")

@@ -52,6 +52,16 @@ static void test_meaning(void)
 	CHECK(c.request[1].friction == .1 && c.request[1].id == 12);
 	CHECK(reads("{\"do\":\"release\"}", &c) && q->kind == OB_REQUEST_RELEASE && q->id == UINT32_MAX);
 	CHECK(reads("{\"do\":\"message\",\"id\":12,\"generation\":3,\"text\":\"hop\"}", &c) && q->bytes > 3);
+	CHECK(reads("{\"do\":\"message\",\"id\":12,\"generation\":3,\"text\":\" walk 1  -0.5 \"}", &c));
+	unsigned char words[64];
+	uint32_t bytes = 0;
+	CHECK(ob_scene_put_value("walk", words, &bytes, sizeof words) &&
+	      ob_scene_put_value("1", words, &bytes, sizeof words) &&
+	      ob_scene_put_value("-0.5", words, &bytes, sizeof words));
+	CHECK(q->bytes == bytes && memcmp(q->values, words, bytes) == 0);
+	CHECK(reads("{\"do\":\"set\",\"name\":\"n\",\"value\":12.5}", &c) && c.kind == OB_DO_SET && c.requests == 0);
+	CHECK(strcmp(c.name, "n") == 0 && c.value == 12.5);
+	CHECK(reads("{\"do\":\"energy\",\"on\":true}", &c) && c.kind == OB_DO_ENERGY && c.on);
 	CHECK(reads("{\"do\":\"restart\"}", &c) && q->kind == OB_REQUEST_RESTART && c.requests == 1);
 	CHECK(reads("{\"do\":\"pause\"}", &c) && c.kind == OB_DO_PAUSE && c.requests == 0);
 	CHECK(reads("{\"do\":\"step\"}", &c) && c.kind == OB_DO_STEP && c.steps == 1);
@@ -92,6 +102,10 @@ static void test_nonsense(void)
 		"{\"do\":\"edit\",\"id\":1,\"generation\":1,\"attitude\":[0,0,0,0]}",
 		"{\"do\":\"edit\",\"id\":1,\"generation\":1,\"mass\":1}",
 		"{\"do\":\"message\",\"id\":1,\"generation\":1,\"text\":7}",
+		"{\"do\":\"message\",\"id\":1,\"generation\":1,\"text\":\"  \"}",
+		"{\"do\":\"set\",\"name\":\"n\"}",
+		"{\"do\":\"set\",\"name\":\"n\",\"value\":[1]}",
+		"{\"do\":\"set\",\"name\":\"n\",\"value\":1e999}",
 		"{\"do\":\"kill\",\"id\":1}",
 		"{\"do\":\"step\",\"steps\":0}",
 		"{\"do\":\"rate\",\"rate\":-1}",

@@ -10,6 +10,7 @@ import { colourBy } from './colouring.js';
 import { Workers } from './workers.js';
 import { Hand } from './hand.js';
 import { Explore } from './explore.js';
+import { Offers } from './offers.js';
 
 const THROWN = 12; // m/s
 const PICKED = [1, 0.7, 0.33, 1];
@@ -22,8 +23,8 @@ const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const recording = document.querySelector('meta[name=recording]').content;
-const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe);
-let drawing, look, cameras = [], shownCamera = 0, picked = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '';
+const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers();
+let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '';
 
 // ---- the picture
 
@@ -33,7 +34,7 @@ function bodies() {
 		const pose = universe.pose(o);
 		const mesh = drawing.looks.get(o.mesh);
 		if (pose)
-			out.push({ id: o.id, name: o.name, attention: universe.attention(o), shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour && !others, meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, kind: o.motion.kind, shown: colourBy(key, o, universe.simulators.get(o.id), workers.list),
+			out.push({ id: o.id, name: o.id === avatar?.id ? look.avatar : o.name, attention: universe.attention(o), shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour && !others, meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, kind: o.motion.kind, shown: colourBy(key, o, universe.simulators.get(o.id), workers.list),
 				roughness: o.roughness, metal: o.metal, ...pose });
 	}
 	return out;
@@ -74,6 +75,7 @@ function frame(now) {
 	if (canvas.width !== width || canvas.height !== height)
 		[canvas.width, canvas.height] = [width, height];
 	universe.advance(seconds);
+	offers.look();
 	const list = bodies();
 	if (camera.following)
 		camera.follow(list, width, height);
@@ -231,7 +233,17 @@ panel.addEventListener('simulators', (e) => {
 	askSimulators();
 });
 workers.addEventListener('colours', askSimulators);
-panel.addEventListener('objects', (e) => explore.show(e.detail));
+panel.addEventListener('objects', (e) => {
+	explore.show(e.detail);
+	universe.send({ do: 'energy', on: e.detail });
+});
+panel.addEventListener('offers', (e) => { document.querySelector('#offers').hidden = !e.detail; });
+offers.addEventListener('set', (e) => universe.send({ do: 'set', ...e.detail }));
+offers.addEventListener('control', ({ detail: { to, text } }) => {
+	const o = to ? [...universe.objects.values()].find((x) => x.name === to) : avatar;
+	if (o)
+		universe.send({ do: 'message', id: o.id, generation: o.generation, text });
+});
 explore.addEventListener('pick', (e) => pick(e.detail));
 panel.addEventListener('picture', () => explore.picture(canvas));
 panel.addEventListener('video', () => document.querySelector('[data-do=video]').setAttribute('aria-pressed', explore.video(canvas)));
@@ -280,9 +292,10 @@ panel.addEventListener('view', () => {
 document.addEventListener('keydown', (e) => {
 	if (e.ctrlKey || e.metaKey || e.target.closest('input:not(#time), select') || (e.key === ' ' && e.target.closest('button')))
 		return;
-	if (panel.key(e.key) || moveByKey(camera, e.key))
+	if (offers.key(e.key, true) || panel.key(e.key) || moveByKey(camera, e.key))
 		e.preventDefault();
 });
+document.addEventListener('keyup', (e) => offers.key(e.key, false));
 control(canvas, camera, click, grab, {
 	move: (x, y) => {
 		const { from, ray } = rayAt(x, y);
@@ -311,6 +324,9 @@ universe.addEventListener('welcome', (e) => {
 	look = e.detail;
 	cameras = look.cameras;
 	panel.welcome(look);
+	avatar = null;
+	if (offers.welcome(look) && !panel.on.offers)
+		panel.ask('offers');
 	fetchMeshes(look.meshes);
 	if (!camera.placed)
 		camera.set(askedView() ?? cameras[0]);
@@ -321,6 +337,16 @@ universe.addEventListener('welcome', (e) => {
 		universe.send({ do: 'contacts', on: true });
 	if (panel.on.simulators || workers.key !== 'own')
 		askSimulators();
+	if (panel.on.objects)
+		universe.send({ do: 'energy', on: true });
+});
+// The visitor's own avatar: at the first one, the viewpoint goes behind it, where the scene has such a camera.
+universe.addEventListener('avatar', (e) => {
+	const behind = cameras.findIndex((c) => c.follow === look.avatar);
+	avatar = e.detail;
+	if (behind >= 0 && !asked.get('view') && !camera.behind)
+		camera.set(cameras[shownCamera = behind]);
+	camera.behind = true;
 });
 universe.addEventListener('workers', (e) => workers.hear(e.detail, (id) => universe.objects.get(id)?.name || `object ${id}`));
 // Fetches meshes, which a browser keeps as contents; a recording holds its own. Until they arrive, objects show their
@@ -385,5 +411,5 @@ async function begin() {
 }
 
 // For tests and the console
-window.obsim = { universe, camera, panel, workers, hand, explore, pick, frames: () => frames, drawing: () => drawing };
+window.obsim = { avatar: () => avatar, offers, universe, camera, panel, workers, hand, explore, pick, frames: () => frames, drawing: () => drawing };
 begin().catch((error) => panel.notice(error.message, 0));

@@ -1,0 +1,115 @@
+// What a scene offers to visitors: controls (keys, buttons, sliders, a gamepad's stick), and parameters to start it anew with.
+const WIDE = 100; // largest by smallest value, beyond which a slider is logarithmic
+const DEAD = 0.2; // part of a stick's way that means nothing
+const STICK = { 0: ['a', 'd'], 1: ['w', 's'] }; // keys that a gamepad's axes stand for: below 0, above 0
+
+const $ = (selector) => document.querySelector(selector);
+const short = (x) => Number(x.toPrecision(4)).toString();
+
+function element(name, properties, ...children) {
+	const e = Object.assign(document.createElement(name), properties);
+	e.append(...children);
+	return e;
+}
+
+export class Offers extends EventTarget {
+	constructor() {
+		super();
+		this.controls = [];
+		this.held = new Set(); // controls
+		addEventListener('blur', () => this.letAll());
+	}
+
+	// The controls and parameters of a scene, as its welcome has them.
+	welcome({ controls, params, look_only, role }) {
+		this.letAll();
+		this.controls = look_only ? [] : controls ?? [];
+		$('#controls').replaceChildren(...this.controls.map((c) => (c.range ? this.slider(c) : this.button(c))));
+		$('#params').replaceChildren(...(role === 'operate' && params ? params.map((p) => this.param(p)) : []));
+		const none = $('#controls').children.length + $('#params').children.length === 0;
+		$('[data-do=offers]').hidden = none;
+		return !none && this.controls.length > 0;
+	}
+
+	button(c) {
+		const button = element('button', { textContent: c.label || c.sends, title: c.key ? `${c.sends} (${c.key})` : c.sends });
+		if (c.key)
+			button.append(element('kbd', { textContent: c.key }));
+		for (const [event, down] of [['pointerdown', true], ['pointerup', false], ['pointerleave', false]])
+			button.addEventListener(event, () => this.hold(c, down));
+		return button;
+	}
+
+	slider(c) {
+		const [min, max] = c.range;
+		return this.range({ name: c.label, min, max, value: c.values[0] }, 'input', (value) => this.send(c, [value]));
+	}
+
+	param(p) {
+		return this.range(p, 'change', (value) => this.dispatchEvent(new CustomEvent('set', { detail: { name: p.name, value } })));
+	}
+
+	range({ name, min, max, value, whole, unit }, event, tell) {
+		const scale = min > 0 && max / min > WIDE ? { to: Math.log10, from: (x) => 10 ** x } : { to: Number, from: Number };
+		const input = element('input', { type: 'range', min: scale.to(min), max: scale.to(max), step: whole && scale.to === Number ? 1 : 'any', name });
+		input.value = scale.to(value);
+		const chosen = () => {
+			const x = Math.min(max, Math.max(min, scale.from(Number(input.value))));
+			return whole ? Math.round(x) : x;
+		};
+		const output = element('output'), show = () => { output.value = `${short(chosen())} ${unit ?? ''}`; };
+		input.addEventListener('input', show);
+		input.addEventListener(event, () => tell(chosen()));
+		show();
+		return element('label', {}, name, input, output);
+	}
+
+	// A key goes down or up; true: a control has it.
+	key(key, down) {
+		const name = key.length === 1 ? key.toLowerCase() : key;
+		const found = this.controls.filter((c) => c.key === name);
+		for (const c of found)
+			this.hold(c, down);
+		return found.length > 0;
+	}
+
+	hold(c, down) {
+		if (this.held.has(c) === down)
+			return;
+		if (down)
+			this.held.add(c);
+		else
+			this.held.delete(c);
+		if (c.values.length)
+			this.send(c, this.sum(c));
+		else if (down)
+			this.send(c, []);
+	}
+
+	// Values of all held controls that send the same to the same object.
+	sum({ sends, to, values }) {
+		return values.map((_, k) => [...this.held].filter((c) => c.sends === sends && c.to === to).reduce((all, c) => all + (c.values[k] ?? 0), 0));
+	}
+
+	send({ sends, to }, values) {
+		const text = [sends, ...values.map((x) => Number(x.toPrecision(4)))].join(' ');
+		this.dispatchEvent(new CustomEvent('control', { detail: { to, text } }));
+	}
+
+	letAll() {
+		for (const c of [...this.held])
+			this.hold(c, false);
+	}
+
+	// Reads the first gamepad, once a frame: its stick and arrows stand for keys.
+	look() {
+		const pad = this.controls.length ? navigator.getGamepads?.().find((p) => p) : null;
+		for (const [axis, keys] of pad ? Object.entries(STICK) : [])
+			keys.forEach((key, side) => {
+				const on = pad.axes[axis] * (side ? 1 : -1) > DEAD;
+				if (on !== (this.stick?.[key] ?? false))
+					this.key(key, on);
+				this.stick = { ...this.stick, [key]: on };
+			});
+	}
+}
