@@ -22,7 +22,7 @@
 
 static const double patience = .05; // s, in which requests are taken while no step is due
 static const double go_time = .02; // s that the universe runs between checks if it cannot keep its pace
-static const uint64_t paced_steps = 8; // that it may be behind, at a usual pace, and does in one go
+static const uint64_t paced_steps = 8; // in one go at least, if paced: it is not further behind at a usual rate
 
 typedef struct serve_request {
 	ob_run_request run;
@@ -56,7 +56,7 @@ static bool read_request(serve_request *q, const ob_arguments *a, ob_error *e)
 
 // A run that is served. Parameters that viewers have set replace it by another one.
 typedef struct serving {
-	const ob_arguments *a; // of the command line
+	const ob_arguments *a; // from the command line
 	ob_arguments own; // with the parameters that viewers have set; define is its own
 	ob_define *set; // [sets], those parameters
 	uint32_t sets;

@@ -1,4 +1,4 @@
-// What a scene offers to visitors: controls (keys, buttons, sliders, a gamepad's stick), and parameters to start it anew with.
+// Offers of a scene to visitors: controls (keys, buttons, sliders, a gamepad), and parameters to start it anew with.
 const WIDE = 100; // largest by smallest value, beyond which a slider is logarithmic
 const DEAD = 0.2; // part of a stick's way that means nothing
 const STICK = { 0: ['a', 'd'], 1: ['w', 's'] }; // keys that a gamepad's axes stand for: below 0, above 0
