@@ -72,10 +72,10 @@ static void advance_time(ob_free_sim *s, double next)
 		s->base = next, s->since_base = 0;
 }
 
-// As many substeps in a second as the run has at its own rate.
-static uint32_t substeps_of(const ob_free_sim *s, const ob_free_scratch *x)
+// As many substeps in a second as the run has at its own rate, and one at least. h (s): length of the step.
+static uint32_t substeps_of(const ob_free_scratch *x, double h)
 {
-	const double n = rint(x->substeps * x->free->update_rate / s->rate);
+	const double n = rint(x->substeps * x->free->update_rate * h);
 	return n > 1 ? (uint32_t)ob_min(n, OB_MAX_SUBSTEPS) : 1;
 }
 
@@ -109,7 +109,7 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 	const double next = replays ? planned.end : ob_free_sim_next(s, x), h = next - s->time;
 	x->sim = s;
 	x->run.step_length = h;
-	x->run.substeps = substeps_of(s, x);
+	x->run.substeps = substeps_of(x, h);
 	const uint64_t version = ob_universe_get_passport_version(x->u, s->id);
 	if (version != s->passport_version) {
 		s->flies = false;
