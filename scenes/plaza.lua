@@ -4,7 +4,7 @@
 --   -D people=20
 --   -D crates=60
 local people = param("people", 20, { min = 0, max = 500 })
-local crates = param("crates", 60, { min = 0, max = 2000 })
+local crates = param("crates", 60, { min = 0, max = 1000 })
 
 scene { title = "A plaza", duration = 60, seed = 3 }
 ground { colour = "#c7b9a1" }
@@ -47,6 +47,11 @@ end
 box { static = true, material = "stone", size = { 17, 1, .6 }, at = { 0, 11.5, 4.3 }, colour = "#cfc2ac" }
 
 local placed = { { 0, 0, 2.2 }, { 6.6, 0, 1.2 }, { -6.6, 0, 1.2 }, { 0, 6.6, 1.2 }, { 0, -6.6, 1.2 } } -- x, y, radius
+for k = 0, 7 do
+	local angle = math.pi / 8 + k * math.pi / 4
+	placed[#placed + 1] = { 8.6 * math.cos(angle), 8.6 * math.sin(angle), .7 }
+	placed[#placed + 1] = { 2.6 * (k - 3), 11.5, .6 }
+end
 local function free_place(low, high, radius)
 	for _ = 1, 400 do
 		local angle, r = random(0, 2 * math.pi), random(low, high)
@@ -63,7 +68,7 @@ end
 
 local wares = { "#b5793f", "#c98d4b", "#8f5b32", "#a9804f" }
 for i = 1, crates do
-	local x, y = free_place(2.4, 5.8 + crates / 80, .42)
+	local x, y = free_place(2.4, math.max(5.8 + crates / 80, .84 * math.sqrt(crates)), .42)
 	if x then
 		local size = random(.36, .56)
 		box { size = { size, size, size }, at = { x, y, size / 2 }, material = "crate", rotation = { axis = { 0, 0, 1 }, degrees = random(0, 90) }, colour = wares[1 + i % #wares] }
