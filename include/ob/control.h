@@ -86,6 +86,9 @@ bool ob_controller_release(ob_controller *c, const ob_change *change, size_t n, 
 bool ob_controller_set_frictions(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 // Velocity of the surface of static and kinematic objects, as of a belt (x y z, m/s, body frame).
 bool ob_controller_set_surface_velocities(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+// Motor of a joint: a change's id is that of the joint's first object, its values are the joint's number, as in <ob/joint.h>,
+// and the new target (m/s, rad/s, or m, rad).
+bool ob_controller_set_motors(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 // Kills the worker processes that simulate these objects (value unused): a fault, after which the run goes on to the same
 // bits. Refused where simulators are threads.
 bool ob_controller_kill(ob_controller *c, const ob_change *change, size_t n, ob_error *e);

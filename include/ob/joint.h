@@ -57,7 +57,7 @@ typedef struct ob_joint_axis {
 	double motor_stiffness, motor_damping; // N/m, N s/m
 } ob_joint_axis;
 
-// Properties of a joint. It holds while both objects are present with these generations. 240 bytes.
+// Properties of a joint. It holds while both objects are present with these generations. 288 bytes.
 typedef struct ob_joint_passport {
 	uint32_t object[2]; // ids; the second may be OB_JOINT_WORLD
 	uint32_t generation[2]; // of the objects
@@ -66,6 +66,7 @@ typedef struct ob_joint_passport {
 	ob_pose frame[2]; // frame of the joint in the frame of each object, as of a body; in the world's
 	double length; // m, of a distance; else 0
 	ob_joint_axis axis; // if the joint is OB_JOINT_DRIVEN
+	char name[OB_NAME_MAX]; // as the scene has it, or of its kind and number: "hinge#3"; ends with 0
 } ob_joint_passport;
 
 // Name of a kind, as scenes have it ("hinge"). NULL: no such kind.
@@ -74,6 +75,9 @@ const char *ob_joint_kind_name(uint32_t kind);
 // implausible, or one of its objects does not exist any more.
 uint32_t ob_universe_joints(const ob_universe *u);
 bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passport *out);
+// Value and rate of its free axis (m, rad; m/s, rad/s), at the present time of the universe. false: it has no such joint now,
+// or this kind has no such axis.
+bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *value, double *rate);
 
 #pragma GCC visibility pop
 

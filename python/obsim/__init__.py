@@ -26,12 +26,13 @@ import numpy
 from obsim import _native
 from obsim._native import Error
 
-__all__ = ['Error', 'Object', 'Run', 'Universe', 'attach', 'names', 'run']
+__all__ = ['Error', 'Joint', 'Object', 'Run', 'Universe', 'attach', 'names', 'run']
 
 CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
 CONTACT_EVENT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('step', 'u4'), ('begins', 'u4')])
 CHANGE = numpy.dtype([('id', 'u4'), ('generation', 'u4'), ('value', 'f8', 13)])
 _PRESENT, _STATIC, _FROZEN, _KINEMATIC = 1, 2, 4, 8
+_WORLD = 0xffffffff
 _SAME = numpy.nan
 _numbers = itertools.count()
 
@@ -173,6 +174,46 @@ class Object:
         self._universe.remove([self._id])
 
 
+class Joint:
+    """One joint of a universe. Its values are read when they are asked for; its motor's target is set at once."""
+
+    def __init__(self, universe, number, passport):
+        self._universe, self._number = universe, number
+        self.name, self.kind = passport.name.decode(), _native.library().ob_joint_kind_name(passport.kind).decode()
+
+    def __repr__(self):
+        return f'<{self.kind} {self._number} "{self.name}">'
+
+    def _passport(self):
+        p = self._universe._joint(self._number)
+        if not p:
+            raise Error(f'joint {self._number} has ended')
+        return p
+
+    def _read(self):
+        value, rate = ctypes.c_double(), ctypes.c_double()
+        if not _native.library().ob_universe_get_joint_value(self._universe._u, self._number, ctypes.byref(value), ctypes.byref(rate)):
+            raise Error(f'joint {self._number} has ended, or has no axis')
+        return value.value, rate.value
+
+    @property
+    def objects(self):
+        """Its two objects; one if it is joined to the world."""
+        return [self._universe[id_] for id_ in self._passport().object if id_ != _WORLD]
+
+    value = property(lambda self: self._read()[0], doc='Of a hinge rad, of a slider or a distance m.')
+    rate = property(lambda self: self._read()[1], doc='rad/s or m/s.')
+
+    @property
+    def target(self):
+        """Of its motor: the rate that it holds, or the value that it pulls to."""
+        return self._passport().axis.target
+
+    @target.setter
+    def target(self, target):
+        self._universe.set_motors([self], [target])
+
+
 def _vector(v):
     return numpy.array([v.x, v.y, v.z])
 
@@ -255,6 +296,16 @@ class Universe:
                 return points[:found]
             n = found
 
+    def _joint(self, number):
+        j = _native.Joint()
+        return j if _native.library().ob_universe_get_joint(self._u, number, ctypes.byref(j)) else None
+
+    @property
+    def joints(self):
+        """Joints by name, of objects that exist."""
+        found = ((n, self._joint(n)) for n in range(_native.library().ob_universe_joints(self._u)))
+        return {j.name.decode(): Joint(self, n, j) for n, j in found if j}
+
     def __getitem__(self, key):
         """The object of this id or name."""
         if isinstance(key, str):
@@ -283,7 +334,7 @@ class Universe:
         raise Error('this universe is read only: obsim.run starts one that can be changed')
 
     step = reset = set_states = set_forces = set_colours = kick = send = remove = create = snapshot = restore = _refuse
-    save = picture = watch_contacts = contact_events = set_torques = set_frictions = set_surface_velocities = push = drag = release = kill = _refuse
+    save = picture = watch_contacts = contact_events = set_torques = set_frictions = set_surface_velocities = set_motors = push = drag = release = kill = _refuse
 
 
 class Run(Universe):
@@ -470,6 +521,12 @@ class Run(Universe):
     def set_surface_velocities(self, ids, velocity):
         """Velocities of the surfaces of static and kinematic objects, as of belts (m/s, body frame)."""
         self._change('ob_controller_set_surface_velocities', ids, (velocity, 3))
+
+    def set_motors(self, joints, target):
+        """Targets of the motors of joints: rates that they hold, or values that they pull to."""
+        numbers = [[j._number] for j in joints]
+        self._change('ob_controller_set_motors', [j._passport().object[0] for j in joints], (numbers, 1),
+                     (numpy.reshape(target, (-1, 1)), 1))
 
     def kill(self, ids):
         """Kills the worker processes that simulate these objects."""

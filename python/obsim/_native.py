@@ -1,4 +1,4 @@
-"""libobsim by ctypes: the functions of <ob/universe.h>, <ob/motion.h> and <ob/control.h>, as they are declared there."""
+"""libobsim by ctypes: the functions of <ob/universe.h>, <ob/motion.h>, <ob/joint.h> and <ob/control.h>, as they are declared there."""
 import ctypes
 import ctypes.util
 import os
@@ -21,6 +21,22 @@ class Passport(ctypes.Structure):
                 ('mesh', ctypes.c_uint8), ('hull', ctypes.c_uint16), ('size', Vec3), ('mass', ctypes.c_double), ('inertia', Vec3),
                 ('friction', ctypes.c_double), ('restitution', ctypes.c_double), ('colour', ctypes.c_float * 4),
                 ('name', ctypes.c_char * NAME_MAX), ('force', Vec3), ('roughness', ctypes.c_float), ('metal', ctypes.c_float)]
+
+
+class Pose(ctypes.Structure):
+    _fields_ = [('p', Vec3), ('q', ctypes.c_double * 4)]
+
+
+class JointAxis(ctypes.Structure):
+    _fields_ = [*((name, ctypes.c_double) for name in ('low', 'high', 'restitution', 'stiffness', 'rest', 'damping', 'friction')),
+                ('motor', ctypes.c_uint32), ('reserved', ctypes.c_uint32),
+                *((name, ctypes.c_double) for name in ('target', 'most', 'motor_stiffness', 'motor_damping'))]
+
+
+class Joint(ctypes.Structure):
+    _fields_ = [('object', ctypes.c_uint32 * 2), ('generation', ctypes.c_uint32 * 2), ('kind', ctypes.c_uint32),
+                ('flags', ctypes.c_uint32), ('frame', Pose * 2), ('length', ctypes.c_double), ('axis', JointAxis),
+                ('name', ctypes.c_char * NAME_MAX)]
 
 
 class Info(ctypes.Structure):
@@ -68,6 +84,10 @@ _functions = {
     'ob_universe_get_passport': (ctypes.c_bool, [_pointer, _u32, _pointer]),
     'ob_universe_get_states': (_size, [_pointer, _pointer, _size]),
     'ob_universe_get_contacts': (_size, [_pointer, _pointer, _size]),
+    'ob_universe_joints': (_u32, [_pointer]),
+    'ob_universe_get_joint': (ctypes.c_bool, [_pointer, _u32, _pointer]),
+    'ob_universe_get_joint_value': (ctypes.c_bool, [_pointer, _u32, _pointer, _pointer]),
+    'ob_joint_kind_name': (ctypes.c_char_p, [_u32]),
     'ob_shape_name': (ctypes.c_char_p, [ctypes.c_int]),
     'ob_controller_open': (_pointer, [_pointer, _pointer]),
     'ob_controller_close': (None, [_pointer]),
@@ -88,6 +108,7 @@ _functions = {
     'ob_controller_release': (ctypes.c_bool, _change),
     'ob_controller_set_frictions': (ctypes.c_bool, _change),
     'ob_controller_kill': (ctypes.c_bool, _change),
+    'ob_controller_set_motors': (ctypes.c_bool, _change),
     'ob_controller_set_surface_velocities': (ctypes.c_bool, _change),
     'ob_controller_reset': (ctypes.c_bool, [_pointer, ctypes.POINTER(_u64), _pointer, _size, _pointer]),
     'ob_controller_save': (ctypes.c_bool, [_pointer, ctypes.c_char_p, _pointer]),

@@ -124,6 +124,7 @@ static const ob_request_kind changes[OB_CONTROL_COMMANDS] = {
 	[OB_CONTROL_PUSH] = OB_REQUEST_PUSH,       [OB_CONTROL_DRAG] = OB_REQUEST_DRAG,
 	[OB_CONTROL_RELEASE] = OB_REQUEST_RELEASE, [OB_CONTROL_FRICTION] = OB_REQUEST_FRICTION,
 	[OB_CONTROL_KILL] = OB_REQUEST_KILL,       [OB_CONTROL_SURFACE] = OB_REQUEST_SURFACE,
+	[OB_CONTROL_MOTOR] = OB_REQUEST_MOTOR,
 };
 
 static void read_change(const ob_change *change, ob_request *r)
@@ -137,6 +138,8 @@ static void read_change(const ob_change *change, ob_request *r)
 	r->frequency = v[6] == 0 ? OB_PULL_FREQUENCY : v[6];
 	r->friction = v[0];
 	r->surface_velocity = first;
+	r->joint = v[0] >= 0 && v[0] < UINT32_MAX ? (uint32_t)v[0] : UINT32_MAX;
+	r->motor = v[1];
 	r->state = (ob_state){ { { v[0], v[1], v[2] }, { v[3], v[4], v[5], v[6] } },
 			       { v[7], v[8], v[9] },
 			       { v[10], v[11], v[12] } };

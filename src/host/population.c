@@ -1,5 +1,6 @@
 #include "host/population.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -406,6 +407,19 @@ static ob_state complete_state(const ob_state *now, const ob_state *asked)
 	return s;
 }
 
+static bool check_motor(const ob_universe *u, const ob_request *r, ob_error *e)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (r->joint >= data->joints || data->joint[r->joint].object[0] != r->id)
+		return ob_fail(e, "object %u has no joint %u", r->id, r->joint);
+	if (!ob_joint_holds(u, &data->joint[r->joint]))
+		return ob_fail(e, "joint %u has ended with one of its objects", r->joint);
+	if (data->joint[r->joint].axis.motor == OB_MOTOR_NONE)
+		return ob_fail(e, "joint %u (%s) has no motor", r->joint, data->joint[r->joint].name);
+	return fabs(r->motor) <= OB_JOINT_MOST ||
+	       ob_fail(e, "the target of a motor must be a number of at most %g, is %g", OB_JOINT_MOST, r->motor);
+}
+
 bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_error *e)
 {
 	static const ob_state legal = { .pose.q.w = 1 };
@@ -414,7 +428,7 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 	const ob_state state = complete_state(&legal, &r->state);
 	const bool pushes = r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_KICK;
 	if (!pushes && !is_pull(r) && r->kind != OB_REQUEST_STATE && r->kind != OB_REQUEST_FRICTION &&
-	    r->kind != OB_REQUEST_SURFACE)
+	    r->kind != OB_REQUEST_SURFACE && r->kind != OB_REQUEST_MOTOR)
 		return true;
 	if (r->kind != OB_REQUEST_FORCE && ob_universe_settings(p->u)->monolith)
 		return ob_fail(e, "the one ODE world keeps its bodies to itself: take object simulators");
@@ -422,6 +436,8 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 		return ob_free_settings_of(p->u)
 			       ? ob_fail(e, "in a free run nothing is pulled in each step: use --sync lockstep")
 			       : ob_pull_check(&pull, pass, e);
+	if (r->kind == OB_REQUEST_MOTOR)
+		return check_motor(p->u, r, e);
 	if (r->kind == OB_REQUEST_SURFACE)
 		return ob_surface_velocity_check(pass, r->surface_velocity, e);
 	if (r->kind == OB_REQUEST_FRICTION)
@@ -455,6 +471,10 @@ static void set_motion(ob_population *p, const ob_request *r)
 	const ob_pull pull = pull_of(r);
 	const ob_state now = ob_state_now(p->u, r->id, ob_newest_motion(p->u, r->id), ob_step_count(p->u)),
 		       state = complete_state(&now, &r->state);
+	if (r->kind == OB_REQUEST_MOTOR) {
+		ob_universe_step_data(p->u)->joint[r->joint].axis.target = r->motor;
+		return;
+	}
 	if (is_pull(r)) {
 		if (!ob_pulls_set(&p->pulls, &pull))
 			ob_log_warn("object %u is not pulled: too many pulls act, or there is no memory", r->id);

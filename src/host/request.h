@@ -14,6 +14,7 @@ typedef enum ob_request_kind {
 	OB_REQUEST_STATE, // the object goes on from another place, with other velocities
 	OB_REQUEST_FRICTION, // its coefficient; its contacts begin anew
 	OB_REQUEST_SURFACE, // velocity of the surface of a static or kinematic object; likewise
+	OB_REQUEST_MOTOR, // target of the motor of a joint whose first object it is
 	OB_REQUEST_TORQUE, // from now on, until another is set by the same origin; likewise below (pull.h)
 	OB_REQUEST_PUSH, // a force at a point of its body
 	OB_REQUEST_DRAG, // a spring from a point of its body to a target
@@ -42,6 +43,8 @@ typedef struct ob_request {
 	double frequency; // Hz, of a drag
 	double friction; // coefficient
 	ob_vec3 surface_velocity; // m/s, body frame
+	uint32_t joint; // number of a joint
+	double motor; // target: m/s, rad/s, or m, rad
 	uint32_t bytes; // of the message
 	unsigned char values[512]; // flat (scene/flat.h)
 } ob_request;

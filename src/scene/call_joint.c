@@ -12,12 +12,12 @@
 
 #define OB_SCENE_JOINTS_MAX 1000000
 #define OB_TURN_MOST 6.2 // rad, between the limits of a hinge
-#define OB_JOINT_MOST 1e15 // forces, stiffness, damping
 
 // Fields of a call; NaN = not set.
 typedef struct joint {
 	ob_vec3 at, axis, across, from, to;
 	double length;
+	const char *name;
 	bool collide, motor;
 	ob_joint_axis along; // low, high, rest and motor_target may be NaN
 } joint;
@@ -34,16 +34,16 @@ typedef struct joint {
 		ALONG(stiffness, .high = OB_JOINT_MOST), ALONG(rest, .low = -(most_value), .high = (most_value)), \
 		ALONG(damping, .high = OB_JOINT_MOST), ALONG(friction, .high = OB_JOINT_MOST), \
 		F(motor, .kind = OB_FIELD_TABLE)
-#define COLLIDE F(collide, .kind = OB_FIELD_BOOLEAN)
+#define COMMON F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), F(collide, .kind = OB_FIELD_BOOLEAN)
 
-static const ob_field ball_fields[] = { REQUIRED_PLACE(at), COLLIDE };
-static const ob_field fixed_fields[] = { PLACE(at), COLLIDE };
-static const ob_field hinge_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), AXIS(2 * M_PI), COLLIDE };
-static const ob_field slider_fields[] = { PLACE(at), DIRECTION(axis), AXIS(2 * OB_PLACE_MOST), COLLIDE };
-static const ob_field universal_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), DIRECTION(across), COLLIDE };
+static const ob_field ball_fields[] = { REQUIRED_PLACE(at), COMMON };
+static const ob_field fixed_fields[] = { PLACE(at), COMMON };
+static const ob_field hinge_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), AXIS(2 * M_PI), COMMON };
+static const ob_field slider_fields[] = { PLACE(at), DIRECTION(axis), AXIS(2 * OB_PLACE_MOST), COMMON };
+static const ob_field universal_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), DIRECTION(across), COMMON };
 static const ob_field distance_fields[] = {
 	PLACE(from), PLACE(to), F(length, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST, .high = 2 * OB_PLACE_MOST),
-	AXIS(2 * OB_PLACE_MOST), COLLIDE
+	AXIS(2 * OB_PLACE_MOST), COMMON
 };
 
 // Fields of a motor; NaN = not set.
@@ -200,7 +200,7 @@ static void set_frames(lua_State *L, const ob_scene *s, const joint *d, ob_joint
 		j->frame[side] = in_object(s, j->object[side], frame[side]);
 }
 
-// ---- what acts along the axis
+// ---- the axis
 
 // Reads the motor's table, of the call's table at place 1.
 static void read_motor(lua_State *L, const char *kind, ob_joint_axis *a)
@@ -248,6 +248,20 @@ static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_pa
 				   "friction or a motor let the distance change");
 }
 
+static void set_name(lua_State *L, const ob_scene *s, const char *kind, const char *name, ob_joint_passport *j)
+{
+	enum { NAMES_PER_INSTRUCTION = 4 };
+	if (!name) {
+		snprintf(j->name, sizeof j->name, "%s#%u", kind, s->joints);
+		return;
+	}
+	ob_sandbox_spend(L, s->joints / NAMES_PER_INSTRUCTION);
+	for (uint32_t i = 0; i < s->joints; i++)
+		if (strcmp(s->joint[i].name, name) == 0)
+			ob_sandbox_fail(L, "%s.name: \"%s\" is already the name of another joint", kind, name);
+	snprintf(j->name, sizeof j->name, "%s", name);
+}
+
 static void add(lua_State *L, ob_builder *b, const char *kind, const ob_joint_passport *j)
 {
 	ob_scene *s = b->scene;
@@ -270,7 +284,7 @@ int ob_scene_call_joint(lua_State *L)
 	ob_builder *b = ob_sandbox_user(L);
 	ob_joint_passport j = { .generation = { 1, 1 }, .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
 	const ob_vec3 none = { NAN, NAN, NAN };
-	joint d = { none, none, none, none, none, NAN, false, false, { .low = NAN, .high = NAN, .rest = NAN } };
+	joint d = { none, none, none, none, none, NAN, NULL, false, false, { .low = NAN, .high = NAN, .rest = NAN } };
 	const char *kind = ob_joint_kind_name(j.kind);
 	if (b->options->joining)
 		ob_sandbox_fail(L, "%s: joints cannot be added to a universe that runs", kind);
@@ -280,6 +294,7 @@ int ob_scene_call_joint(lua_State *L)
 	j.flags = d.collide ? OB_JOINT_COLLIDES : 0;
 	set_frames(L, b->scene, &d, &j);
 	set_axis(L, kind, &d, &j);
+	set_name(L, b->scene, kind, d.name, &j);
 	add(L, b, kind, &j);
 	return 0;
 }

@@ -14,6 +14,7 @@
 #define OB_MASS_LEAST 1e-12 // kg
 #define OB_MASS_MOST 1e12 // kg: 1 km of water
 #define OB_PLACE_MOST 1e7 // m from the origin along each axis: a double has steps of 2e-9 m there
+#define OB_JOINT_MOST 1e15 // along the axis of a joint: forces, stiffness, damping, targets
 #define OB_SPEED_MOST 1e5 // m/s along each axis, and of the surface by spin
 #define OB_SPIN_MOST 1e4 // rad/s
 #define OB_FORCE_MOST 1e15 // N

@@ -6,6 +6,7 @@
 #include <lauxlib.h>
 
 #include "motion/flight.h"
+#include "motion/joint_value.h"
 #include "scene/object_limits.h"
 #include "scene/text.h"
 #include "script/runner.h"
@@ -458,6 +459,63 @@ static int call_find(lua_State *L)
 	return 0;
 }
 
+// Number of the joint of this name, which holds.
+static uint32_t find_joint(lua_State *L, const ob_script_runner *r, const char *call)
+{
+	enum { FIND_AT_ONCE = 64 };
+	const char *name = lua_type(L, 1) == LUA_TSTRING ? lua_tostring(L, 1) : NULL;
+	if (!name)
+		ob_sandbox_fail(L, "%s: expected the name of a joint", call);
+	for (uint32_t i = 0; i < r->data->joints; i++) {
+		if (i % FIND_AT_ONCE == 0)
+			ob_sandbox_spend(L, FIND_AT_ONCE / 2);
+		if (strncmp(r->data->joint[i].name, name, OB_NAME_MAX) == 0)
+			return ob_joint_holds(r->u, &r->data->joint[i]) ? i : UINT32_MAX;
+	}
+	ob_sandbox_fail(L, "%s: expected the name of a joint, got \"%s\"", call, name);
+}
+
+// Returns value and rate of a joint's axis; nothing if the joint has ended, or has none.
+static int call_joint(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	const uint32_t joint = find_joint(L, r, "joint");
+	ob_state states[2] = { { .pose.q = ob_quat_identity() }, { .pose.q = ob_quat_identity() } };
+	double value, rate;
+	ob_sandbox_spend(L, 24);
+	if (joint == UINT32_MAX)
+		return 0;
+	const ob_joint_passport *j = &r->data->joint[joint];
+	for (int side = 0; side < 2; side++)
+		if (j->object[side] != OB_JOINT_WORLD)
+			states[side] = ob_published_at(ob_newest_motion(r->u, j->object[side]),
+						       ob_passport_of(r->u, j->object[side]), now_of(r));
+	if (!ob_joint_value(j, states, &value, &rate))
+		return 0;
+	lua_pushnumber(L, value);
+	lua_pushnumber(L, rate);
+	return 2;
+}
+
+static int call_motor(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	ob_script_motor m = { .joint = find_joint(L, r, "motor"), .target = number_at(L, 2, "motor", OB_JOINT_MOST) };
+	if (m.joint == UINT32_MAX)
+		return 0;
+	const ob_joint_passport *j = &r->data->joint[m.joint];
+	if (j->axis.motor == OB_MOTOR_NONE)
+		ob_sandbox_fail(L, "motor: joint \"%s\" has none", j->name);
+	ob_script_post *post = begin_post(L, r, OB_SCRIPT_MOTOR, j->object[0], j->generation[0]);
+	ob_flat f = rest_of(r->cell);
+	if (f.room < sizeof m)
+		ob_sandbox_fail(L, "motor: expected at most %d bytes of requests in a step", OB_SCRIPT_OUTBOX_BYTES);
+	memcpy(f.bytes, &m, sizeof m);
+	f.size = sizeof m;
+	end_post(r, post, &f);
+	return 0;
+}
+
 typedef struct near_object {
 	double distance2;
 	uint32_t id;
@@ -666,6 +724,8 @@ int ob_script_calls_open(lua_State *L)
 		{ "time", call_time },
 		{ "find", call_find },
 		{ "near", call_near },
+		{ "joint", call_joint },
+		{ "motor", call_motor },
 		{ "ray", call_ray },
 		{ "send", call_send },
 		{ "random", ob_scene_call_random },

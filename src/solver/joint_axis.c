@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "elementary/elementary.h"
+#include "motion/joint_value.h"
 
 static const double same_rate = 1e-10; // m/s, rad/s: a smaller difference counts as none
 static const double at_limit = 1e-10; // m, rad
@@ -11,19 +11,10 @@ static const double slowest_bounce = .01; // m/s, rad/s: slower hits on a limit 
 
 // ---- value
 
-// The turn of a hinge is found as near to the middle of its limits as it can be.
-static double turn_of(const ob_held_joint *j)
-{
-	const ob_vec3 x = j->end[0].axis[0], *b = j->end[1].axis;
-	const double low = j->axis->low, high = j->axis->high, angle = ob_atan2(ob_dot(x, b[1]), ob_dot(x, b[0]));
-	const double middle = isfinite(low) && isfinite(high) ? .5 * (low + high) : 0;
-	return angle + 2 * M_PI * nearbyint((middle - angle) / (2 * M_PI));
-}
-
 void ob_axis_find(ob_held_joint *j, double time)
 {
-	const ob_vec3 apart = ob_sub(j->end[0].at, j->end[1].at);
-	j->along.value = j->kind == OB_JOINT_HINGE    ? turn_of(j)
+	const ob_vec3 apart = ob_sub(j->end[0].at, j->end[1].at), *b = j->end[1].axis;
+	j->along.value = j->kind == OB_JOINT_HINGE    ? ob_joint_turn(j->axis, j->end[0].axis[0], b[0], b[1])
 			 : j->kind == OB_JOINT_SLIDER ? ob_dot(j->end[1].axis[2], apart)
 						      : ob_norm(apart);
 	const double error = j->along.value - (j->along.goal + j->along.goal_rate * (time - j->along.since));

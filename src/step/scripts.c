@@ -1,5 +1,6 @@
 #include "step/scripts.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "baseline/ode_baseline.h"
@@ -183,6 +184,16 @@ static void remove_object(ob_step_data *data, const ob_script_turn *from, ob_scr
 	data->script_counts->requests++;
 }
 
+static void set_motor(ob_step_data *data, const ob_script_post *post)
+{
+	ob_script_motor m;
+	if (post->used < sizeof m)
+		return;
+	memcpy(&m, post + 1, sizeof m);
+	if (m.joint < data->joints && isfinite(m.target))
+		data->joint[m.joint].axis.target = m.target;
+}
+
 // Carries out the posts in a cell's outbox, which are aligned to 8 bytes.
 static void post_all(ob_step_data *data, const ob_script_turn *from, ob_script_cell *c)
 {
@@ -193,6 +204,8 @@ static void post_all(ob_step_data *data, const ob_script_turn *from, ob_script_c
 			deliver(data, from, post);
 		else if (post->kind == OB_SCRIPT_REMOVE)
 			remove_object(data, from, post);
+		else if (post->kind == OB_SCRIPT_MOTOR)
+			set_motor(data, post);
 		else
 			data->script_counts->requests++;
 	}

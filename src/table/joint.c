@@ -1,6 +1,8 @@
 // Joints of a universe: passports, and the list of each object. Written by the host before the run; then constant.
+#include <math.h>
 #include <string.h>
 
+#include "motion/joint_value.h"
 #include "table/layout.h"
 
 // Links from the last to the first, so that each list ascends.
@@ -85,5 +87,26 @@ bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passpo
 			return false;
 	}
 	return out->kind < OB_JOINT_KINDS && axis_makes_sense(&out->axis) && pose_makes_sense(&out->frame[0]) &&
-	       pose_makes_sense(&out->frame[1]) && isfinite(out->length);
+	       pose_makes_sense(&out->frame[1]) && isfinite(out->length) && memchr(out->name, 0, sizeof out->name);
+}
+
+bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *value, double *rate)
+{
+	const ob_state none = { .pose.q = ob_quat_identity() };
+	ob_state states[2] = { none, none };
+	ob_universe_info info;
+	ob_joint_passport j;
+	ob_passport p;
+	ob_motion m;
+	if (!ob_universe_get_joint(u, joint, &j))
+		return false;
+	ob_universe_get_info(u, &info);
+	for (int side = 0; side < 2; side++) {
+		if (j.object[side] == OB_JOINT_WORLD)
+			continue;
+		if (!ob_universe_get_passport(u, j.object[side], &p) || !ob_universe_get_motion(u, j.object[side], &m))
+			return false;
+		states[side] = ob_motion_at(&m, p.inertia, fmax(info.time, m.t0));
+	}
+	return ob_joint_value(&j, states, value, rate);
 }

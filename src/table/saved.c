@@ -26,6 +26,7 @@ void ob_universe_count_saved(const ob_universe *u, ob_saved_universe *out)
 		.checked = data->count->checked,
 		.ids = ob_universe_ids(u),
 		.planes = data->count->planes,
+		.joints = data->joints,
 	};
 	if (data->script_cells) {
 		out->script_cells = data->script_counts->cells;
@@ -98,6 +99,12 @@ static void save_scripts(const ob_universe *u, ob_saved_universe *out)
 		memcpy(out->script_text, data->script_text, out->script_bytes);
 }
 
+static void save_motors(const ob_universe *u, ob_saved_universe *out)
+{
+	for (uint32_t i = 0; i < out->joints; i++)
+		out->motor[i] = u->step_data.joint[i].axis.target;
+}
+
 void ob_universe_save(const ob_universe *u, ob_saved_universe *out)
 {
 	save_scripts(u, out);
@@ -106,6 +113,7 @@ void ob_universe_save(const ob_universe *u, ob_saved_universe *out)
 		save_object(u, id, out);
 	memcpy(out->plane, data->plane, out->planes * sizeof *out->plane);
 	save_pairs(u, out);
+	save_motors(u, out);
 }
 
 // ---- checking
@@ -268,6 +276,14 @@ static bool check_scripts(const ob_saved_universe *s, ob_error *e)
 	return sense ? true : ob_fail(e, "what its scripts keep makes no sense");
 }
 
+static bool check_motors(const ob_saved_universe *s, ob_error *e)
+{
+	for (uint32_t i = 0; i < s->joints; i++)
+		if (!isfinite(s->motor[i]))
+			return ob_fail(e, "the motor of joint %u makes no sense", i);
+	return true;
+}
+
 bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e)
 {
 	if (s->step > UINT32_MAX - 2 || s->checked > s->step) // a motion carries its step as 32 bits
@@ -275,7 +291,7 @@ bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e)
 	for (uint32_t id = 0; id < s->ids; id++)
 		if (!check_object(s, id, e))
 			return false;
-	return check_planes(s, e) && check_pairs(s, e) && check_scripts(s, e);
+	return check_planes(s, e) && check_pairs(s, e) && check_scripts(s, e) && check_motors(s, e);
 }
 
 // ---- loading
@@ -349,6 +365,8 @@ bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 	if (!scripts_are_the_same(u, s))
 		return ob_fail(e, "its scripts are not those of the saved run: a file beside the scene has changed");
 	ob_step_data *data = &u->step_data;
+	if (s->joints != data->joints)
+		return ob_fail(e, "its scene has %u joints, the saved run %u", data->joints, s->joints);
 	if (s->pairs > data->pairs_max || s->ids > data->objects_max)
 		return ob_fail(
 			e, "this run has room for %u objects and %u pairs of neighbours, the saved one has %u and %u",
@@ -363,6 +381,8 @@ bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 	memcpy(data->pair, s->pair, s->pairs * sizeof *s->pair);
 	for (uint32_t i = 0; i < s->records; i++)
 		load_record(u, i, &s->record[i]);
+	for (uint32_t i = 0; i < s->joints; i++)
+		data->joint[i].axis.target = s->motor[i];
 	data->count->planes = s->planes;
 	data->count->pairs = s->pairs;
 	data->count->records_used = s->records;

@@ -47,6 +47,8 @@ typedef struct ob_saved_universe {
 	ob_script_cell *script_cell;
 	uint32_t script_bytes; // size of the texts, with their directory; must be the same when resumed
 	char *script_text;
+	uint32_t joints; // length of the next one; must be the same when resumed
+	double *motor; // targets of the joints' motors
 } ob_saved_universe;
 
 // Sets step, checked and the lengths, for allocating the arrays.

@@ -70,8 +70,14 @@ typedef struct ob_script_cell {
 } ob_script_cell;
 
 // Record of an outbox, one after the other; in an inbox, the same with the sender in place of the addressee. Contents:
-// the values of a message; nothing; an ob_object_def, the state of its script, and the corners of a hull.
-typedef enum ob_script_post_kind { OB_SCRIPT_MESSAGE, OB_SCRIPT_REMOVE, OB_SCRIPT_CREATE } ob_script_post_kind;
+// the values of a message; nothing; an ob_object_def, the state of its script, and the corners of a hull; an
+// ob_script_motor.
+typedef enum ob_script_post_kind {
+	OB_SCRIPT_MESSAGE,
+	OB_SCRIPT_REMOVE,
+	OB_SCRIPT_CREATE,
+	OB_SCRIPT_MOTOR
+} ob_script_post_kind;
 
 typedef struct ob_script_post {
 	uint32_t kind; // ob_script_post_kind
@@ -79,6 +85,12 @@ typedef struct ob_script_post {
 	uint32_t used, line; // line: place of the request in the script
 	uint32_t object, generation; // addressee, or object to be removed
 } ob_script_post;
+
+// Request of a script: the new target of a joint's motor.
+typedef struct ob_script_motor {
+	uint32_t joint, zero;
+	double target; // m/s, rad/s, or m, rad
+} ob_script_motor;
 
 // At the start of the area of texts.
 typedef struct ob_script_directory {

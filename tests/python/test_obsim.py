@@ -452,4 +452,44 @@ box { name = "pole", size = { .1, .1, 1 }, at = { 0, 0, 5 }, rotation = { axis =
         return total, seen[:, 0]
 
 
+class Joints(Case):
+    POLE = """scene { duration = 100, step = 1/50 }
+box { name = "cart", size = { .4, .2, .1 }, at = { 0, 0, 1 }, mass = 2 }
+slider { "cart", name = "rail", axis = { 1, 0, 0 }, motor = { rate = 0, most = 100 } }
+box { name = "pole", size = { .05, .05, 1 }, at = { .05, 0, 1.55 }, mass = .5, rotation = { axis = { 0, 1, 0 }, degrees = 6 } }
+hinge { "pole", "cart", name = "foot", at = { 0, 0, 1.05 }, axis = { 0, 1, 0 } }
+"""
+
+    def hold_up(self, u, steps, gains=(60, 15, 2, 4)):
+        """Moves the cart below the pole: the target of its motor is set before each step. Returns how far the pole leans."""
+        rail, foot = u.joints['rail'], u.joints['foot']
+        for _ in range(steps):
+            begun = numpy.arctan2(.05, .5) # the value of the foot is 0 there
+            seen = foot.value + begun, foot.rate, rail.value, rail.rate
+            rail.target = rail.rate + u.step_length * numpy.dot(gains, seen)
+            u.step()
+        return foot.value + begun
+
+    def test_pole_on_a_cart(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        scene, kept = self.write(folder, 'cart.lua', self.POLE), os.path.join(folder.name, 'kept.ck')
+        with obsim.run(scene) as u, obsim.run(scene, options={'isolation': 'process', 'harden': True}) as other:
+            start = u.snapshot()
+            self.assertLess(abs(self.hold_up(u, 500)), 5e-3)
+            self.assertLess(abs(u.joints['rail'].value), .05)
+            self.hold_up(other, 500)
+            self.assertTrue((u.position == other.position).all())
+            u.restore(start)
+            self.assertEqual(u.joints['rail'].target, 0) # it is part of the state
+            self.assertGreater(abs(self.hold_up(u, 40, (0, 0, 0, 0))), .5) # nobody holds it up
+            u.joints['rail'].target = .25
+            u.save(kept)
+            with obsim.run(resume=kept) as again:
+                self.assertEqual(again.joints['rail'].target, .25)
+            self.assertEqual([o.name for o in u.joints['foot'].objects], ['pole', 'cart'])
+            self.says('joint 1 (foot) has no motor', lambda: setattr(u.joints['foot'], 'target', 1))
+            self.says('must be a number', lambda: setattr(u.joints['rail'], 'target', numpy.nan))
+
+
 unittest.main()

@@ -35,6 +35,19 @@ box { name = "u2", size = { .2, .2, 1 }, at = { -3, -2, 3 }, spin = { 1, 2, 3 } 
 universal { "u1", "u2", at = { -3, -2, 3.5 }, axis = { 1, 0, 0 }, across = { 0, 1, 0 } }
 """
 
+# A script turns a crank back and forth, by its angle.
+CRANK = """scene { title = "A crank", duration = 3 }
+box { name = "crank", size = { .6, .1, .1 }, at = { .3, 0, 1 }, script = [[
+	function on_step()
+		local angle, rate = joint("axle")
+		if angle > .5 then motor("axle", -1) elseif angle < -.5 then motor("axle", 1) end
+		if math.abs(rate) > 1e-9 and math.abs(math.abs(rate) - 1) > 1e-9 then print("@rate", rate) end
+		if time() > 2.97 then print("@angle", angle) end
+	end
+]] }
+hinge { "crank", name = "axle", at = { 0, 0, 1 }, axis = { 0, 1, 0 }, motor = { rate = 1 } }
+"""
+
 # What acts along axes, in the air and on the ground: limits that are hit, springs that are sat on, wheels that are driven.
 DRIVES = """scene { title = "Drives", duration = 2.5 }
 ground {}
@@ -95,7 +108,7 @@ class Joints(unittest.TestCase):
 			self.assertEqual(len({state(*scene, *way)[0] for way in WAYS}), 1, scene)
 
 	def test_mechanisms(self):
-		for text in (MECHANISMS, DRIVES):
+		for text in (MECHANISMS, DRIVES, CRANK):
 			with tempfile.TemporaryDirectory() as folder:
 				path = kept(folder, text)
 				self.assertEqual(len({state(path, *way)[0] for way in WAYS}), 1)
@@ -111,6 +124,14 @@ class Joints(unittest.TestCase):
 		self.assertAlmostEqual(at["seat"][2], 1 - 15 * 9.81 / 2000, delta=1e-3)
 		self.assertAlmostEqual(at["lift"][2], 1.2, delta=1e-6)
 		self.assertAlmostEqual(at["car"][3], 2, delta=.01)
+
+	def test_script(self):
+		with tempfile.TemporaryDirectory() as folder:
+			done = program.call("run", kept(folder, CRANK), "--measure", "end")
+		self.assertEqual(done.returncode, 0, done.stderr)
+		self.assertNotIn("@rate", done.stderr)
+		angle = float(re.search(r"@angle (\S+)", done.stderr).group(1))
+		self.assertAlmostEqual(angle, 0, delta=.15) # .5 s up, 1 s down, 1 s up, .5 s down
 
 	def test_kills(self):
 		scene = self.scenes[0]
