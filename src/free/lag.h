@@ -10,7 +10,8 @@
 // neighbours before either can depend on it.
 //
 // The earliest of all never waits, so nobody waits in a circle. Static, kinematic and removed objects never block. Near
-// contact the bound is half of the time in which the gap can close, at least 1 ms.
+// contact the bound is half of the time in which the gap can close, at least 1 ms, or the length of the next step
+// while that is shorter.
 #ifndef OB_FREE_LAG_H
 #define OB_FREE_LAG_H
 
