@@ -42,13 +42,20 @@ enum { // ob_passport.flags
 	OB_OBJECT_PRESCRIBED = OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC, // unaffected by forces
 	OB_OBJECT_MESH_COLOUR = 1 << 4, // shown with its mesh's colours, not its own
 	OB_OBJECT_MESH_SURFACE = 1 << 5, // shown with its mesh's roughness and metal
+	OB_OBJECT_SENSOR = 1 << 6, // no obstacle: nothing touches it; ob_universe_get_inside lists the objects in it
+};
+
+enum { // collision groups, in the other half of ob_passport.flags
+	OB_GROUPS = 16, // from 0
+	OB_OBJECT_GROUP = 12, // shift: the object's group, four bits
+	OB_OBJECT_PASSES = 16, // shift: bit g, it passes through objects of group g
 };
 
 // Body properties of an object. 184 bytes.
 typedef struct ob_passport {
 	uint32_t id; // index of the object in the table, from 0
 	uint32_t generation; // grows each time the slot is reused for another object
-	uint32_t flags; // OB_OBJECT_*
+	uint32_t flags; // OB_OBJECT_*; from bit OB_OBJECT_GROUP on: its collision group, and those that it passes
 	uint8_t shape; // ob_shape: collision shape; also drawn unless it has a mesh
 	// 1 + the number of the scene's mesh that is drawn instead; 0 = none. Viewers load the meshes
 	uint8_t mesh;
@@ -67,6 +74,24 @@ typedef struct ob_passport {
 	float roughness; // 0..1, of its surface when drawn: 0 = polished, 1 = matt
 	float metal; // 0..1: 1 = reflects as metals do, in its own colour
 } ob_passport;
+
+static inline uint32_t ob_passport_group(const ob_passport *p)
+{
+	return p->flags >> OB_OBJECT_GROUP & (OB_GROUPS - 1);
+}
+
+// True if neither of the two passes through the other's group.
+static inline bool ob_passport_hits(const ob_passport *a, const ob_passport *b)
+{
+	const uint32_t a_passes = a->flags >> OB_OBJECT_PASSES, b_passes = b->flags >> OB_OBJECT_PASSES;
+	return !((a_passes >> ob_passport_group(b) | b_passes >> ob_passport_group(a)) & 1);
+}
+
+// True if the two are obstacles to each other: they may have contacts. A joint may still let them overlap.
+static inline bool ob_passport_collides(const ob_passport *a, const ob_passport *b)
+{
+	return !((a->flags | b->flags) & OB_OBJECT_SENSOR) && ob_passport_hits(a, b);
+}
 
 enum { // ob_motion.flags
 	OB_MOTION_FREE = 1 << 0, // in free flight: up to t0, the previous motion holds exactly
@@ -202,6 +227,11 @@ size_t ob_universe_get_states(const ob_universe *u, const ob_state_arrays *out, 
 bool ob_universe_get_bounds(const ob_universe *u, uint32_t id, float bounds[6]);
 // Contact points of the last completed step; returns their number (may exceed max).
 size_t ob_universe_get_contacts(const ob_universe *u, ob_contact_point *out, size_t max);
+
+// Objects that move and whose shapes overlap that of a sensor, among those that it and they hit by their groups, at the
+// universe's clock; ids ascend. Returns their number (may exceed max); 0 without such a sensor. An object that passes it
+// between two step boundaries is not found. While the universe runs, some motions may be a step newer.
+size_t ob_universe_get_inside(const ob_universe *u, uint32_t sensor, uint32_t *ids, size_t max);
 
 #pragma GCC visibility pop
 

@@ -31,7 +31,7 @@ __all__ = ['Error', 'Joint', 'Object', 'Run', 'Universe', 'attach', 'names', 'ru
 CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
 CONTACT_EVENT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('step', 'u4'), ('begins', 'u4')])
 CHANGE = numpy.dtype([('id', 'u4'), ('generation', 'u4'), ('value', 'f8', 13)])
-_PRESENT, _STATIC, _FROZEN, _KINEMATIC = 1, 2, 4, 8
+_PRESENT, _STATIC, _FROZEN, _KINEMATIC, _SENSOR = 1, 2, 4, 8, 64
 _WORLD = 0xffffffff
 _SAME = numpy.nan
 _numbers = itertools.count()
@@ -87,6 +87,8 @@ class Object:
     inertia = property(lambda self: _vector(self._passport().inertia), doc='Principal moments, kg m^2.')
     static = property(lambda self: bool(self._passport().flags & _STATIC), doc='It never moves.')
     kinematic = property(lambda self: bool(self._passport().flags & _KINEMATIC), doc='It moves as prescribed.')
+    group = property(lambda self: self._passport().flags >> 12 & 15, doc='Collision group, 0 to 15.')
+    sensor = property(lambda self: bool(self._passport().flags & _SENSOR), doc='It is no obstacle.')
     frozen = property(lambda self: bool(self._passport().flags & _FROZEN), doc='Static since its simulator died.')
 
     def _row(self, which):
@@ -103,6 +105,12 @@ class Object:
     velocity = property(lambda self: self._row('velocity'), lambda self, v: self._move(velocity=v), doc='m/s.')
     angular_velocity = property(lambda self: self._row('angular_velocity'), lambda self, w: self._move(angular_velocity=w),
                                 doc='rad/s.')
+
+    def inside(self):
+        """Objects that overlap this sensor now."""
+        ids = numpy.empty(len(self._universe.id), numpy.uint32)
+        found = _native.library().ob_universe_get_inside(self._universe._u, self._id, ids.ctypes.data, len(ids))
+        return [self._universe[i] for i in ids[:found].tolist()]
 
     @property
     def force(self):

@@ -84,6 +84,7 @@ _functions = {
     'ob_universe_get_passport': (ctypes.c_bool, [_pointer, _u32, _pointer]),
     'ob_universe_get_states': (_size, [_pointer, _pointer, _size]),
     'ob_universe_get_contacts': (_size, [_pointer, _pointer, _size]),
+    'ob_universe_get_inside': (_size, [_pointer, _u32, _pointer, _size]),
     'ob_universe_joints': (_u32, [_pointer]),
     'ob_universe_get_joint': (ctypes.c_bool, [_pointer, _u32, _pointer]),
     'ob_universe_get_joint_value': (ctypes.c_bool, [_pointer, _u32, _pointer, _pointer]),

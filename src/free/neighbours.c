@@ -97,6 +97,7 @@ static void add(ob_free_sim *s, ob_free_scratch *x, uint32_t id, ob_free_kind ki
 	n->passport_version = ob_universe_get_passport_version(x->u, id);
 	ob_universe_get_passport(x->u, id, &n->passport);
 	n->hull = ob_hull_of(x->u, &n->passport);
+	s->neighbours -= !ob_passport_collides(&s->passport, &n->passport);
 }
 
 static bool is_there(const ob_free_neighbour *n, const ob_universe *u)

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "measure/depth.h"
+#include "motion/depth.h"
 #include "shape/shape.h"
 
 // ---- energy and momentum
@@ -127,6 +127,7 @@ struct joined {
 };
 
 struct search {
+	const ob_passport *passport; // [ids]
 	struct item *item;
 	struct box *box;
 	struct node *node;
@@ -185,7 +186,8 @@ static bool may_overlap(const struct search *s, uint32_t a, uint32_t b)
 
 static void add_depth(struct search *s, struct item *a, struct item *b)
 {
-	if ((a->fixed && b->fixed) || may_overlap(s, a->id, b->id))
+	if ((a->fixed && b->fixed) || !ob_passport_collides(&s->passport[a->id], &s->passport[b->id]) ||
+	    may_overlap(s, a->id, b->id))
 		return;
 	a->overlaps++;
 	b->overlaps++;
@@ -378,7 +380,7 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 	*out = (ob_penetration){ 0 };
 	if (!s->count)
 		return true;
-	struct search x = { .out = out, .effort = { .stop = stop, .context = context } };
+	struct search x = { .passport = s->passport, .out = out, .effort = { .stop = stop, .context = context } };
 	x.item = calloc(s->count, sizeof *x.item);
 	x.box = malloc(s->count * sizeof *x.box);
 	x.node = malloc(2 * (size_t)s->count * sizeof *x.node);

@@ -54,8 +54,9 @@ typedef struct ob_penetration {
 	size_t pairs;
 	uint32_t worst_a, worst_b;
 } ob_penetration;
-// Penetration of objects, without pairs of two static ones, or of two that a joint lets overlap. A tree of tight boxes finds the pairs, in time proportional
-// to n log n and to the pairs with overlapping boxes. Then the depth of depth.h: closed forms, except for a cylinder
+// Penetration of objects, without pairs of two static ones, or of two that a joint or their
+// groups let overlap, or with a sensor. A tree of tight boxes finds the pairs, in time proportional to n log n and to
+// the pairs with overlapping boxes. Then the depth of depth.h: closed forms, except for a cylinder
 // with a box, capsule or cylinder (1e-7 m, never too small). max_m and mean_m are NaN if memory runs out, or if more
 // pairs overlap than some seconds allow.
 void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out);

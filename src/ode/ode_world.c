@@ -258,9 +258,12 @@ void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 		.surface_velocity = p->flags & OB_OBJECT_PRESCRIBED ? p->surface_velocity : ob_v3(0, 0, 0),
 		.placed = *s,
 	};
-	m->geom = ob_ode_geom_create(w->space, p->shape, p->size);
-	if (m->geom)
+	m->geom = p->flags & OB_OBJECT_SENSOR ? NULL : ob_ode_geom_create(w->space, p->shape, p->size);
+	if (m->geom) {
 		dGeomSetData(m->geom, m);
+		dGeomSetCategoryBits(m->geom, 1ul << ob_passport_group(p));
+		dGeomSetCollideBits(m->geom, ~(unsigned long)(p->flags >> OB_OBJECT_PASSES));
+	}
 	if (m->kinematic || (!(p->flags & OB_OBJECT_STATIC) && p->mass > 0)) {
 		add_body(w, m, p, s);
 		if (m->geom)
@@ -319,11 +322,18 @@ static bool is_dynamic(const struct object *m)
 	return m->body && !m->kinematic;
 }
 
+// ODE asks that one of the two hits the other.
+static bool hit_each_other(dGeomID one, dGeomID other)
+{
+	return dGeomGetCategoryBits(one) & dGeomGetCollideBits(other) &&
+	       dGeomGetCategoryBits(other) & dGeomGetCollideBits(one);
+}
+
 static void collide_pair(void *data, dGeomID one, dGeomID other)
 {
 	ob_ode_world *w = data;
 	struct object *a = dGeomGetData(one), *b = dGeomGetData(other);
-	if ((!is_awake(a) && !is_awake(b)) || (!is_dynamic(a) && !is_dynamic(b)))
+	if ((!is_awake(a) && !is_awake(b)) || (!is_dynamic(a) && !is_dynamic(b)) || !hit_each_other(one, other))
 		return;
 	if (a->id > b->id) {
 		struct object *lower = b;

@@ -133,12 +133,17 @@ typedef struct body {
 	float colour[4];
 	bool fixed, grid, path, varying_force, avatar, inputs, outputs, parameters;
 	bool own_colour, own_surface; // set by the object or its material
+	uint32_t group, hits; // hits: bit g, group g
+	bool sensor;
 } body;
 
 #define F(member, ...) OB_FIELD(body, member, .name = #member, __VA_ARGS__)
 #define WITHIN(member, most) F(member, .kind = OB_FIELD_VECTOR, .low = -(most), .high = most)
+#define GROUPS \
+	F(group, .kind = OB_FIELD_COUNT, .low = 0, .high = OB_GROUPS - 1), \
+		F(hits, .kind = OB_FIELD_SET, .low = 0, .high = OB_GROUPS - 1)
 #define SURFACE \
-	F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
+	GROUPS, F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
 		F(friction, .kind = OB_FIELD_NUMBER, .low = 0, .high = OB_FRICTION_MOST), \
 		WITHIN(surface_velocity, OB_SPEED_MOST), F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
 		F(colour, .kind = OB_FIELD_COLOUR), F(roughness, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
@@ -149,7 +154,8 @@ typedef struct body {
 		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
 		F(script, .kind = OB_FIELD_SOURCE, .high = OB_SCENE_SCRIPT_BYTES), F(state, .kind = OB_FIELD_FLAT), \
 		F(fmu, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), F(inputs, .kind = OB_FIELD_TABLE), \
-		F(outputs, .kind = OB_FIELD_TABLE), F(parameters, .kind = OB_FIELD_TABLE)
+		F(outputs, .kind = OB_FIELD_TABLE), F(parameters, .kind = OB_FIELD_TABLE), \
+		F(sensor, .kind = OB_FIELD_BOOLEAN)
 #define MOVING \
 	F(mass, .kind = OB_FIELD_NUMBER, .low = OB_MASS_LEAST, .high = OB_MASS_MOST), \
 		F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
@@ -194,6 +200,7 @@ static const body nothing = {
 	.mesh_scale = NAN,
 	.colour = { NAN },
 	.grid = true,
+	.hits = UINT32_MAX,
 };
 
 // Objects without a colour take these in turn (sRGB).
@@ -398,6 +405,8 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	p->flags |= d->mesh && !d->own_colour ? OB_OBJECT_MESH_COLOUR : 0;
 	p->flags |= d->mesh && !d->own_surface ? OB_OBJECT_MESH_SURFACE : 0;
 	p->flags |= d->kind == STATIC ? OB_OBJECT_STATIC : d->kind == KINEMATIC ? OB_OBJECT_KINEMATIC : 0;
+	p->flags |= d->sensor ? OB_OBJECT_SENSOR : 0;
+	p->flags |= d->group << OB_OBJECT_GROUP | ~d->hits << OB_OBJECT_PASSES;
 	p->shape = (uint8_t)shape;
 	p->size = size;
 	p->mass = mass;

@@ -330,6 +330,30 @@ static void read_length(const reader *r)
 	}
 }
 
+static void read_set(const reader *r)
+{
+	uint32_t set = 0;
+	const size_t n = lua_istable(r->L, -1) ? lua_rawlen(r->L, -1) : 0;
+	size_t entries = 0;
+	if (!lua_istable(r->L, -1))
+		fail_range(r, "a list of whole numbers, each");
+	lua_pushnil(r->L);
+	for (; lua_next(r->L, -2); entries++)
+		lua_pop(r->L, 1);
+	if (entries != n)
+		fail_range(r, "a list of whole numbers, each");
+	for (size_t i = 0; i < n; i++) {
+		char name[64];
+		ob_field each = *r->field;
+		snprintf(name, sizeof name, "%s[%zu]", r->field->name, i + 1);
+		each.name = name;
+		lua_rawgeti(r->L, -1, (lua_Integer)i + 1);
+		set |= UINT32_C(1) << (uint32_t)read_integer(&(reader){ r->L, r->where, &each, NULL });
+		lua_pop(r->L, 1);
+	}
+	*(uint32_t *)r->to = set;
+}
+
 static void read_table(const reader *r)
 {
 	if (!lua_istable(r->L, -1))
@@ -346,7 +370,7 @@ static void (*const read_kind[])(const reader *r) = {
 	[OB_FIELD_ROTATION] = read_rotation,   [OB_FIELD_POINTS] = read_points,
 	[OB_FIELD_COLOUR] = read_colour,       [OB_FIELD_FLAT] = read_flat,
 	[OB_FIELD_SOURCE] = read_source,       [OB_FIELD_TABLE] = read_table,
-	[OB_FIELD_LENGTH] = read_length,
+	[OB_FIELD_LENGTH] = read_length,       [OB_FIELD_SET] = read_set,
 };
 
 static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *name, const ob_field *field,

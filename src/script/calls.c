@@ -5,6 +5,7 @@
 
 #include <lauxlib.h>
 
+#include "motion/depth.h"
 #include "motion/flight.h"
 #include "motion/joint_value.h"
 #include "scene/object_limits.h"
@@ -229,6 +230,51 @@ static int call_turned(lua_State *L)
 		return 0;
 	const ob_mat3 m = ob_quat_matrix(s.pose.q);
 	return push_vector(L, ob_rotate(&m, v));
+}
+
+// Solid of an object at the present time.
+static ob_solid solid_of(const ob_script_runner *r, uint32_t id)
+{
+	const ob_passport *p = ob_passport_of(r->u, id);
+	const ob_state s = ob_published_at(ob_newest_motion(r->u, id), p, now_of(r));
+	return (ob_solid){ p->shape, p->size, s.pose.p, ob_quat_matrix(s.pose.q), ob_hull_of(r->u, p) };
+}
+
+static bool boxes_overlap(const float *a, const float *b)
+{
+	return a[0] <= b[3] && b[0] <= a[3] && a[1] <= b[4] && b[1] <= a[4] && a[2] <= b[5] && b[2] <= a[5];
+}
+
+// o:inside(): the objects in a sensor, in the order of their ids.
+static int call_inside(lua_State *L)
+{
+	enum { AT_ONCE = 64, CLOSED_FORM = 16, SEARCH = 3000 }; // looked at between two charges; instructions of a depth
+	const ob_script_runner *r = runner_of(L);
+	const ob_flat_object *o = object_at(L, 1, "inside");
+	const ob_passport *sensor = passport_of(r, o);
+	warn_arguments(L, "inside", "");
+	if (!sensor)
+		return 0;
+	if (!(sensor->flags & OB_OBJECT_SENSOR))
+		ob_sandbox_fail(L, "inside: expected a sensor, as in sphere { radius = 1, sensor = true }");
+	const ob_solid solid = solid_of(r, o->id);
+	const float *box = r->data->bounds[o->id];
+	lua_newtable(L);
+	lua_Integer n = 0;
+	for (uint32_t id = 0; id < ob_universe_ids(r->u); id++) {
+		if (id % AT_ONCE == 0)
+			ob_sandbox_spend(L, AT_ONCE / 4);
+		if (r->data->schedule[id].state == OB_SCHEDULE_ABSENT || !boxes_overlap(box, r->data->bounds[id]) ||
+		    !ob_sensor_finds(sensor, ob_passport_of(r->u, id)))
+			continue;
+		const ob_solid other = solid_of(r, id);
+		ob_sandbox_spend(L, ob_depth_needs_search(solid.shape, other.shape) ? SEARCH : CLOSED_FORM);
+		if (!(ob_depth(&solid, &other) > 0))
+			continue;
+		push_object(L, r, id);
+		lua_rawseti(L, -2, ++n);
+	}
+	return 1;
 }
 
 // ---- orders to the own object
@@ -685,6 +731,7 @@ static const luaL_Reg methods[] = {
 	{ "spin", call_spin },
 	{ "attitude", call_attitude },
 	{ "turned", call_turned },
+	{ "inside", call_inside },
 	{ "force", call_force },
 	{ "torque", call_torque },
 	{ "push", call_push },

@@ -45,6 +45,8 @@ bool ob_ray_cast(lua_State *L, const ob_universe *u, ob_vec3 from, ob_vec3 direc
 			continue;
 		ob_sandbox_spend(L, SHAPE);
 		const ob_passport *o = ob_passport_of(u, id);
+		if (o->flags & OB_OBJECT_SENSOR)
+			continue;
 		const ob_state s = ob_published_at(ob_newest_motion(u, id), o, time);
 		const ob_mat3 r = ob_quat_matrix(s.pose.q);
 		ob_vec3 n = { 0 };

@@ -342,7 +342,8 @@ void ob_courses_find_landings(ob_sim *s, ob_course *const *c, uint32_t n)
 		}
 		ob_landing_times(of, (int)n);
 		for (uint32_t k = 0; k < n; k++)
-			if (c[k]->m.t0 + of[k].time < first[k])
+			if (c[k]->m.t0 + of[k].time < first[k] &&
+			    ob_passport_collides(ob_passport_of(s->u, c[k]->id), ob_passport_of(s->u, data->plane[i])))
 				first[k] = c[k]->m.t0 + of[k].time, c[k]->plane = data->plane[i];
 	}
 	for (uint32_t k = 0; k < n; k++)

@@ -209,7 +209,7 @@ static bool check_neighbours(const check *c, uint32_t id)
 		return true;
 	const uint32_t n = ob_index_query(c->u, id, c->near, c->ids, &tests);
 	for (uint32_t i = 0; i < n && i < c->ids; i++)
-		if (c->met[c->near[i]] != id + 1 && !ob_joint_parts(c->u, id, c->near[i])) {
+		if (c->met[c->near[i]] != id + 1 && ob_may_touch(c->u, id, c->near[i])) {
 			char other[NAMED];
 			return ob_fail(c->e, "object %u: its list of pairs lacks %s, whose fat AABB overlaps its own",
 				       id, name_of(c, c->near[i], other));

@@ -275,7 +275,7 @@ static void compare_pairs(const ob_universe *u, uint32_t id, const uint32_t *fou
 	}
 	for (uint32_t i = 0; i < n; i++)
 		if (!had[i] && decides(u, id, found[i]) && (!is_immobile(data, id) || !is_immobile(data, found[i])) &&
-		    !ob_joint_parts(u, id, found[i]))
+		    ob_may_touch(u, id, found[i]))
 			add_change(to, found[i]);
 }
 

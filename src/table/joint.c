@@ -1,4 +1,5 @@
-// Joints of a universe: passports, and the list of each object. Written by the host before the run; then constant.
+// Joints of a universe: passports, and the list of each object; and the pairs that may touch. Written by the host before
+// the run; then constant.
 #include <math.h>
 #include <string.h>
 
@@ -44,16 +45,18 @@ bool ob_joint_holds(const ob_universe *u, const ob_joint_passport *j)
 	return true;
 }
 
-bool ob_joint_parts(const ob_universe *u, uint32_t a, uint32_t b)
+bool ob_may_touch(const ob_universe *u, uint32_t a, uint32_t b)
 {
 	const ob_step_data *data = &u->step_data;
+	if (!ob_passport_collides(ob_passport_of(u, a), ob_passport_of(u, b)))
+		return false;
 	for (uint32_t j = ob_joint_first(data, a); j; j = ob_joint_next(data, j, a)) {
 		const ob_joint_passport *joint = &data->joint[j - 1];
 		if ((joint->object[0] == b || joint->object[1] == b) && !(joint->flags & OB_JOINT_COLLIDES) &&
 		    ob_joint_holds(u, joint))
-			return true;
+			return false;
 	}
-	return false;
+	return true;
 }
 
 // ---- readers

@@ -176,17 +176,16 @@ static bool bounds_make_sense(const float *b, const ob_passport *p)
 
 static bool check_object(const ob_saved_universe *s, uint32_t id, ob_error *e)
 {
-	enum {
-		KNOWN = OB_OBJECT_PRESENT | OB_OBJECT_PRESCRIBED | OB_OBJECT_FROZEN | OB_OBJECT_MESH_COLOUR |
-			OB_OBJECT_MESH_SURFACE
-	};
+	const uint32_t groups = UINT32_MAX << OB_OBJECT_GROUP;
+	const uint32_t known = OB_OBJECT_PRESENT | OB_OBJECT_PRESCRIBED | OB_OBJECT_FROZEN | OB_OBJECT_MESH_COLOUR |
+			       OB_OBJECT_MESH_SURFACE | OB_OBJECT_SENSOR | groups;
 	const ob_passport *p = &s->passport[id];
 	const char *wrong = NULL;
 	if (!(p->flags & OB_OBJECT_PRESENT))
 		return p->flags == 0 && s->schedule[id].state == OB_SCHEDULE_ABSENT
 			       ? true
 			       : ob_fail(e, "object %u is half there", id);
-	if (!ob_passport_makes_sense(p, id) || p->flags & ~(uint32_t)KNOWN || !principal_moments_make_sense(p))
+	if (!ob_passport_makes_sense(p, id) || p->flags & ~known || !principal_moments_make_sense(p))
 		wrong = "passport";
 	else if (!motion_of_run_makes_sense(&s->motion[id], s->step) ||
 		 (s->motion[id].flags & OB_MOTION_SWINGS && !(p->flags & OB_OBJECT_KINEMATIC)))

@@ -102,8 +102,10 @@ static inline uint32_t ob_joint_first(const ob_step_data *data, uint32_t id)
 uint32_t ob_joint_next(const ob_step_data *data, uint32_t joint, uint32_t id);
 // True if the joint holds: its objects exist as those that it was made for.
 bool ob_joint_holds(const ob_universe *u, const ob_joint_passport *j);
-// True if a joint holds the two that does not let them touch each other.
-bool ob_joint_parts(const ob_universe *u, uint32_t a, uint32_t b);
+// True if the two may have contacts: neither is a sensor, their groups hit each other, and no joint lets them overlap.
+bool ob_may_touch(const ob_universe *u, uint32_t a, uint32_t b);
+// True if a sensor looks for such an object: it moves, is no sensor, and their groups hit each other.
+bool ob_sensor_finds(const ob_passport *sensor, const ob_passport *p);
 // Cell of an object; NULL: it has no script.
 const ob_script_turn *ob_script_turn_of(const ob_universe *u, uint32_t id);
 // Counts objects whose script an error has stopped; and those whose script goes on, but is warned of. Paused.

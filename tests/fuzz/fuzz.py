@@ -216,6 +216,9 @@ class Scenes:
 		if self.scripts and kind != "ground" and r.random() < .5 and not any(f.startswith("varying_force") for f in fields):
 			fields.append(f"script = '{self.one_of([f's{r.randrange(self.scripts)}', 'drop.lua'], ['none.lua', 's9', 'self:remove()'])}'")
 			fields += self.maybe(.3, "state", lambda: self.one_of(["{}", "{ a = 1, b = 'x', c = true }", "{ 1, 2, 3 }"], ["{ a = {} }", "{ a = ('x'):rep(2000) }", "7"]))
+		fields += self.maybe(.1, "group", lambda: self.one_of(["0", "1", "15"], ["32", "-1", ".5"]))
+		fields += self.maybe(.1, "hits", lambda: self.one_of(["{}", "{ 0, 1 }", "{ 15 }"], ["{ 32 }", "{ 'a' }", "1"]))
+		fields += self.maybe(.05, "sensor", lambda: r.choice(["true", "false"])) if kind != "ground" else []
 		fields += self.maybe(.2, "friction", lambda: self.number(0, 1000))
 		fields += self.maybe(.4, "restitution", lambda: self.number(0, 1))
 		fields += self.maybe(.05, "colour", self.colour)

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "measure/depth.h"
+#include "motion/depth.h"
 
 // In [low, high); xorshift64* (Vigna 2014)
 static inline double random_between(uint64_t *state, double low, double high)

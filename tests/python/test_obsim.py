@@ -29,6 +29,7 @@ sphere { name = "ball", radius = .2, at = { 3, 0, .2 }, script = [[
 function on_message(from, what, number) self.state.heard = what; self:push({ 0, 0, number }) end
 ]] }
 box { name = "lift", size = { 1, 1, .1 }, at = { 6, 0, 1 }, kind = "kinematic" }
+box { name = "gate", size = { 1, 1, 1 }, at = { 3, 0, 0 }, static = true, sensor = true, group = 5 }
 """
 CART = """scene { duration = 100, step = .02 }
 ground {}
@@ -59,6 +60,16 @@ class Case(unittest.TestCase):
         with self.assertRaises(obsim.Error) as caught:
             function(*arguments, **named)
         self.assertIn(text, str(caught.exception))
+
+
+class Sensors(Case):
+    def test_inside(self):
+        u = self.run_()
+        self.assertEqual([o.name for o in u['gate'].inside()], ['ball'])
+        self.assertTrue(u['gate'].sensor and not u['ball'].sensor and u['gate'].group == 5)
+        u['ball'].position = 3, 0, 9
+        self.assertEqual(u['gate'].inside(), [])
+        self.assertEqual(u['ball'].inside(), [])
 
 
 class Steps(Case):

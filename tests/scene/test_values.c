@@ -81,6 +81,22 @@ static void check_joints(void)
 	ob_scene_free(s);
 }
 
+static void check_groups(void)
+{
+	ob_scene *s = load_good("sphere { radius = 1, group = 3, hits = { 0, 15 } }\nground { hits = {} }\n"
+				"box { size = { 1, 1, 1 }, sensor = true, at = { 0, 0, 9 } }");
+	CHECK(s);
+	if (!s)
+		return;
+	const ob_object_def *o = s->object;
+	CHECK(ob_passport_group(&o[0].passport) == 3 && o[0].passport.flags >> OB_OBJECT_PASSES == 0x7ffe);
+	CHECK(ob_passport_group(&o[1].passport) == 0 && o[1].passport.flags >> OB_OBJECT_PASSES == 0xffff);
+	CHECK(o[2].passport.flags >> OB_OBJECT_PASSES == 0 && o[2].passport.flags & OB_OBJECT_SENSOR);
+	CHECK(!ob_passport_hits(&o[0].passport, &o[1].passport) && ob_passport_hits(&o[0].passport, &o[2].passport));
+	CHECK(!ob_passport_collides(&o[0].passport, &o[2].passport));
+	ob_scene_free(s);
+}
+
 static void check_free(void)
 {
 	ob_scene *s = load_good("scene { sync = 'free', update_rate = 500, max_lag = .01 }\nground {}");
@@ -237,6 +253,7 @@ int main(void)
 	check_defaults();
 	check_settings();
 	check_joints();
+	check_groups();
 	check_free();
 	check_exactness();
 	check_share();

@@ -1,8 +1,8 @@
 // Penetration depth with hulls (depth.h). Pure, thread-safe.
-#ifndef OB_MEASURE_HULL_DEPTH_H
-#define OB_MEASURE_HULL_DEPTH_H
+#ifndef OB_MOTION_HULL_DEPTH_H
+#define OB_MOTION_HULL_DEPTH_H
 
-#include "measure/depth.h"
+#include "motion/depth.h"
 
 // Depth of two polyhedra: hulls and boxes. The separating axes are the faces' normals, and the products of two edges
 // that are extreme in both solids along them.

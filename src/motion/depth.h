@@ -1,6 +1,6 @@
 // Penetration depth of two convex solids: the length of the shortest way out. Pure, thread-safe.
-#ifndef OB_MEASURE_DEPTH_H
-#define OB_MEASURE_DEPTH_H
+#ifndef OB_MOTION_DEPTH_H
+#define OB_MOTION_DEPTH_H
 
 #include <ob/hull.h>
 #include <ob/motion.h>

@@ -1,6 +1,6 @@
-#include "measure/depth.h"
+#include "motion/depth.h"
 
-#include "measure/hull_depth.h"
+#include "motion/hull_depth.h"
 #include "shape/shape.h"
 
 // Half length (m) of the segment inside a capsule; 0 for a sphere.

@@ -1,4 +1,4 @@
-#include "measure/hull_depth.h"
+#include "motion/hull_depth.h"
 
 #include "shape/shape.h"
 

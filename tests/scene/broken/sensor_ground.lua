@@ -1,0 +1,2 @@
+-- expect: :2: ground.sensor: unknown field
+ground { sensor = true }
