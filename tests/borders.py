@@ -55,7 +55,8 @@ ARROWS = {
     'record': 'measure mesh scene table settings shape motion base',
     'paper': 'host measure render reference plot experiment scene table settings ranks base',
     'serve': 'record measure mesh host scene table settings shape motion base',
-    'cli': 'shape free/free.h free/schedule.h serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
+    'import': 'hull shape motion base',
+    'cli': 'import shape free/free.h free/schedule.h serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
 }
 BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h', 'sync_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
          'paper': ['paper_texts.h'],
@@ -74,7 +75,7 @@ DUTIES = [
     ('include libjpeg', r'#\s*include\s*<jpeglib', r'src/mesh/', True),
     ('include libzip or expat', r'#\s*include\s*<(zip|expat)\.h', r'src/fmu/', True),
     ('include Bullet', r'#\s*include\s*[<"](bullet/|bt)', r'src/engine/', True),
-    ('include MuJoCo', r'#\s*include\s*<mujoco', r'src/engine/', True),
+    ('include MuJoCo', r'#\s*include\s*<mujoco', r'src/(engine|import)/', True),
     ('include MPI', r'#\s*include\s*<mpi', r'src/ranks/mpi\.c$', True),
     ('include liburcu', r'#\s*include\s*<urcu', r'src/host/', True),
     ('map shared memory', r'\b(shm_open|mmap)\s*\(', r'src/table/', True),
@@ -84,7 +85,7 @@ DUTIES = [
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
      r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|paper/viewer|ranks/mpi|serve/server)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
-     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|ranks/courier|lab/attempt|paper/attempt|record/recording|base/part)\.c$', True),
+     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|ranks/courier|lab/attempt|paper/attempt|record/recording|import/import|base/part)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
 ]
 

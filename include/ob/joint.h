@@ -9,6 +9,8 @@
 //   fixed       nothing                                           any
 //   universal   the turns about x of the first, y of the second   x and y: arms of the cross
 //   distance    all but the distance of the two origins           any; the origins lie apart
+//   apart       everything: its two objects pass through each     any
+//               other, and that is all
 //
 // Along the free axis of a hinge (rad), a slider (m) and a distance (m) limits, a spring with a damper, dry friction and a
 // motor may act. The value of an axis is the first object's turn, or shift, relative to the second since the scene began;
@@ -29,6 +31,7 @@ typedef enum ob_joint_kind {
 	OB_JOINT_FIXED,
 	OB_JOINT_UNIVERSAL,
 	OB_JOINT_DISTANCE,
+	OB_JOINT_APART,
 	OB_JOINT_KINDS,
 } ob_joint_kind;
 

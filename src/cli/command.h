@@ -23,6 +23,7 @@ int ob_command_inspect(const ob_arguments *a);
 int ob_command_serve(const ob_arguments *a);
 int ob_command_control(const ob_arguments *a);
 int ob_command_scenes(const ob_arguments *a);
+int ob_command_import(const ob_arguments *a);
 int ob_command_send(const ob_arguments *a);
 int ob_command_export(const ob_arguments *a);
 int ob_command_draw_replay(const ob_arguments *a); // run with --replay: draws a record instead of a scene

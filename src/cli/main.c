@@ -19,7 +19,7 @@ static const struct {
 	{ "paper", OB_COMMAND_PAPER, ob_command_paper },    { "inspect", OB_COMMAND_INSPECT, ob_command_inspect },
 	{ "serve", OB_COMMAND_SERVE, ob_command_serve },    { "send", OB_COMMAND_SEND, ob_command_send },
 	{ "export", OB_COMMAND_EXPORT, ob_command_export }, { "control", OB_COMMAND_CONTROL, ob_command_control },
-	{ "scenes", OB_COMMAND_SCENES, ob_command_scenes },
+	{ "scenes", OB_COMMAND_SCENES, ob_command_scenes }, { "import", OB_COMMAND_IMPORT, ob_command_import },
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 

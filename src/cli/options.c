@@ -22,6 +22,7 @@ enum {
 	EXPORT = OB_COMMAND_EXPORT,
 	CONTROL = OB_COMMAND_CONTROL,
 	SCENES = OB_COMMAND_SCENES,
+	IMPORT = OB_COMMAND_IMPORT,
 	STEPPED = RUN | SERVE | CONTROL
 };
 
@@ -162,8 +163,8 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_SEEDS] = { NULL, "seeds", "N", "seeds, from the scene's on; repeats of each (1)", COMPARE, 0 },
 	[OB_OPTION_LIMIT] = { NULL, "limit", "S", "seconds of CPU that a run may take (150)", LAB, 0 },
 	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR",
-			    "results, diagrams, report (obsim-lab; obsim-paper; compare: none)", LAB | PAPER | COMPARE,
-			    0 },
+			    "results, diagrams, report (obsim-lab; obsim-paper; compare: none); a scene",
+			    LAB | PAPER | COMPARE | IMPORT, 0 },
 	[OB_OPTION_FRESH] = { NULL, "fresh", NULL, "run again what DIR has already", LAB | PAPER | COMPARE, 0 },
 	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print it as JSON", LAB | PAPER | INSPECT, 0 },
 	[OB_OPTION_CHECK_TARGETS] = { NULL, "check", NULL, "exit with 3 when obsim misses a target", LAB, 0 },
@@ -172,7 +173,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
 
 	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end",
-			     STEPPED | COMPARE | TOP | LAB | PAPER | INSPECT | SEND | EXPORT | SCENES, 'h' },
+			     STEPPED | COMPARE | TOP | LAB | PAPER | INSPECT | SEND | EXPORT | SCENES | IMPORT, 'h' },
 };
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
@@ -329,6 +330,7 @@ bool ob_options_parse(ob_arguments *a, ob_command_bit command, int argc, char **
 			return ob_fail(e, "unexpected '%s' after '%s': one %s at a time", argv[i], a->operand,
 				       command == OB_COMMAND_TOP       ? "universe"
 				       : command == OB_COMMAND_INSPECT ? "checkpoint"
+				       : command == OB_COMMAND_IMPORT  ? "model"
 				       : command == OB_COMMAND_EXPORT  ? "record and one page"
 								       : "scene");
 		} else {
@@ -377,6 +379,8 @@ static const struct {
 	{ OB_COMMAND_SEND, "obsim send NAME REQUEST ...", "Changes objects of a running universe, or sends messages." },
 	{ OB_COMMAND_EXPORT, "obsim export FILE.h5 PAGE.html [OPTION ...]",
 	  "Makes a page of what was recorded, for any browser, or MCAP (FILE.mcap)." },
+	{ OB_COMMAND_IMPORT, "obsim import FILE [--out DIR]",
+	  "Makes a scene of a robot, or another model, in MJCF or URDF." },
 	{ OB_COMMAND_INSPECT, "obsim inspect FILE [OPTION ...]",
 	  "Says what a checkpoint holds, and whether it is whole." },
 	{ OB_COMMAND_LAB, "obsim lab [CASE ...] [OPTION ...]",
@@ -445,6 +449,7 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		command == OB_COMMAND_LAB       ? ", 3 a target missed"
 		: command & STEPPED             ? " or scene, 4 --check found a fault"
 		: command == OB_COMMAND_INSPECT ? ", or no whole checkpoint"
+		: command == OB_COMMAND_IMPORT  ? ", or no model"
 		: command == OB_COMMAND_EXPORT  ? ", or no whole record"
 						: " or scene");
 }

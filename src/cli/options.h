@@ -20,6 +20,7 @@ typedef enum ob_command_bit {
 	OB_COMMAND_EXPORT = 256,
 	OB_COMMAND_CONTROL = 512,
 	OB_COMMAND_SCENES = 1024,
+	OB_COMMAND_IMPORT = 2048,
 } ob_command_bit;
 
 // In the order of the help.

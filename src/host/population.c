@@ -164,6 +164,8 @@ static ob_vec3 inertia_of(const ob_population *p, const ob_passport *pass)
 {
 	if (pass->flags & OB_OBJECT_PRESCRIBED)
 		return ob_v3(0, 0, 0);
+	if (pass->inertia.x > 0) // as it was given
+		return pass->inertia;
 	return ob_shape_inertia((ob_shape)pass->shape, pass->size, ob_hull_of(p->u, pass), pass->mass);
 }
 

@@ -485,3 +485,25 @@ void ob_hull_find_corners(const ob_hull *h, const ob_vec3 *point, size_t points,
 		}
 	}
 }
+
+bool ob_hull_set_inertia(ob_hull *h, ob_vec3 inertia, ob_error *e)
+{
+	const ob_mat3 r = ob_quat_matrix(h->frame);
+	const double least_share = .25; // in half thicknesses: collision tests take the ball inside for a core
+	h->radius = 0;
+	h->inner = INFINITY;
+	for (uint32_t k = 0; k < h->corners; k++) {
+		h->corner[k] = ob_add(h->centre, ob_rotate(&r, h->corner[k]));
+		h->radius = fmax(h->radius, ob_norm(h->corner[k]));
+	}
+	for (uint32_t f = 0; f < h->faces; f++) {
+		h->normal[f] = ob_rotate(&r, h->normal[f]);
+		h->offset[f] += ob_dot(h->normal[f], h->centre);
+		h->inner = fmin(h->inner, h->offset[f]);
+	}
+	h->centre = ob_v3(0, 0, 0);
+	h->frame = ob_quat_identity();
+	h->inertia = inertia;
+	return h->inner >= least_share * .5 * h->thickness ||
+	       ob_fail(e, "inertia: expected the origin, which is the centre of mass then, well inside the hull");
+}

@@ -24,6 +24,10 @@ typedef struct ob_hull_corners {
 // decides that a point is a corner. Thread-safe.
 void ob_hull_find_corners(const ob_hull *h, const ob_vec3 *point, size_t points, ob_hull_corners *out);
 
+// Gives the hull other principal moments (m^2, per kilogram), about the origin of its points and the axes of their frame,
+// which becomes its own. Returns false and e if the origin is not well inside the hull.
+bool ob_hull_set_inertia(ob_hull *h, ob_vec3 inertia, ob_error *e);
+
 // Size of the hull as body properties store it (ob_shape).
 static inline ob_vec3 ob_hull_size(const ob_hull *h)
 {

@@ -1,4 +1,5 @@
-// ball, hinge, slider, fixed, universal, distance: joints of two objects, or of one and the world.
+// ball, hinge, slider, fixed, universal, distance: joints of two objects, or of one and the world. apart: two objects
+// that pass through each other.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,6 +59,7 @@ static const ob_field motor_fields[] = { MOTOR(rate, .low = -OB_JOINT_MOST, .hig
 					 MOTOR(stiffness, .high = OB_JOINT_MOST, .above = true),
 					 MOTOR(damping, .high = OB_JOINT_MOST) };
 
+// apart has none.
 static const struct {
 	const ob_field *field;
 	size_t fields;
@@ -124,6 +126,8 @@ static void read_objects(lua_State *L, const ob_scene *s, const char *kind, ob_j
 		ob_sandbox_fail(L, "%s: expected a table, as in %s { \"door\", \"frame\", ... }", kind, kind);
 	j->object[0] = read_object(L, s, kind, 1);
 	j->object[1] = read_object(L, s, kind, 2);
+	if (j->kind == OB_JOINT_APART && j->object[1] == OB_JOINT_WORLD)
+		ob_sandbox_fail(L, "%s: expected names of two objects", kind);
 	if (j->object[0] == j->object[1])
 		ob_sandbox_fail(L, "%s: expected two different objects, got \"%s\" twice", kind,
 				s->object[j->object[0]].passport.name);

@@ -121,7 +121,7 @@ typedef struct body {
 	const char *name, *material, *script, *fmu;
 	ob_flat state; // the script's
 	ob_vec3 given[OB_SHAPE_KEYS]; // numbers of the shape's size; a single one is in x
-	ob_vec3 at, velocity, spin, force, normal, surface_velocity;
+	ob_vec3 at, velocity, spin, force, normal, surface_velocity, inertia;
 	uint32_t kind;
 	double height, mass, density, friction, restitution, roughness, metal, born, dies, update_rate;
 	ob_quat q, rotation, mesh_rotation;
@@ -160,6 +160,7 @@ typedef struct body {
 	F(mass, .kind = OB_FIELD_NUMBER, .low = OB_MASS_LEAST, .high = OB_MASS_MOST), \
 		F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
 		F(update_rate, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = OB_UPDATE_RATE_MOST), \
+		F(inertia, .kind = OB_FIELD_VECTOR, .low = 0, .above = true, .high = 1e24), \
 		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
 		WITHIN(velocity, OB_SPEED_MOST), WITHIN(spin, OB_SPIN_MOST), WITHIN(force, OB_FORCE_MOST), \
 		F(kind, .kind = OB_FIELD_CHOICE, .choices = "dynamic|static|kinematic"), \
@@ -184,6 +185,7 @@ static const ob_field ground_fields[] = {
 
 static const body nothing = {
 	.normal = { 0, 0, 1 },
+	.inertia = { NAN, NAN, NAN },
 	.kind = UNSAID,
 	.mass = NAN,
 	.density = NAN,
@@ -302,6 +304,8 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 {
 	if (!isnan(d->mass) && !isnan(d->density))
 		refuse_together(L, kind, "mass", "density");
+	if (!isnan(d->inertia.x) && isnan(d->mass))
+		ob_sandbox_fail(L, "%s.inertia: expected mass with it", kind);
 	if (!isnan(d->q.w) && !isnan(d->rotation.w))
 		refuse_together(L, kind, "q", "rotation");
 	const char *named = d->kind == STATIC ? "static" : "kinematic";
@@ -414,6 +418,8 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 		p->force = d->force;
 	else
 		p->surface_velocity = d->surface_velocity;
+	if (!isnan(d->inertia.x))
+		p->inertia = d->inertia;
 	p->friction = d->friction;
 	p->restitution = d->restitution;
 	p->roughness = (float)d->roughness;
@@ -465,9 +471,11 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	return o;
 }
 
-static uint64_t hash_points(const ob_points *p)
+// Hash of what a hull is made of. inertia: m^2, principal moments per kilogram; NAN: a homogeneous body's.
+static uint64_t hash_points(const ob_points *p, ob_vec3 inertia)
 {
-	return ob_hash_on(OB_HASH_BEGIN, p->at, p->count * sizeof *p->at);
+	const uint64_t hash = ob_hash_on(OB_HASH_BEGIN, p->at, p->count * sizeof *p->at);
+	return isnan(inertia.x) ? hash : ob_hash_on(hash, &inertia, sizeof inertia);
 }
 
 static void grow_hulls(lua_State *L, ob_builder *b)
@@ -488,11 +496,13 @@ static void grow_hulls(lua_State *L, ob_builder *b)
 	b->hulls_room = room;
 }
 
-// Finds or adds the hull of these points; objects with the same points share it.
-static const ob_hull *find_hull(lua_State *L, ob_builder *b, const ob_points *p)
+// Finds or adds the hull of these points; objects with the same points and moments share it.
+static const ob_hull *find_hull(lua_State *L, ob_builder *b, const body *d)
 {
 	ob_scene *s = b->scene;
-	const uint64_t hash = hash_points(p);
+	const ob_points *p = &d->points;
+	const ob_vec3 inertia = ob_scale(d->inertia, 1 / d->mass);
+	const uint64_t hash = hash_points(p, inertia);
 	ob_error e;
 	for (uint32_t i = 0; i < s->hulls; i++)
 		if (b->hull_points[i] == hash)
@@ -504,6 +514,10 @@ static const ob_hull *find_hull(lua_State *L, ob_builder *b, const ob_points *p)
 	if (!ob_hull_build(p->at, p->count, &s->hull[s->hulls], &e))
 		ob_sandbox_fail(L, "hull.points: %s", e.text);
 	ob_hull_find_corners(&s->hull[s->hulls], p->at, p->count, &s->hull_corners[s->hulls]);
+	if (!isnan(inertia.x) && b->options->joining) // hulls are handed over as their corners
+		ob_sandbox_fail(L, "hull.inertia: expected none: only hulls of the scene have it");
+	if (!isnan(inertia.x) && !ob_hull_set_inertia(&s->hull[s->hulls], inertia, &e))
+		ob_sandbox_fail(L, "hull.%s", e.text);
 	b->hull_points[s->hulls] = hash;
 	return &s->hull[s->hulls++];
 }
@@ -560,7 +574,7 @@ void ob_scene_add(lua_State *L, ob_shape shape)
 	d.state = (ob_flat){ state_bytes, 0, sizeof state_bytes };
 	read_shape(L, shape, &d);
 	if (ob_shape_is(shape, OB_HULLED))
-		d.hull = find_hull(L, ob_sandbox_user(L), &d.points);
+		d.hull = find_hull(L, ob_sandbox_user(L), &d);
 	if (ob_shape_is(shape, OB_UNBOUNDED))
 		d.q = ob_scene_turn_to(d.normal);
 	add(L, ob_shape_name(shape), shape, size_of(shape, &d), &d);

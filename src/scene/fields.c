@@ -381,7 +381,7 @@ static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *
 		ob_text_offer(&spelling, field[i].name);
 	if (spelling.best)
 		ob_sandbox_fail(L, "%s.%.40s: unknown field, did you mean %s?", where, name, spelling.best);
-	char known[300];
+	char known[240];
 	size_t n = 0;
 	known[0] = 0;
 	for (size_t i = 0; i < count && n < sizeof known; i++)

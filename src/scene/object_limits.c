@@ -54,6 +54,26 @@ static bool check_slenderness(const ob_passport *p, ob_error *e)
 	return within("size", " times as long as wide", 1, OB_SLENDERNESS_MOST, longest / least, e);
 }
 
+// Checks principal moments that were given. Shapes that look the same from all sides turn as such bodies do.
+static bool check_inertia(const ob_passport *p, ob_error *e)
+{
+	const double x = p->inertia.x, y = p->inertia.y, z = p->inertia.z, more = 1 + 1e-9;
+	const double most = fmax(x, fmax(y, z)), least = fmin(x, fmin(y, z)),
+		     radius = ob_shape_radius((ob_shape)p->shape, p->size), unit = p->mass * radius * radius;
+	if (!(x <= (y + z) * more && y <= (z + x) * more && z <= (x + y) * more))
+		return ob_fail(e, "inertia: expected no moment above the sum of the others, got {%.10g, %.10g, %.10g}",
+			       x, y, z);
+	if (ob_shape_is(p->shape, OB_ROUND) && x != y)
+		return ob_fail(e, "inertia: expected the first two alike for a %s, got %.10g and %.10g",
+			       ob_shape_name(p->shape), x, y);
+	if (ob_shape_is(p->shape, OB_ISOTROPIC) && x != z)
+		return ob_fail(e, "inertia: expected all three alike for a %s", ob_shape_name(p->shape));
+	return within("inertia", " times mass and radius squared", OB_INERTIA_LEAST, 1 / OB_INERTIA_LEAST, most / unit,
+		      e) &&
+	       within("inertia", " of the largest moment", 1 / (OB_SLENDERNESS_MOST * OB_SLENDERNESS_MOST), 1,
+		      least / most, e);
+}
+
 bool ob_friction_check(double friction, ob_error *e)
 {
 	return within("friction", "", 0, OB_FRICTION_MOST, friction, e);
@@ -133,8 +153,9 @@ static bool check_varying_force(const ob_force *f, const ob_passport *p, ob_erro
 bool ob_object_def_check(const ob_object_def *def, ob_error *e)
 {
 	const ob_passport *p = &def->passport;
-	return ob_passport_check(p, e) && (!def->path || check_path(def->path, &def->state, e)) &&
-	       ob_state_check(p, &def->state, e) && (!def->force || check_varying_force(def->force, p, e));
+	return ob_passport_check(p, e) && (ob_norm2(p->inertia) == 0 || check_inertia(p, e)) &&
+	       (!def->path || check_path(def->path, &def->state, e)) && ob_state_check(p, &def->state, e) &&
+	       (!def->force || check_varying_force(def->force, p, e));
 }
 
 double ob_force_most(const ob_passport *p)

@@ -11,6 +11,7 @@
 #define OB_LENGTH_LEAST 1e-6 // m: an edge, a radius, a length, a hull's width; the smallest tolerance
 #define OB_LENGTH_MOST 1e6 // m
 #define OB_SLENDERNESS_MOST 1e4 // longest extent by least, of a body that forces move
+#define OB_INERTIA_LEAST 1e-4 // largest moment by mass and the square of the bounding ball's radius, and its inverse
 #define OB_MASS_LEAST 1e-12 // kg
 #define OB_MASS_MOST 1e12 // kg: 1 km of water
 #define OB_PLACE_MOST 1e7 // m from the origin along each axis: a double has steps of 2e-9 m there

@@ -16,7 +16,7 @@
 enum { OB_SCENE_HULLS_MAX = 4096 }; // different ones, including those added during the run
 
 typedef struct ob_object_def {
-	// id, name, flags, shape, size, mass, friction, restitution, colour; inertia is filled by the host
+	// id, name, flags, shape, size, mass, friction, restitution, colour; inertia, unless given, is filled by the host
 	ob_passport passport;
 	ob_state state; // at its first instant
 	uint64_t look; // for an object added during the run: key of its mesh (ob_mesh.key); 0: none

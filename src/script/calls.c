@@ -248,7 +248,11 @@ static bool boxes_overlap(const float *a, const float *b)
 // o:inside(): the objects in a sensor, in the order of their ids.
 static int call_inside(lua_State *L)
 {
-	enum { AT_ONCE = 64, CLOSED_FORM = 16, SEARCH = 3000 }; // looked at between two charges; instructions of a depth
+	enum {
+		AT_ONCE = 64,
+		CLOSED_FORM = 16,
+		SEARCH = 3000
+	}; // looked at between two charges; instructions of a depth
 	const ob_script_runner *r = runner_of(L);
 	const ob_flat_object *o = object_at(L, 1, "inside");
 	const ob_passport *sensor = passport_of(r, o);
@@ -722,24 +726,15 @@ static int object_text(lua_State *L)
 }
 
 static const luaL_Reg methods[] = {
-	{ "exists", call_exists },
-	{ "id", call_id },
-	{ "name", call_name },
-	{ "mass", call_mass },
-	{ "position", call_position },
-	{ "velocity", call_velocity },
-	{ "spin", call_spin },
-	{ "attitude", call_attitude },
-	{ "turned", call_turned },
-	{ "inside", call_inside },
-	{ "force", call_force },
-	{ "torque", call_torque },
-	{ "push", call_push },
-	{ "twist", call_twist },
-	{ "colour", call_colour },
-	{ "wake", call_wake },
-	{ "remove", call_remove },
-	{ NULL, NULL },
+	{ "exists", call_exists },     { "id", call_id },
+	{ "name", call_name },         { "mass", call_mass },
+	{ "position", call_position }, { "velocity", call_velocity },
+	{ "spin", call_spin },         { "attitude", call_attitude },
+	{ "turned", call_turned },     { "inside", call_inside },
+	{ "force", call_force },       { "torque", call_torque },
+	{ "push", call_push },         { "twist", call_twist },
+	{ "colour", call_colour },     { "wake", call_wake },
+	{ "remove", call_remove },     { NULL, NULL },
 };
 
 static void open_objects(lua_State *L)

@@ -166,8 +166,8 @@ static void follow_joints(const ob_involved *p, uint32_t id, uint32_t *stack)
 	for (uint32_t j = ob_joint_first(data, id); j; j = ob_joint_next(data, j, id)) {
 		const ob_joint_passport *joint = &data->joint[j - 1];
 		const uint32_t other = joint->object[joint->object[0] == id];
-		if (other == OB_JOINT_WORLD || other >= data->objects_max || !is_own(p, other) ||
-		    !ob_joint_holds(p->u, joint))
+		if (joint->kind == OB_JOINT_APART || other == OB_JOINT_WORLD || other >= data->objects_max ||
+		    !is_own(p, other) || !ob_joint_holds(p->u, joint))
 			continue;
 		if (ob_involve(p, other)) {
 			p->place[other] = *stack;

@@ -84,7 +84,7 @@ static void read_joints(ob_sim *s, uint32_t id)
 		const uint32_t other = joint->object[joint->object[0] == id];
 		const bool moves = other != OB_JOINT_WORLD && other < s->data->objects_max &&
 				   ob_schedule_is_dynamic(&s->data->schedule[other]);
-		if ((moves && joint->object[1] == id) || !ob_joint_holds(s->u, joint))
+		if ((moves && joint->object[1] == id) || joint->kind == OB_JOINT_APART || !ob_joint_holds(s->u, joint))
 			continue;
 		if (x->in.joints == x->joints_max) {
 			x->joints_max = 2 * x->joints_max + 16;

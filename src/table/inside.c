@@ -51,9 +51,9 @@ size_t ob_universe_get_inside(const ob_universe *u, uint32_t sensor, uint32_t *i
 		return 0;
 	for (uint32_t id = 0; id < info.capacity; id++) {
 		if (!ob_universe_get_passport(u, id, &other.passport) ||
-		    !ob_sensor_finds(&one.passport, &other.passport) ||
-		    !ob_universe_get_bounds(u, id, other.bounds) || !boxes_overlap(one.bounds, other.bounds) ||
-		    !take(u, id, info.time, &other) || !(ob_depth(&one.solid, &other.solid) > 0))
+		    !ob_sensor_finds(&one.passport, &other.passport) || !ob_universe_get_bounds(u, id, other.bounds) ||
+		    !boxes_overlap(one.bounds, other.bounds) || !take(u, id, info.time, &other) ||
+		    !(ob_depth(&one.solid, &other.solid) > 0))
 			continue;
 		if (n < max)
 			ids[n] = id;

@@ -30,6 +30,7 @@ function on_message(from, what, number) self.state.heard = what; self:push({ 0, 
 ]] }
 box { name = "lift", size = { 1, 1, .1 }, at = { 6, 0, 1 }, kind = "kinematic" }
 box { name = "gate", size = { 1, 1, 1 }, at = { 3, 0, 0 }, static = true, sensor = true, group = 5 }
+box { name = "top", size = { 1, 1, 1 }, at = { 9, 0, 5 }, mass = 2, inertia = { .5, .6, .7 } }
 """
 CART = """scene { duration = 100, step = .02 }
 ground {}
@@ -70,6 +71,7 @@ class Sensors(Case):
         u['ball'].position = 3, 0, 9
         self.assertEqual(u['gate'].inside(), [])
         self.assertEqual(u['ball'].inside(), [])
+        self.assertEqual(u['top'].inertia.tolist(), [.5, .6, .7])
 
 
 class Steps(Case):

@@ -10,7 +10,7 @@ import unittest
 import program
 
 FILES = os.environ["COMPLETIONS"]
-COMMANDS = ["run", "serve", "control", "export", "compare", "top", "lab", "paper", "inspect", "send", "scenes"]
+COMMANDS = ["run", "serve", "control", "export", "compare", "top", "lab", "paper", "inspect", "send", "scenes", "import"]
 
 
 def options(command):

@@ -19,7 +19,10 @@ box { name = "held", size = { .4, .4, .4 }, at = { 1, 0, 2.6 } }
 box { name = "through", size = { .4, .4, .4 }, at = { 0, 0, 2.6 }, hits = { 0 } }
 box { name = "ghost", size = { .4, .4, .4 }, at = { -1, .5, 2.4 }, group = GHOST, hits = { 0, SHELF } }
 box { name = "twin", size = { .4, .4, .4 }, at = { -1, .5, 2.6 }, group = GHOST, hits = { 0, SHELF } }
-sphere { name = "lost", radius = .2, at = { 5, 0, .5 }, hits = {} }
+sphere { name = "lost", radius = .2, at = { 5, 0, .5 }, hits = { 9 } }
+box { name = "beam", size = { .4, .4, .4 }, at = { 7, 0, .2 } }
+box { name = "twin of beam", size = { .4, .4, .4 }, at = { 7, .1, 1 } }
+apart { "beam", "twin of beam" }
 box { name = "swing", size = { .1, .1, 1 }, at = { 3, 0, 2 } }
 hinge { "swing", at = { 3, 0, 2.5 }, axis = { 0, 1, 0 } }
 script("door", [[
@@ -30,7 +33,7 @@ function on_step()
 			print(self:name(), "at", time(), o:name())
 		end
 	end
-	if time() == .5 then sphere { radius = .1, at = { 0, 1, 3 }, hits = { 1 } } end
+	if time() == .5 and self:name() == "door" then sphere { radius = .1, at = { 0, 1, 3 }, hits = { 1 } } end
 end
 ]])
 cylinder { name = "door", radius = .5, length = .6, at = { 0, 0, .3 }, static = true, sensor = true, script = "door" }
@@ -38,7 +41,7 @@ box { name = "lift", size = { 1, 1, 1 }, at = { 1, 0, 3 }, kind = "kinematic", v
 	script = "door" }
 sphere { name = "probe", radius = .3, at = { 3, .2, 1.5 }, sensor = true, script = "door" }
 fixed { "probe", "swing" }
-plane { name = "depths", at = { 0, 0, -1 }, sensor = true, script = "door" }
+plane { name = "depths", at = { 0, 0, -1 }, group = 9, sensor = true, script = "door" }
 box { name = "blind", size = { 9, 9, 9 }, static = true, sensor = true, hits = { 7 }, script = "door" }
 """
 
@@ -88,7 +91,7 @@ class Groups(program.Case):
 
 	@unittest.skipUnless(shutil.which("mpirun"), "no mpirun")
 	def test_ranks(self):
-		text = re.sub(r"^(hinge|fixed).*\n", "", SCENE, flags=re.MULTILINE)
+		text = re.sub(r"^(hinge|fixed|apart).*\n", "", SCENE, flags=re.MULTILINE)
 		with open(self.scene, "w", encoding="utf-8") as f:
 			f.write(text)
 		done = subprocess.run(["mpirun", "-n", "2", program.OBSIM, "run", self.scene, "--workers", "1", "--measure", "end"],
@@ -97,7 +100,7 @@ class Groups(program.Case):
 
 	def test_monolith(self):
 		"""ODE's one world has the same groups and sensors."""
-		text = re.sub(r"^(hinge|fixed).*\n", "", SCENE, flags=re.MULTILINE)
+		text = re.sub(r"^(hinge|fixed|apart).*\n", "", SCENE, flags=re.MULTILINE)
 		with open(self.scene, "w", encoding="utf-8") as f:
 			f.write(text)
 		said = self.state(self.scene, "--arch", "monolith")[1]

@@ -97,6 +97,27 @@ static void check_groups(void)
 	ob_scene_free(s);
 }
 
+// With moments of its own an object turns about the origin and the axes that it is given in; else about its shape's.
+static void check_inertia(void)
+{
+	ob_scene *s = load_good("box { size = { 1, 2, 3 }, mass = 2, inertia = { 1, 2, 2.5 } }\n"
+				"local corners = { { -1, -1, -1 }, { 2, -1, -1 }, { -1, 3, -1 }, { -1, -1, 4 } }\n"
+				"hull { points = corners, mass = 2, inertia = { 3, 4, 5 }, at = { 5, 0, 0 } }\n"
+				"hull { points = corners, at = { 9, 0, 0 } } apart { 'box#0', 'hull#1' }");
+	CHECK(s);
+	if (!s)
+		return;
+	const ob_hull *own = &s->hull[s->object[1].passport.hull], *usual = &s->hull[s->object[2].passport.hull];
+	check_vec(s->object[0].passport.inertia, 1, 2, 2.5);
+	check_vec(s->object[1].passport.inertia, 3, 4, 5);
+	check_vec(s->object[1].state.pose.p, 5, 0, 0);
+	CHECK(s->object[2].passport.inertia.x == 0 && fabs(s->object[2].state.pose.p.x - 8.75) < 1e-12);
+	CHECK(own != usual && own->volume == usual->volume && own->frame.w == 1 && s->object[1].state.pose.q.w == 1);
+	CHECK_NEAR(own->inner, 13 / sqrt(769), 1e-12);
+	CHECK(s->joints == 1 && s->joint[0].kind == OB_JOINT_APART && !(s->joint[0].flags & OB_JOINT_COLLIDES));
+	ob_scene_free(s);
+}
+
 static void check_free(void)
 {
 	ob_scene *s = load_good("scene { sync = 'free', update_rate = 500, max_lag = .01 }\nground {}");
@@ -254,6 +275,7 @@ int main(void)
 	check_settings();
 	check_joints();
 	check_groups();
+	check_inertia();
 	check_free();
 	check_exactness();
 	check_share();

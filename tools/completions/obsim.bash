@@ -13,7 +13,7 @@ _obsim()
 	COMPREPLY=()
 	[[ $command:$previous == @(lab|paper|inspect):--json ]] && previous= # a flag there
 	if ((COMP_CWORD == 1)); then
-		mapfile -t COMPREPLY < <(compgen -W 'run serve control export compare top send inspect lab paper scenes help --help --version' -- "$word")
+		mapfile -t COMPREPLY < <(compgen -W 'run serve control export compare top send inspect lab paper scenes import help --help --version' -- "$word")
 		return
 	fi
 	case $previous in
@@ -51,10 +51,10 @@ _obsim()
 		--camera | --interval | --repeats | --seeds | --limit | --objects) ;;
 	*)
 		case $command:$word in
-		help:*) mapfile -t COMPREPLY < <(compgen -W 'run serve control export compare top send inspect lab paper scenes' -- "$word") ;;
+		help:*) mapfile -t COMPREPLY < <(compgen -W 'run serve control export compare top send inspect lab paper scenes import' -- "$word") ;;
 		*:-*) mapfile -t COMPREPLY < <(compgen -W "$(_obsim_options "$program" "$command")" -- "$word") ;;
 		paper:*) ;;
-		inspect:* | export:*) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
+		inspect:* | export:* | import:*) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 		send:*) mapfile -t COMPREPLY < <(compgen -W "create remove colour message force kick torque push drag release place velocity friction move kill keep return restart $(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
 			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;
 		top:*) mapfile -t COMPREPLY < <(compgen -W "$(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |

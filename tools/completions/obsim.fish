@@ -14,6 +14,7 @@ complete -c obsim -f
 complete -c obsim -n __fish_use_subcommand -a run -d 'run a scene and report'
 complete -c obsim -n __fish_use_subcommand -a serve -d 'run a scene that people look at'
 complete -c obsim -n __fish_use_subcommand -a control -d 'run a scene that a program leads'
+complete -c obsim -n __fish_use_subcommand -a import -d 'make a scene of a robot'
 complete -c obsim -n __fish_use_subcommand -a export -d 'make a page of what was recorded'
 complete -c obsim -n __fish_use_subcommand -a compare -d 'run a scene in all configurations'
 complete -c obsim -n __fish_use_subcommand -a top -d 'look into a running universe'
@@ -25,7 +26,7 @@ complete -c obsim -n __fish_use_subcommand -a scenes -d 'list the scenes that co
 complete -c obsim -n __fish_use_subcommand -a help -d 'help of a command'
 complete -c obsim -n __fish_use_subcommand -l version -d 'version, commit, libraries'
 complete -c obsim -s h -l help -d 'print help'
-complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve control export compare top send inspect lab paper scenes'
+complete -c obsim -n '__fish_seen_subcommand_from help' -a 'run serve control export compare top send inspect lab paper scenes import'
 
 set -l both '__fish_seen_subcommand_from run compare serve control'
 complete -c obsim -n $both -a '(__fish_complete_suffix .lua)'
@@ -64,6 +65,8 @@ complete -c obsim -n $serve -l log-requests -r -F -d 'what viewers ask for, and 
 complete -c obsim -n '__fish_seen_subcommand_from serve control' -l room -x -d 'objects that viewers may add'
 complete -c obsim -n $serve -l record -r -F -d 'record what is served'
 complete -c obsim -n $serve -l replay -r -F -d 'show what was recorded'
+complete -c obsim -n '__fish_seen_subcommand_from import' -F
+complete -c obsim -n '__fish_seen_subcommand_from import' -l out -x -a '(__fish_complete_directories)' -d 'where scene and looks go'
 complete -c obsim -n '__fish_seen_subcommand_from export' -F
 complete -c obsim -n '__fish_seen_subcommand_from export' -l patience -x -d 'seconds of CPU for the page'
 

@@ -1,0 +1,20 @@
+// A model as MuJoCo's parser reads it. Internal to the module.
+#ifndef OB_IMPORT_LOAD_H
+#define OB_IMPORT_LOAD_H
+
+#include <stdbool.h>
+
+#include <mujoco/mujoco.h>
+
+#include <ob/error.h>
+
+typedef struct ob_drawn {
+	mjModel *model;
+	mjData *data; // at the model's initial pose, with all frames in the world
+	bool floats; // a URDF file without a link called world: its root, which has no joint, is free
+} ob_drawn;
+
+// Loads an MJCF or URDF file and the files that it names. Once in a process: a fault of MuJoCo's leaves its memory.
+bool ob_drawn_load(const char *path, ob_drawn *out, ob_error *e);
+
+#endif
