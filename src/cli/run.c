@@ -261,6 +261,19 @@ static double body_steps(const run *r, double since)
 	return sum;
 }
 
+// Number of steps of the seconds that moving objects have begun, as a second is bounded as a whole.
+static double steps_of_seconds(const run *r)
+{
+	double sum = 0;
+	for (uint32_t i = 0; i < r->scene->objects; i++) {
+		const ob_object_def *d = &r->scene->object[i];
+		const double begun = ceil(fmin(d->dies, r->now.time) - 1e-9) - floor(fmax(d->born, 0) + 1e-9);
+		if (!(d->passport.flags & OB_OBJECT_PRESCRIBED) && begun > 0)
+			sum += begun / r->request.run.step_length;
+	}
+	return sum;
+}
+
 // Simulated time (s) when this process began
 static double first_time(const run *r)
 {
@@ -395,7 +408,7 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->deaths_told = ob_host_get_deaths(r->host, p->death);
 	report_free(r, p);
 	const double steps = body_steps(r, first_time(r));
-	const double all = body_steps(r, 0);
+	const double all = steps_of_seconds(r);
 	p->bounded_share = p->tolerance > 0 && all > 0 ? fmax(0, 1 - (double)p->unbounded_steps / all) : NAN;
 	p->body_step_cpu_us = steps > 0 ? 1e6 * times.cpu_s / steps : NAN;
 }

@@ -28,6 +28,20 @@ static inline uint32_t ob_steps_of_second(uint64_t n, double h)
 	return (uint32_t)((double)n - first);
 }
 
+// Time (s) that is left of the running second at the end of step n.
+static inline double ob_left_of_second(uint64_t n, double h)
+{
+	return fmax(1 - ob_steps_of_second(n, h) * h, 0);
+}
+
+// Returns the code of a body's deviation at the second's end after a hit: it begins where either of both bodies is off
+// by "most" at most, so its direction is off by that over the radius (m), and the velocity by as much of its change
+// (m/s, of surface points), for the time that is left (s).
+static inline uint16_t ob_deviation_after_hit(uint16_t most, double change, double radius, double left)
+{
+	return ob_deviation_code(ob_deviation(most) + left * change * fmin(ob_deviation(most) / radius, 2));
+}
+
 // Returns the part of a code as of step "before" that counts at the end of step n: nothing in a new second.
 static inline uint16_t ob_deviation_at(uint16_t code, uint64_t before, uint64_t n, double h)
 {

@@ -6,7 +6,7 @@
 
 // PERIOD: steps from one estimate to the next; SOON: of a lone body, after one above the tolerance. WATCHED_BODIES:
 // islands of up to so many have one at each change, too.
-enum { PERIOD = 16, SOON = 4, WATCHED_BODIES = 2 };
+enum { PERIOD = 16, SOON = 4, WATCHED_BODIES = 2, MEETING_BODIES = 8 };
 
 bool ob_estimate_create(ob_solver *s)
 {
@@ -32,6 +32,24 @@ static bool is_free(const ob_island_work *w)
 	return true;
 }
 
+// True if bodies rebounded from each other. The hits of a lone body are found at their instants, and need no estimate.
+static bool hit_each_other(const ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->contacts && w->bodies > 1; i++)
+		if (w->contact[i].hit)
+			return true;
+	return false;
+}
+
+// True if a few bodies met that touched nothing before.
+static bool meet_in_flight(const ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->contacts; i++)
+		if (!w->contact[i].began)
+			return false;
+	return w->bodies <= MEETING_BODIES;
+}
+
 // Returns the number of steps for which an estimate of this step stands; 0: none is due.
 static uint32_t weight_of(const ob_solver *s)
 {
@@ -44,19 +62,51 @@ static uint32_t weight_of(const ob_solver *s)
 		return PERIOD;
 	if (phase % SOON == 0 && ob_refinement_is_doubted(s))
 		return 1;
-	return w->bodies <= WATCHED_BODIES && ob_contacts_changed(w);
+	return (ob_contacts_changed(w) || hit_each_other(w)) && (w->bodies <= WATCHED_BODIES || meet_in_flight(w));
 }
 
-// Counts the steps of a second of which more is not bounded now: the last one, or all when the bound is exceeded.
-static void count(ob_solver *s, uint16_t before, uint16_t now)
+void ob_estimate_count(ob_solver *s, uint16_t before, uint16_t now)
 {
 	const uint16_t bound = s->estimate.bound;
-	if (now > bound)
-		s->counters.unbounded +=
-			before > bound ? 1 : ob_steps_of_second(s->in->step + 1, s->settings->step_length);
+	if (before <= bound && now > bound)
+		s->counters.unbounded += (uint64_t)llround(1 / s->settings->step_length);
 	if (now > s->estimate.largest) {
 		s->estimate.largest = now;
 		s->counters.deviation = ob_max(s->counters.deviation, ob_deviation(now));
+	}
+}
+
+// Returns the code of a row's deviation at the end of the running step, if it adds none.
+static uint16_t deviation_before(const ob_solver *s, uint32_t row)
+{
+	const ob_motion *last = row && row <= s->island.bodies ? s->in->object[row - 1].motion : NULL;
+	return last ? ob_deviation_at(last->deviation, last->step, s->in->step + 1, s->settings->step_length) : 0;
+}
+
+// Sets the deviations of bodies that hit each other to what is left of them after the hit.
+static void hand_over(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	const double h = s->settings->step_length, left = ob_left_of_second(s->in->step + 1, h);
+	for (uint32_t row = 1; row <= w->bodies; row++)
+		w->body[row].deviation = deviation_before(s, row);
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *c = &w->contact[i];
+		const uint32_t row[2] = { c->a, c->b };
+		const uint16_t a = deviation_before(s, c->a), b = deviation_before(s, c->b), most = a > b ? a : b;
+		if (!most || !(c->hit || (c->began && c->lane != OB_NO_LANE)))
+			continue;
+		for (int k = 0; k < 2; k++) {
+			if (!row[k] || row[k] > w->bodies)
+				continue;
+			const ob_motion *last = s->in->object[row[k] - 1].motion;
+			ob_body *body = &w->body[row[k]];
+			const double change =
+				ob_norm(ob_sub(ob_row_linear(w->v[row[k]]), last->v)) +
+				body->radius * ob_norm(ob_sub(ob_row_angular(w->v[row[k]]), last->w));
+			const uint16_t after = ob_deviation_after_hit(most, change, body->radius, left);
+			body->deviation = after > body->deviation ? after : body->deviation;
+		}
 	}
 }
 
@@ -64,16 +114,14 @@ static void count(ob_solver *s, uint16_t before, uint16_t now)
 static double update_deviation(ob_solver *s, uint32_t row, uint32_t weight, double factor)
 {
 	ob_island_work *w = &s->island;
-	const ob_motion *last = s->in->object[row - 1].motion;
 	const double h = s->settings->step_length;
-	const uint16_t before = ob_deviation_at(last->deviation, last->step, s->in->step + 1, h);
+	const uint16_t before = w->body[row].deviation; // and what a hit made of it
 	double speed = 0, error = weight ? factor * ob_probe_distance(s->estimate.probe, w, row, &speed) : 0;
 	speed *= factor;
-	w->body[row].deviation = before;
 	if (weight)
 		w->body[row].deviation =
 			ob_deviation_code(ob_deviation(before) + weight * h * ob_error_of_time(error, speed, h, 1));
-	count(s, before, w->body[row].deviation);
+	ob_estimate_count(s, deviation_before(s, row), w->body[row].deviation);
 	return ob_error_of_run(s, error, speed);
 }
 
@@ -88,6 +136,7 @@ void ob_estimate_update(ob_solver *s)
 		ob_probe_solve(s->estimate.probe, s->in, refined || n < 2 || w->joints.count ? 2 * n : n / 2);
 		s->counters.estimates += w->bodies;
 	}
+	hand_over(s);
 	for (uint32_t row = 1; row <= w->bodies; row++)
 		error = ob_max(error, update_deviation(s, row, weight, refined ? 2 : 1));
 	if (s->estimate.probe && !w->balanced)

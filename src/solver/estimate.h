@@ -4,8 +4,9 @@
 // with twice as many counts, as half as many may be of another order.
 //
 // It is made in one of 16 steps of an island, where it stands for them all; and in each step in which contacts of one or
-// two bodies change. Each body's motion carries the sum since the second began (motion/deviation.h). Ids and steps decide,
-// so it is the same for any worker, rank, kill and resume.
+// two bodies change, or a few meet that touched nothing. Each body's motion carries the sum since the second began
+// (motion/deviation.h). A hit hands the larger sum of both bodies on, and lets it grow. Ids and steps decide, so it is the
+// same for any worker, rank, kill and resume.
 #ifndef OB_SOLVER_ESTIMATE_H
 #define OB_SOLVER_ESTIMATE_H
 
@@ -18,5 +19,7 @@ void ob_estimate_finish(ob_solver *s);
 // Estimates the error of the island's solution if that is due, updates its bodies' deviations and refinement, and counts
 // what is within the tolerance.
 void ob_estimate_update(ob_solver *s);
+// Counts a body's second as unbounded when its deviation, a code, exceeds the tolerance first.
+void ob_estimate_count(ob_solver *s, uint16_t before, uint16_t now);
 
 #endif

@@ -798,6 +798,7 @@ static void solve_set(ob_solver *s, uint32_t chain)
 		if (!i->joined)
 			continue;
 		w->contact[i->contact].rebounds++;
+		w->contact[i->contact].hit = true;
 		i->time = t;
 		ob_touches_note_impact(s, i);
 		take_geometry(s, i, &x->at[x->slot[w->contact[i->contact].a]],

@@ -94,6 +94,7 @@ typedef struct ob_contact {
 	bool misses;
 	bool as_of_instant; // its geometry is that of an instant in the running partial substep
 	bool began; // its bodies did not touch at the step's start
+	bool hit; // its bodies rebounded within the step
 	bool mirror; // second contact of a pair that is solved for each side apart: its own body is b
 } ob_contact;
 

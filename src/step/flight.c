@@ -8,6 +8,7 @@
 #include "motion/deviation.h"
 #include "motion/flight.h"
 #include "shape/shape.h"
+#include "solver/estimate.h"
 #include "step/broadphase.h"
 #include "step/budget.h"
 #include "step/now.h"
@@ -378,10 +379,31 @@ ob_state ob_course_state(ob_sim *s, const ob_course *c)
 	return now;
 }
 
-bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at)
+uint16_t ob_course_deviation(const ob_sim *s, const ob_course *c)
+{
+	return ob_deviation_at(c->m.deviation, c->m.step, ob_step_count(s->u) + 1, s->settings->step_length);
+}
+
+// Its deviation after a hit, where either of both bodies is off by "most" at most.
+static uint16_t deviation_after(const ob_sim *s, const ob_course *c, const ob_state *at, uint16_t most)
+{
+	const ob_passport *body = ob_passport_of(s->u, c->id);
+	const double radius = ob_shape_radius(body->shape, body->size),
+		     change = ob_norm(ob_sub(at->v, ob_velocity_at(&c->m, c->since))) +
+			      radius * ob_norm(ob_sub(at->w, c->m.w));
+	return ob_deviation_after_hit(most, change, radius,
+				      ob_left_of_second(ob_step_count(s->u) + 1, s->settings->step_length));
+}
+
+bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at, uint16_t most)
 {
 	if (c->impacts++ == IMPACTS_PER_STEP)
 		return false;
+	if (most) {
+		const uint16_t before = ob_course_deviation(s, c);
+		c->m.deviation = deviation_after(s, c, at, most);
+		ob_estimate_count(&s->solver, before, c->m.deviation);
+	}
 	c->m.t0 = c->since;
 	c->m.p = at->pose.p, c->m.q = at->pose.q, c->m.v = at->v, c->m.w = at->w;
 	c->m.valid_until = c->since;
@@ -392,7 +414,7 @@ bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at)
 bool ob_course_rebound(ob_sim *s, ob_course *c)
 {
 	ob_state at = ob_course_state(s, c);
-	return apply_plane_impact(s, c->id, c->plane, &at) && ob_course_set_off(s, c, &at);
+	return apply_plane_impact(s, c->id, c->plane, &at) && ob_course_set_off(s, c, &at, ob_course_deviation(s, c));
 }
 
 void ob_course_publish(ob_sim *s, ob_course *c)
