@@ -83,30 +83,35 @@ static uint16_t deviation_before(const ob_solver *s, uint32_t row)
 	return last ? ob_deviation_at(last->deviation, last->step, s->in->step + 1, s->settings->step_length) : 0;
 }
 
-// Sets the deviations of bodies that hit each other to what is left of them after the hit.
+// Lets a body, if it moves, leave a hit in which it or the other one was off by "most" at most.
+static void leave_hit(ob_solver *s, uint32_t row, uint16_t most)
+{
+	ob_island_work *w = &s->island;
+	const double h = s->settings->step_length;
+	if (!row || row > w->bodies)
+		return;
+	ob_body *body = &w->body[row];
+	const ob_motion *last = s->in->object[row - 1].motion;
+	const double *v = w->v[row], change = ob_norm(ob_sub(ob_row_linear(v), last->v)) +
+					      body->radius * ob_norm(ob_sub(ob_row_angular(v), last->w));
+	const uint16_t after =
+		ob_deviation_after_hit(most, change, body->radius, ob_left_of_second(s->in->step + 1, h));
+	body->deviation = after > body->deviation ? after : body->deviation;
+}
+
+// Sets the deviations of bodies to those before the step, and of those that hit each other to what follows.
 static void hand_over(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
-	const double h = s->settings->step_length, left = ob_left_of_second(s->in->step + 1, h);
 	for (uint32_t row = 1; row <= w->bodies; row++)
 		w->body[row].deviation = deviation_before(s, row);
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *c = &w->contact[i];
-		const uint32_t row[2] = { c->a, c->b };
 		const uint16_t a = deviation_before(s, c->a), b = deviation_before(s, c->b), most = a > b ? a : b;
 		if (!most || !(c->hit || (c->began && c->lane != OB_NO_LANE)))
 			continue;
-		for (int k = 0; k < 2; k++) {
-			if (!row[k] || row[k] > w->bodies)
-				continue;
-			const ob_motion *last = s->in->object[row[k] - 1].motion;
-			ob_body *body = &w->body[row[k]];
-			const double change =
-				ob_norm(ob_sub(ob_row_linear(w->v[row[k]]), last->v)) +
-				body->radius * ob_norm(ob_sub(ob_row_angular(w->v[row[k]]), last->w));
-			const uint16_t after = ob_deviation_after_hit(most, change, body->radius, left);
-			body->deviation = after > body->deviation ? after : body->deviation;
-		}
+		leave_hit(s, c->a, most);
+		leave_hit(s, c->b, most);
 	}
 }
 
