@@ -1,5 +1,6 @@
 #include "motion/depth.h"
 
+#include "elementary/elementary.h"
 #include "motion/hull_depth.h"
 #include "shape/shape.h"
 
@@ -57,8 +58,8 @@ static double capsules(const ob_solid *a, const ob_solid *b)
 static double sphere_and_cylinder(const ob_solid *sphere, const ob_solid *cylinder)
 {
 	ob_vec3 b = ob_rotate_back(&cylinder->r, ob_sub(sphere->p, cylinder->p));
-	double out = hypot(b.x, b.y) - cylinder->size.x, up = fabs(b.z) - cylinder->size.y;
-	double distance = out > 0 && up > 0 ? hypot(out, up) : fmax(out, up);
+	double out = sqrt(b.x * b.x + b.y * b.y) - cylinder->size.x, up = fabs(b.z) - cylinder->size.y;
+	double distance = out > 0 && up > 0 ? sqrt(out * out + up * up) : fmax(out, up);
 	return sphere->size.x - distance;
 }
 
@@ -147,7 +148,7 @@ static double segment_in_box(const double c[3], const double u[3], double half, 
 		int i = k % 3, j = (k + 1) % 3, l = (k + 2) % 3;
 		n[i] = k < 3;
 		if (k >= 3) {
-			double length = hypot(u[j], u[l]);
+			double length = sqrt(u[j] * u[j] + u[l] * u[l]);
 			if (length < 1e-6)
 				continue;
 			n[j] = -u[l] / length;
@@ -258,15 +259,15 @@ static void refine_angle(struct search *s, ob_vec3 u, ob_vec3 v, double low, dou
 	const double golden = .6180339887498949;
 	for (int i = 0; i < 45; i++) { // narrows the angle to 4e-10 of the first bracket
 		double left = high - golden * (high - low), right = low + golden * (high - low);
-		double at_left = overlap(s, ob_madd(ob_scale(u, cos(left)), sin(left), v));
-		double at_right = overlap(s, ob_madd(ob_scale(u, cos(right)), sin(right), v));
+		double at_left = overlap(s, ob_madd(ob_scale(u, ob_cos(left)), ob_sin(left), v));
+		double at_right = overlap(s, ob_madd(ob_scale(u, ob_cos(right)), ob_sin(right), v));
 		if (at_left < at_right)
 			high = right;
 		else
 			low = left;
 	}
 	double middle = .5 * (low + high);
-	try_direction(s, unit(ob_madd(ob_scale(u, cos(middle)), sin(middle), v)));
+	try_direction(s, unit(ob_madd(ob_scale(u, ob_cos(middle)), ob_sin(middle), v)));
 }
 
 // Walks the directions across one axis: half a circle, since n and -n give one projection.
@@ -277,7 +278,7 @@ static void walk_plane(struct search *s, ob_vec3 axis)
 	ob_vec3 u, v;
 	span_across(axis, &u, &v);
 	for (int i = 0; i < PLANE_STARTS; i++)
-		at[i] = overlap(s, ob_madd(ob_scale(u, cos(i * angle)), sin(i * angle), v));
+		at[i] = overlap(s, ob_madd(ob_scale(u, ob_cos(i * angle)), ob_sin(i * angle), v));
 	for (int i = 0; i < PLANE_STARTS; i++)
 		if (at[i] <= at[(i + 1) % PLANE_STARTS] && at[i] <= at[(i + PLANE_STARTS - 1) % PLANE_STARTS])
 			refine_angle(s, u, v, (i - 1) * angle, (i + 1) * angle);
@@ -294,7 +295,7 @@ static void descend_from(struct search *s, ob_vec3 n, double step)
 		bool better = false;
 		for (int i = 0; i < TURNS; i++) {
 			double angle = phase + i * (2 * M_PI / TURNS);
-			ob_vec3 side = ob_madd(ob_scale(u, cos(angle)), sin(angle), v);
+			ob_vec3 side = ob_madd(ob_scale(u, ob_cos(angle)), ob_sin(angle), v);
 			ob_vec3 m = unit(ob_madd(from, step, side));
 			double x = overlap(s, m);
 			if (x < least) {
@@ -317,7 +318,7 @@ static void search_sphere(struct search *s)
 	double value[3] = { INFINITY, INFINITY, INFINITY };
 	for (int i = 0; i < SPHERE_STARTS; i++) {
 		double z = (i + .5) / SPHERE_STARTS, r = sqrt(1 - z * z), angle = i * 2.399963229728653;
-		ob_vec3 n = ob_v3(r * cos(angle), r * sin(angle), z);
+		ob_vec3 n = ob_v3(r * ob_cos(angle), r * ob_sin(angle), z);
 		double x = overlap(s, n);
 		for (int k = 0; k < 3; k++) {
 			if (x >= value[k])

@@ -280,7 +280,7 @@ void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t gene
 
 void ob_free_set_rate(ob_universe *u, uint32_t id, double rate)
 {
-	const float f = (float)rate;
+	float f = (float)rate; // not const: clang asks so
 	__atomic_store(&cell_of(u, id)->update_rate, &f, __ATOMIC_RELAXED);
 }
 

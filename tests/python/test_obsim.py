@@ -156,7 +156,7 @@ class Steps(Case):
         self.assertTrue((u.angular_velocity == start['angular_velocity']).all())
         pid = u._process.pid
         u.reset(n=5, speed=2)
-        self.assertEqual((len(u), u._process.pid), (8, pid))
+        self.assertEqual((len(u), u._process.pid), (10, pid))
         numpy.testing.assert_allclose(u['box#1'].angular_velocity[1:], [2, 1])
         self.says('unknown parameter', u.reset, nonsense=1)
         u.step(30)
@@ -233,10 +233,10 @@ class Steps(Case):
 class Reading(Case):
     def test_arrays(self):
         u = self.run_(n=5)
-        self.assertEqual(len(u), 8)
+        self.assertEqual(len(u), 10)
         self.assertEqual(u.name[0], 'ground')
-        self.assertEqual(u.position.shape, (8, 3))
-        self.assertEqual(u.attitude.shape, (8, 4))
+        self.assertEqual(u.position.shape, (10, 3))
+        self.assertEqual(u.attitude.shape, (10, 4))
         numpy.testing.assert_allclose(numpy.linalg.norm(u.attitude, axis=1), 1)
         self.assertEqual([o.id for o in u], u.id.tolist())
         box = u['box#1']

@@ -439,7 +439,7 @@ static void test_loop(void)
 // Two bodies of any kind of joint in free space keep momentum and energy, and the joint holds.
 static void test_kinds(void)
 {
-	for (uint32_t kind = 0; kind < OB_JOINT_KINDS; kind++) {
+	for (uint32_t kind = 0; kind < OB_JOINT_APART; kind++) {
 		mechanism *m = create(0);
 		const uint32_t a = add_body(m, OB_SHAPE_BOX, ob_v3(.3, .2, .1), 2, ob_v3(0, 0, 0)),
 			       b = add_body(m, OB_SHAPE_BOX, ob_v3(.1, .2, .4), 1, ob_v3(.2, .3, 1));
