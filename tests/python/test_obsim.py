@@ -165,7 +165,7 @@ class Steps(Case):
         u.step(30)
         self.assertTrue((u.position == after['position']).all())
         u.reset()
-        self.assertEqual((u.steps, len(u)), (0, 8))
+        self.assertEqual((u.steps, len(u)), (0, 10))
 
     def test_file(self):
         """A saved run goes on to the same bits, pulls included, also after a reset."""
