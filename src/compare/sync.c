@@ -256,18 +256,19 @@ static int best_free(const ob_sync_comparison *c, const ob_sync_point *p, ob_syn
 	return best;
 }
 
-// Largest lag, s, up to which a coupling's worst penetration stays below a share of the size; 0: not even without.
+// Largest lag, s, up to which a coupling's worst penetration stays below a share of the size; -1: not even without;
+// 0: none was seen, as nothing touched.
 static double tolerable_lag(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling,
 			    double share)
 {
-	double most = 0;
+	double most = -1;
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 		const ob_sync_configuration *of = &ob_sync_table[w];
 		if (of->coupling != coupling || of->processes || of->each)
 			continue;
 		if (!(median(c, p, w, OB_SYNC_SIZES) <= share))
 			break; // rows of a coupling stand in the order of lags
-		most = fmax(most, median(c, p, w, OB_SYNC_LATENCY));
+		most = fmax(most, fmax(median(c, p, w, OB_SYNC_LATENCY), 0));
 	}
 	return most;
 }
@@ -312,7 +313,7 @@ void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char
 			"Free simulators of this coupling stay within %.0f %% of the bodies' size up to a latency of "
 			"%.3g ms, which is a lag of %.2g sizes at these speeds. ",
 			100 * share, 1e3 * lag, lag * p->speed / p->size);
-	else if (n < room)
+	else if (n < room && lag < 0)
 		n += (size_t)snprintf(to + n, room - n,
 				      "Even without an injected lag it sinks in by more than %.0f %% of their size. ",
 				      100 * share);
