@@ -54,12 +54,14 @@ static bool check_slenderness(const ob_passport *p, ob_error *e)
 	return within("size", " times as long as wide", 1, OB_SLENDERNESS_MOST, longest / least, e);
 }
 
-// Checks principal moments that were given. Shapes that look the same from all sides turn as such bodies do.
+// Checks principal moments, unless all are 0: then they are the shape's. Shapes that look the same from all sides turn as such bodies do.
 static bool check_inertia(const ob_passport *p, ob_error *e)
 {
 	const double x = p->inertia.x, y = p->inertia.y, z = p->inertia.z, more = 1 + 1e-9;
 	const double most = fmax(x, fmax(y, z)), least = fmin(x, fmin(y, z)),
 		     radius = ob_shape_radius((ob_shape)p->shape, p->size), unit = p->mass * radius * radius;
+	if (x == 0 && y == 0 && z == 0)
+		return true;
 	if (!(x <= (y + z) * more && y <= (z + x) * more && z <= (x + y) * more))
 		return ob_fail(e, "inertia: expected no moment above the sum of the others, got {%.10g, %.10g, %.10g}",
 			       x, y, z);
@@ -153,7 +155,7 @@ static bool check_varying_force(const ob_force *f, const ob_passport *p, ob_erro
 bool ob_object_def_check(const ob_object_def *def, ob_error *e)
 {
 	const ob_passport *p = &def->passport;
-	return ob_passport_check(p, e) && (ob_norm2(p->inertia) == 0 || check_inertia(p, e)) &&
+	return ob_passport_check(p, e) && check_inertia(p, e) &&
 	       (!def->path || check_path(def->path, &def->state, e)) && ob_state_check(p, &def->state, e) &&
 	       (!def->force || check_varying_force(def->force, p, e));
 }
@@ -196,7 +198,7 @@ bool ob_object_check(const ob_object_def *def, ob_error *e)
 bool ob_object_check_saved(const ob_passport *p, ob_error *e)
 {
 	ob_error why;
-	return check_name(p, e) && (ob_passport_check(p, &why) || name_fault(p, &why, e));
+	return check_name(p, e) && ((ob_passport_check(p, &why) && check_inertia(p, &why)) || name_fault(p, &why, e));
 }
 
 double ob_scene_thinnest(const ob_scene *s)
