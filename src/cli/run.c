@@ -155,7 +155,7 @@ static uint64_t keep_pace(run *r, uint64_t next)
 	if (isinf(r->request.pace) || r->request.is_free) // free simulators follow the clock themselves
 		return next;
 	do
-		due = ob_pace_wait(&r->pace, r->now.step, r->request.run.step_length, .05);
+		due = ob_pace_wait(&r->pace, r->now.step, r->request.run.step_length, UINT64_MAX, .05);
 	while (due <= r->now.step && !ob_host_interrupted(r->host));
 	return earlier(due, next);
 }

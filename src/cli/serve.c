@@ -184,9 +184,11 @@ static bool start_anew(serving *s, const ob_define *wish, ob_error *e)
 // Lets the run go to the next step that is due, for a while at most. Returns that step.
 static uint64_t go_on(serving *s, uint64_t done, uint64_t *batch, bool *at_once)
 {
-	uint64_t due = ob_pace_wait(&s->pace, done, s->q.run.run.step_length, patience);
 	const uint64_t every = s->scene->record_every, state = s->recorder ? (done / every + 1) * every : UINT64_MAX;
-	const uint64_t most = due < UINT64_MAX && *batch < paced_steps ? paced_steps : *batch;
+	const uint64_t paced = *batch < paced_steps ? paced_steps : *batch;
+	uint64_t due = ob_pace_wait(&s->pace, done, s->q.run.run.step_length,
+				    paced < state - done ? paced : state - done, patience);
+	const uint64_t most = due < UINT64_MAX ? paced : *batch;
 	*at_once = due > done + most && done < s->last;
 	due = *at_once ? done + most : due;
 	due = due < s->last ? due : s->last;

@@ -450,7 +450,7 @@ ob_control_turn ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64
 	if (c->stepping) {
 		*step = some_steps(c, now);
 	} else if (c->running && now < last) {
-		const uint64_t due = ob_pace_wait(&c->pace, now, length, .001);
+		const uint64_t due = ob_pace_wait(&c->pace, now, length, UINT64_MAX, .001);
 		c->target = due < last ? due : last; // without a limit, too, some steps a go
 		*step = due > now ? some_steps(c, now) : now;
 	}

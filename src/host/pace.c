@@ -70,14 +70,14 @@ void ob_pace_allow(ob_pace *p, uint64_t steps)
 }
 
 // Step that is due now. wait: s until a step beyond "done" is due. Under the lock.
-static uint64_t due_step(ob_pace *p, uint64_t done, double step_length, double *wait)
+static uint64_t due_step(ob_pace *p, uint64_t done, double step_length, uint64_t most, double *wait)
 {
 	double now = ob_clock_wall(), each = step_length / p->state.rate;
 	*wait = INFINITY;
 	if (p->state.paused) {
-		uint64_t due = done + p->allowed;
-		p->allowed = 0;
-		return due;
+		const uint64_t steps = p->allowed < most ? p->allowed : most;
+		p->allowed -= steps;
+		return done + steps;
 	}
 	if (isinf(p->state.rate))
 		return UINT64_MAX;
@@ -93,16 +93,16 @@ static uint64_t due_step(ob_pace *p, uint64_t done, double step_length, double *
 	return due > done ? due : done;
 }
 
-uint64_t ob_pace_wait(ob_pace *p, uint64_t done, double step_length, double patience)
+uint64_t ob_pace_wait(ob_pace *p, uint64_t done, double step_length, uint64_t most, double patience)
 {
 	double until = ob_clock_wall() + patience, wait;
 	pthread_mutex_lock(&p->lock);
-	uint64_t due = due_step(p, done, step_length, &wait);
+	uint64_t due = due_step(p, done, step_length, most, &wait);
 	for (double now; due <= done && (now = ob_clock_wall()) < until;) {
 		double wake = fmin(until, now + fmax(wait, 0));
 		struct timespec at = { .tv_sec = (time_t)wake, .tv_nsec = (long)(1e9 * (wake - floor(wake))) };
 		pthread_cond_timedwait(&p->changed, &p->lock, &at);
-		due = due_step(p, done, step_length, &wait);
+		due = due_step(p, done, step_length, most, &wait);
 	}
 	pthread_mutex_unlock(&p->lock);
 	return due;

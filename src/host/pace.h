@@ -44,7 +44,8 @@ void ob_pace_allow(ob_pace *p, uint64_t steps); // more, while it is paused
 void ob_pace_restart(ob_pace *p); // the universe was put back: the line begins anew
 
 // Step up to which a universe with "done" complete steps of step_length (s) may run. Waits for at most "patience" (s)
-// until that is more than "done". UINT64_MAX: no limit.
-uint64_t ob_pace_wait(ob_pace *p, uint64_t done, double step_length, double patience);
+// until that is more than "done". UINT64_MAX: no limit. While it is paused, at most "most" of the allowed steps are taken
+// at once, and the others stay allowed.
+uint64_t ob_pace_wait(ob_pace *p, uint64_t done, double step_length, uint64_t most, double patience);
 
 #endif
