@@ -185,7 +185,7 @@ static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair
 	const double never = ob_time_to_close(a, b, 1, 0), rest = f->rest;
 	*crossing = false;
 	for (int k = 0; k < AXES / 3; k++)
-		open |= lanes_bits(s->gap[k] - (3 * k < FACES ? 0 : f->discount) > -rest) << 3 * k;
+		open |= (lanes_bits(s->gap[k] - (3 * k < FACES ? 0 : f->discount) > -rest) & 7u) << 3 * k;
 	if (open == 0)
 		return -1;
 	if ((open & (open - 1)) == 0)

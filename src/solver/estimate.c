@@ -96,7 +96,10 @@ static void leave_hit(ob_solver *s, uint32_t row, uint16_t most)
 					      body->radius * ob_norm(ob_sub(ob_row_angular(v), last->w));
 	const uint16_t after =
 		ob_deviation_after_hit(most, change, body->radius, ob_left_of_second(s->in->step + 1, h));
-	body->deviation = after > body->deviation ? after : body->deviation;
+	if (after <= body->deviation)
+		return;
+	ob_estimate_count(s, body->deviation, after);
+	body->deviation = after;
 }
 
 // Sets the deviations of bodies to those before the step, and of those that hit each other to what follows.
@@ -107,8 +110,10 @@ static void hand_over(ob_solver *s)
 		w->body[row].deviation = deviation_before(s, row);
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *c = &w->contact[i];
+		if (!c->hit && (!c->began || c->lane == OB_NO_LANE))
+			continue;
 		const uint16_t a = deviation_before(s, c->a), b = deviation_before(s, c->b), most = a > b ? a : b;
-		if (!most || !(c->hit || (c->began && c->lane != OB_NO_LANE)))
+		if (!most)
 			continue;
 		leave_hit(s, c->a, most);
 		leave_hit(s, c->b, most);
@@ -126,7 +131,7 @@ static double update_deviation(ob_solver *s, uint32_t row, uint32_t weight, doub
 	if (weight)
 		w->body[row].deviation =
 			ob_deviation_code(ob_deviation(before) + weight * h * ob_error_of_time(error, speed, h, 1));
-	ob_estimate_count(s, deviation_before(s, row), w->body[row].deviation);
+	ob_estimate_count(s, before, w->body[row].deviation);
 	return ob_error_of_run(s, error, speed);
 }
 
@@ -135,10 +140,11 @@ void ob_estimate_update(ob_solver *s)
 	ob_island_work *w = &s->island;
 	const bool refined = w->bodies == 1 && ob_is_refined(&s->in->object[0]);
 	const uint32_t weight = weight_of(s), n = w->substeps;
+	const bool finer = (refined || n < 2 || w->joints.count) && 2 * n <= OB_MAX_SUBSTEPS;
 	double error = 0;
 	if (weight) {
 		ob_solver_enter(s, OB_PROFILE_ESTIMATE);
-		ob_probe_solve(s->estimate.probe, s->in, refined || n < 2 || w->joints.count ? 2 * n : n / 2);
+		ob_probe_solve(s->estimate.probe, s->in, finer ? 2 * n : n / 2);
 		s->counters.estimates += w->bodies;
 	}
 	hand_over(s);
