@@ -49,7 +49,7 @@ typedef enum ob_joint_motor {
 	OB_MOTORS,
 } ob_joint_motor;
 
-// What acts along the free axis of a joint. Forces are torques of a hinge.
+// Forces along the free axis of a joint. They are torques of a hinge.
 typedef struct ob_joint_axis {
 	double low, high; // limits of the value; infinite: none
 	double restitution; // of hits on a limit, 0..1

@@ -13,8 +13,8 @@
 #include "cli/free_request.h"
 #include "cli/quantity.h"
 #include "cli/shipped.h"
+#include "cli/version.h"
 #include "plot/plot.h"
-#include "record/record.h"
 
 enum { WORKERS_MAX = 65536, SIZE_MIN = 16, SIZE_MAX_PIXELS = 16384 };
 
@@ -571,6 +571,19 @@ ob_host_config ob_request_host(const ob_run_request *r)
 				 .patience = r->patience,
 				 .on_death = r->on_death,
 				 .limit = r->limit };
+}
+
+ob_recorder *ob_request_record(const ob_run_request *r, const ob_scene *scene, const ob_universe *u, ob_error *e)
+{
+	ob_record_facts facts = { .scene = scene,
+				  .path = r->scene,
+				  .options = &r->scene_options,
+				  .settings = &r->run,
+				  .duration = r->duration,
+				  .commit = ob_version_commit };
+	ob_universe_get_info(u, &facts.universe);
+	facts.universe.capacity = scene->objects; // spare slots get columns once they are used
+	return ob_recorder_create(r->record, &facts, e);
 }
 
 uint64_t ob_request_steps(double duration, double step)

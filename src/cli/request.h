@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "host/host.h"
 #include "host/pace.h"
+#include "record/record.h"
 #include "render/render.h"
 #include "scene/scene.h"
 
@@ -95,6 +96,9 @@ bool ob_request_check_frames(const ob_frames_request *f, const ob_scene *s, doub
 
 // Configuration of the host for a resolved request.
 ob_host_config ob_request_host(const ob_run_request *r);
+
+// Creates the recorder of a run of the request, with the facts of its scene and universe. NULL and e: it failed.
+ob_recorder *ob_request_record(const ob_run_request *r, const ob_scene *scene, const ob_universe *u, ob_error *e);
 
 // Steps in a duration: the first step boundary at or after its end.
 uint64_t ob_request_steps(double duration, double step);

@@ -206,19 +206,8 @@ static bool open_outputs(run *r, ob_error *e)
 		ob_observer_resume(&r->observer, &r->saved.figures);
 	if (q->checkpoint && !(r->checkpoints = ob_checkpoint_writer_create(q->checkpoint, &q->fault)))
 		return ob_fail(e, "no memory for checkpoints");
-	if (q->record) {
-		ob_record_facts facts = { .scene = r->scene,
-					  .path = q->scene,
-					  .options = &q->scene_options,
-					  .settings = &q->run,
-					  .duration = q->duration,
-					  .commit = ob_version_commit };
-		ob_universe_get_info(ob_host_universe(r->host), &facts.universe);
-		facts.universe.capacity = r->scene->objects; // spare slots get columns once they are used
-		r->recorder = ob_recorder_create(q->record, &facts, e);
-		if (!r->recorder)
-			return false;
-	}
+	if (q->record && !(r->recorder = ob_request_record(q, r->scene, ob_host_universe(r->host), e)))
+		return false;
 	return true;
 }
 
@@ -248,28 +237,18 @@ static void count_objects(const ob_snapshot *s, ob_report *p)
 	}
 }
 
-// Steps times bodies since a time (s); counts temporary bodies only while they exist
-static double body_steps(const run *r, double since)
+// Steps times bodies since a time (s); counts temporary bodies only while they exist. whole: of the seconds begun, as errors
+// of motion are bounded by seconds.
+static double body_steps(const run *r, double since, bool whole)
 {
 	double sum = 0;
 	for (uint32_t i = 0; i < r->scene->objects; i++) {
 		const ob_object_def *d = &r->scene->object[i];
-		double there = fmin(d->dies, r->now.time) - fmax(d->born, since);
-		if (!(d->passport.flags & OB_OBJECT_PRESCRIBED) && there > 0)
-			sum += there / r->request.run.step_length;
-	}
-	return sum;
-}
-
-// Number of steps of the seconds that moving objects have begun, as a second is bounded as a whole.
-static double steps_of_seconds(const run *r)
-{
-	double sum = 0;
-	for (uint32_t i = 0; i < r->scene->objects; i++) {
-		const ob_object_def *d = &r->scene->object[i];
-		const double begun = ceil(fmin(d->dies, r->now.time) - 1e-9) - floor(fmax(d->born, 0) + 1e-9);
-		if (!(d->passport.flags & OB_OBJECT_PRESCRIBED) && begun > 0)
-			sum += begun / r->request.run.step_length;
+		double begin = fmax(d->born, since), end = fmin(d->dies, r->now.time);
+		if (whole)
+			begin = floor(begin + 1e-9), end = ceil(end - 1e-9);
+		if (!(d->passport.flags & OB_OBJECT_PRESCRIBED) && end > begin)
+			sum += (end - begin) / r->request.run.step_length;
 	}
 	return sum;
 }
@@ -407,8 +386,8 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	ob_script_count(ob_host_universe(r->host), &p->scripts_stopped, &p->scripts_warned);
 	p->deaths_told = ob_host_get_deaths(r->host, p->death);
 	report_free(r, p);
-	const double steps = body_steps(r, first_time(r));
-	const double all = steps_of_seconds(r);
+	const double steps = body_steps(r, first_time(r), false);
+	const double all = body_steps(r, 0, true);
 	p->bounded_share = p->tolerance > 0 && all > 0 ? fmax(0, 1 - (double)p->unbounded_steps / all) : NAN;
 	p->body_step_cpu_us = steps > 0 ? 1e6 * times.cpu_s / steps : NAN;
 }
@@ -458,7 +437,7 @@ static void warn_of_unbounded_motion(const ob_report *p)
 static void explain(const run *r, const ob_report *p, FILE *f)
 {
 	const ob_universe *u = ob_host_universe(r->host);
-	ob_explained x = { &r->request, r->scene, ob_universe_settings(u), { 0 }, body_steps(r, 0), p->cpu_s };
+	ob_explained x = { &r->request, r->scene, ob_universe_settings(u), { 0 }, body_steps(r, 0, false), p->cpu_s };
 	ob_universe_count(u, &x.counters);
 	ob_explain_print(&x, f);
 }

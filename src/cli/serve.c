@@ -100,15 +100,7 @@ static bool start(serving *s, ob_error *e)
 	s->host = ob_host_start(s->scene, &config, e);
 	if (!s->host || !q->record)
 		return s->host;
-	ob_record_facts facts = { .scene = s->scene,
-				  .path = q->scene,
-				  .options = &q->scene_options,
-				  .settings = &q->run,
-				  .duration = q->duration,
-				  .commit = ob_version_commit };
-	ob_universe_get_info(ob_host_universe(s->host), &facts.universe);
-	facts.universe.capacity = s->scene->objects; // spare slots get columns once they are used
-	s->recorder = ob_recorder_create(q->record, &facts, e);
+	s->recorder = ob_request_record(q, s->scene, ob_host_universe(s->host), e);
 	return s->recorder;
 }
 

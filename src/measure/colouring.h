@@ -29,7 +29,7 @@ typedef struct ob_colouring {
 	uint32_t workers;
 } ob_colouring;
 
-// Whether a body rests, and if not, whether it touches something. The page of a server knows them by these numbers.
+// State of a body: it rests, touches something, or does neither. The page of a server knows them by these numbers.
 typedef enum ob_rest {
 	OB_REST_TOUCHES,
 	OB_REST_FLIES,

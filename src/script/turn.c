@@ -1,4 +1,4 @@
-// What turns of Lua and of FMUs share: their beginning, their requests, their end.
+// Parts that turns of Lua and of FMUs share: their beginning, their requests, their end.
 #include <stdio.h>
 #include <string.h>
 

@@ -15,6 +15,12 @@ static void put_numbers(ob_message *m, const char *name, const double *v, int n)
 	ob_message_print(m, "]");
 }
 
+static void put_text(ob_message *m, const char *name, const char *text)
+{
+	ob_message_print(m, ",\"%s\":", name);
+	ob_message_put_json(m, text);
+}
+
 static void put_vec3(ob_message *m, const char *name, ob_vec3 v)
 {
 	put_numbers(m, name, (double[]){ v.x, v.y, v.z }, 3);
@@ -33,8 +39,7 @@ static void put_offers(ob_message *m, const ob_scene *s)
 		const ob_param_def *p = &s->param[i];
 		ob_message_print(m, "%s{\"name\":", i ? "," : "");
 		ob_message_put_json(m, p->name);
-		ob_message_print(m, ",\"unit\":");
-		ob_message_put_json(m, p->unit);
+		put_text(m, "unit", p->unit);
 		ob_message_print(m, ",\"value\":%.10g,\"min\":%.10g,\"max\":%.10g,\"whole\":%s}", p->value, p->min,
 				 p->max, p->whole ? "true" : "false");
 	}
@@ -43,12 +48,9 @@ static void put_offers(ob_message *m, const ob_scene *s)
 		const ob_control_def *c = &s->control[i];
 		ob_message_print(m, "%s{\"key\":", i ? "," : "");
 		ob_message_put_json(m, c->key);
-		ob_message_print(m, ",\"label\":");
-		ob_message_put_json(m, c->label);
-		ob_message_print(m, ",\"sends\":");
-		ob_message_put_json(m, c->sends);
-		ob_message_print(m, ",\"to\":");
-		ob_message_put_json(m, c->to);
+		put_text(m, "label", c->label);
+		put_text(m, "sends", c->sends);
+		put_text(m, "to", c->to);
 		put_numbers(m, "values", c->value, c->slider ? 1 : (int)c->values);
 		if (c->slider)
 			put_numbers(m, "range", (double[]){ c->min, c->max }, 2);
@@ -68,12 +70,9 @@ ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_u
 		return NULL;
 	ob_message_print(m, "{\"welcome\":{\"protocol\":1,\"title\":");
 	ob_message_put_json(m, scene->title);
-	ob_message_print(m, ",\"universe\":");
-	ob_message_put_json(m, info->name);
-	ob_message_print(m, ",\"version\":");
-	ob_message_put_json(m, c->version);
-	ob_message_print(m, ",\"isolation\":");
-	ob_message_put_json(m, info->isolation);
+	put_text(m, "universe", info->name);
+	put_text(m, "version", c->version);
+	put_text(m, "isolation", info->isolation);
 	ob_message_print(m, ",\"workers\":%u,\"role\":\"%s\",\"look_only\":%s,\"step_length\":%.17g", info->workers,
 			 ob_role_name(role), role == OB_ROLE_WATCH ? "true" : "false", info->step_length);
 	put_vec3(m, "gravity", info->gravity);
@@ -343,8 +342,7 @@ ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t i
 	put_vec3(m, "v", now.v);
 	put_vec3(m, "w", now.w);
 	if (entry.script && entry.script <= scene->scripts) {
-		ob_message_print(m, ",\"script\":");
-		ob_message_put_json(m, scene->script[entry.script - 1].name);
+		put_text(m, "script", scene->script[entry.script - 1].name);
 	}
 	if (entry.own_worker && ob_universe_get_worker(u, entry.id, &worker))
 		ob_message_print(m, ",\"worker\":%u,\"tid\":%d,\"cpu\":%d", entry.id, worker.tid, worker.cpu);

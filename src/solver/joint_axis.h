@@ -1,4 +1,4 @@
-// What acts along the free axis of a joint: limits, a spring with a damper, dry friction, a motor.
+// Forces along the free axis of a joint: those of limits, a spring with a damper, dry friction, a motor.
 //
 // Springs, dampers and motors that pull to a value are forces of the value and its rate. Friction and motors that hold a
 // rate are forces between bounds at one rate, and constant at all others. So the axis is at each time in one of three

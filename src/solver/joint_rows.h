@@ -8,7 +8,7 @@
 //   length   |p_a - p_b| - l   a distance
 //   turn     angle             about the z axes of both ends
 //
-// What acts along a free axis adds a row for it (solver/joint_axis.h) while something holds it, and among contacts another
+// Forces along a free axis add a row (solver/joint_axis.h) while something holds it, and among contacts another
 // one, with the compliance of its spring and damper.
 //
 // The elimination needs some compliance, which also makes rows that depend on each other harmless. What it leaves is solved

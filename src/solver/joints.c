@@ -283,7 +283,7 @@ static const double shares[] = { .39216144400731413928,  .33259913678935943860, 
 				 -.70624617255763935981, .33259913678935943860, .39216144400731413928 };
 static const double single[] = { 1 };
 
-// How a step is divided: into parts of h (s), each of so many flights.
+// Division of a step into parts of h (s), each of so many flights.
 typedef struct division {
 	uint32_t parts, flights;
 	const double *share;

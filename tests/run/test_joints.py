@@ -48,7 +48,7 @@ box { name = "crank", size = { .6, .1, .1 }, at = { .3, 0, 1 }, script = [[
 hinge { "crank", name = "axle", at = { 0, 0, 1 }, axis = { 0, 1, 0 }, motor = { rate = 1 } }
 """
 
-# What acts along axes, in the air and on the ground: limits that are hit, springs that are sat on, wheels that are driven.
+# Forces along axes, in the air and on the ground: limits that are hit, springs that are sat on, wheels that are driven.
 DRIVES = """scene { title = "Drives", duration = 2.5 }
 ground {}
 box { name = "flap", size = { 1, .2, .1 }, at = { .6, 0, 1 }, mass = 2 }
