@@ -81,14 +81,14 @@ class Policy(program.Case):
 
 	def test_freeze_what_fails(self):
 		"""An island that takes too much work: the same in threads and processes, with any number of workers."""
-		seen = set()
+		seen, words = set(), (BRICKS, "--duration", ".05", "--on-death", "freeze", "--patience", "600") # sanitizers take a minute
 		for isolation, workers in ("thread", "1"), ("thread", "objects"), ("process", "2"):
-			r = program.report(BRICKS, "--duration", ".05", "--isolation", isolation, "--workers", workers, "--on-death", "freeze")
+			r = program.report(*words, "--isolation", isolation, "--workers", workers)
 			self.assertEqual([d["cause"] for d in r["death_list"]], ["failure"] * r["deaths"])
 			self.assertEqual((r["steps"], r["death_list"][0]["name"]), (3, "brick 1"))
 			seen.add((r["state_hash"], r["frozen"]))
 		self.assertEqual(len(seen), 1)
-		r = program.report(BRICKS, "--duration", ".05", *PROCESS, "--harden", "--workers", "2", "--on-death", "freeze")
+		r = program.report(*words, *PROCESS, "--harden", "--workers", "2")
 		self.assertEqual(seen, {(r["state_hash"], r["frozen"])})
 
 	def test_frozen_goes_on(self):

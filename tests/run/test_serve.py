@@ -94,7 +94,7 @@ class Serve(Case):
 
 	def test_keeps(self):
 		"""By default, objects that cannot be solved are frozen, and viewers see it; the universe goes on."""
-		self.serve_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "overworked.lua"))
+		self.serve_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "overworked.lua"), "--listen", "127.0.0.1:0", "--patience", "600")
 		v = self.viewer()
 		v.until(lambda: any(o["frozen"] for o in v.objects.values()))
 		v.until(lambda: v.told["statistics"]["step"] > 3 and v.told["statistics"]["frozen"] > 0)
