@@ -16,6 +16,9 @@
 // motor may act. The value of an axis is the first object's turn, or shift, relative to the second since the scene began;
 // of a distance the length itself.
 //
+// A joint pulls and turns its objects with the forces that it needs. With breaks_force or breaks_torque it breaks when the
+// mean over a substep is greater: it ends, and a new contact of its objects may begin in the next step.
+//
 // Units: m, rad, N along sliders and distances, N m about hinges. Thread-safety: as <ob/universe.h>.
 #ifndef OB_JOINT_H
 #define OB_JOINT_H
@@ -40,6 +43,7 @@ typedef enum ob_joint_kind {
 enum { // ob_joint_passport.flags
 	OB_JOINT_COLLIDES = 1 << 0, // its two objects may touch each other
 	OB_JOINT_DRIVEN = 1 << 1, // something acts along its free axis; a distance with this flag is free to change
+	OB_JOINT_BROKEN = 1 << 2, // it has broken, so it holds nothing any more; set for readers
 };
 
 typedef enum ob_joint_motor {
@@ -60,7 +64,7 @@ typedef struct ob_joint_axis {
 	double motor_stiffness, motor_damping; // N/m, N s/m
 } ob_joint_axis;
 
-// Properties of a joint. It holds while both objects are present with these generations. 288 bytes.
+// Properties of a joint. It holds while both objects are present with these generations, and until it breaks. 304 bytes.
 typedef struct ob_joint_passport {
 	uint32_t object[2]; // ids; the second may be OB_JOINT_WORLD
 	uint32_t generation[2]; // of the objects
@@ -69,8 +73,18 @@ typedef struct ob_joint_passport {
 	ob_pose frame[2]; // frame of the joint in the frame of each object, as of a body; in the world's
 	double length; // m, of a distance; else 0
 	ob_joint_axis axis; // if the joint is OB_JOINT_DRIVEN
+	double breaks_force, breaks_torque; // N, N m: it breaks if it needs more; infinite: never
 	char name[OB_NAME_MAX]; // as the scene has it, or of its kind and number: "hinge#3"; ends with 0
 } ob_joint_passport;
+
+// Action of a joint on its first object, world frame, mean over the last step; on its second object the same acts the other
+// way round. A joint that has broken keeps what it broke by: the mean over that substep.
+typedef struct ob_joint_load {
+	ob_vec3 force; // N
+	ob_vec3 torque; // N m, about the joint's origin in the first object
+	double along; // N, N m: share along its free axis: of limits, spring, damper, friction, motor
+	uint64_t broke; // number of complete steps when it had broken; 0: it holds
+} ob_joint_load;
 
 // Name of a kind, as scenes have it ("hinge"). NULL: no such kind.
 const char *ob_joint_kind_name(uint32_t kind);
@@ -81,6 +95,8 @@ bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passpo
 // Value and rate of its free axis (m, rad; m/s, rad/s), at the present time of the universe. false: it has no such joint now,
 // or this kind has no such axis.
 bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *value, double *rate);
+// Action of the joint; 0 in a universe that has not stepped. false: it has no such joint now.
+bool ob_universe_get_joint_load(const ob_universe *u, uint32_t joint, ob_joint_load *out);
 
 #pragma GCC visibility pop
 

@@ -212,6 +212,17 @@ class Joint:
     value = property(lambda self: self._read()[0], doc='Of a hinge rad, of a slider or a distance m.')
     rate = property(lambda self: self._read()[1], doc='rad/s or m/s.')
 
+    def _load(self):
+        load = _native.JointLoad()
+        if not _native.library().ob_universe_get_joint_load(self._universe._u, self._number, ctypes.byref(load)):
+            raise Error(f'joint {self._number} has ended')
+        return load
+
+    force = property(lambda self: _vector(self._load().force), doc='On its first object (N), world frame, mean over the last step.')
+    torque = property(lambda self: _vector(self._load().torque), doc='The same (N m), about the joint\'s origin.')
+    along = property(lambda self: self._load().along, doc='Force (N) or torque (N m) along its free axis.')
+    broken = property(lambda self: self._load().broke > 0, doc='True once it has broken; force and torque are those that it broke by.')
+
     @property
     def target(self):
         """Of its motor: the rate that it holds, or the value that it pulls to."""

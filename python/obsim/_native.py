@@ -36,7 +36,12 @@ class JointAxis(ctypes.Structure):
 class Joint(ctypes.Structure):
     _fields_ = [('object', ctypes.c_uint32 * 2), ('generation', ctypes.c_uint32 * 2), ('kind', ctypes.c_uint32),
                 ('flags', ctypes.c_uint32), ('frame', Pose * 2), ('length', ctypes.c_double), ('axis', JointAxis),
+                ('breaks_force', ctypes.c_double), ('breaks_torque', ctypes.c_double),
                 ('name', ctypes.c_char * NAME_MAX)]
+
+
+class JointLoad(ctypes.Structure):
+    _fields_ = [('force', Vec3), ('torque', Vec3), ('along', ctypes.c_double), ('broke', ctypes.c_uint64)]
 
 
 class Info(ctypes.Structure):
@@ -88,6 +93,7 @@ _functions = {
     'ob_universe_joints': (_u32, [_pointer]),
     'ob_universe_get_joint': (ctypes.c_bool, [_pointer, _u32, _pointer]),
     'ob_universe_get_joint_value': (ctypes.c_bool, [_pointer, _u32, _pointer, _pointer]),
+    'ob_universe_get_joint_load': (ctypes.c_bool, [_pointer, _u32, _pointer]),
     'ob_joint_kind_name': (ctypes.c_char_p, [_u32]),
     'ob_shape_name': (ctypes.c_char_p, [ctypes.c_int]),
     'ob_controller_open': (_pointer, [_pointer, _pointer]),

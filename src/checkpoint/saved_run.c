@@ -29,7 +29,7 @@ typedef enum saved_area {
 	AREA_SCRIPT_TEXTS,
 	AREA_HULLS, // without the scene's
 	AREA_PULLS,
-	AREA_MOTORS,
+	AREA_JOINTS,
 	AREAS
 } saved_area;
 
@@ -74,7 +74,7 @@ static const ob_checkpoint_rule rules[AREAS] = {
 	[AREA_SCRIPT_TEXTS] = { "scripts", 1, 0, SCRIPTS_MAX },
 	[AREA_HULLS] = { "hulls", sizeof(ob_hull_corners), 0, OB_SCENE_HULLS_MAX },
 	[AREA_PULLS] = { "pulls", sizeof(ob_pull), 0, OB_PULLS_MAX },
-	[AREA_MOTORS] = { "motors", sizeof(double), 0, JOINTS_MAX },
+	[AREA_JOINTS] = { "joints", sizeof(ob_saved_joint), 0, JOINTS_MAX },
 };
 
 // Points the arrays into the file's memory.
@@ -95,7 +95,7 @@ static void bind(ob_saved_run *r, const ob_checkpoint_file *f)
 	u->script_text = f->area[AREA_SCRIPT_TEXTS].at;
 	r->host.population.hull = f->area[AREA_HULLS].at;
 	r->host.population.pull = f->area[AREA_PULLS].at;
-	u->motor = f->area[AREA_MOTORS].at;
+	u->joint = f->area[AREA_JOINTS].at;
 }
 
 // ---- saving
@@ -155,7 +155,7 @@ bool ob_saved_run_make(ob_saved_run *r, ob_checkpoint_file *f, ob_host *h, const
 				  [AREA_SCRIPT_TEXTS] = u->script_bytes,
 				  [AREA_HULLS] = r->host.population.hulls,
 				  [AREA_PULLS] = r->host.population.pulls,
-				  [AREA_MOTORS] = u->joints };
+				  [AREA_JOINTS] = u->joints };
 	for (int i = 0; i < AREAS; i++)
 		if (count[i] > rules[i].most)
 			return ob_fail(e, "a checkpoint has no room for so many %s", rules[i].name);
@@ -239,7 +239,7 @@ static bool open_universe(ob_saved_run *r, const ob_checkpoint_file *f, const ch
 	r->host.population.count = (uint32_t)f->area[AREA_SLOTS].count;
 	r->host.population.hulls = (uint32_t)f->area[AREA_HULLS].count;
 	r->host.population.pulls = (uint32_t)f->area[AREA_PULLS].count;
-	u->joints = (uint32_t)f->area[AREA_MOTORS].count;
+	u->joints = (uint32_t)f->area[AREA_JOINTS].count;
 	memcpy(&r->host.counters, f->area[AREA_COUNTERS].at, sizeof r->host.counters);
 	return ob_saved_universe_check(u, &why) || ob_fail(e, "%s: this checkpoint is damaged: %s", name, why.text);
 }

@@ -29,6 +29,7 @@ void ob_cluster_destroy(ob_cluster *c)
 	ob_mail_finish(&c->checked);
 	ob_mail_finish(&c->links_across);
 	ob_mail_finish(&c->linked);
+	ob_mail_finish(&c->links);
 	ob_holdings_destroy(c->parts.holdings);
 	ob_halo_destroy(c->parts.halo);
 	ob_regions_destroy(c->parts.regions);
@@ -105,6 +106,32 @@ static void forget_links(const ob_cluster *c, const ob_universe *u)
 	}
 }
 
+static void note_link(ob_cluster *c, ob_universe *u, uint32_t a, uint32_t b)
+{
+	const ob_rank_link link = { a, b };
+	ob_mail_append(&c->links, &link, sizeof link);
+	if (c->links.lost)
+		ob_step_fail(u, OB_STEP_MEMORY_FULL, 0);
+}
+
+// Lists pairs and joints that link two ranks' bodies. When islands are merged, each has all bodies that joints hold
+// together. false: the step has failed.
+static bool list_all_links(ob_cluster *c, ob_universe *u, bool late)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	ob_mail_clear(&c->links);
+	if (!list_links(c, u, late))
+		return false;
+	for (size_t i = 0; i < c->linked.used / sizeof(uint32_t); i++) {
+		const ob_pair_key *k = &data->pair[pair_at(&c->linked, i)];
+		note_link(c, u, k->a, k->b);
+	}
+	for (uint32_t i = 0; !late && i < data->joints; i++)
+		if (ob_joint_is_across(u, &data->joint[i]))
+			note_link(c, u, data->joint[i].object[0], data->joint[i].object[1]);
+	return !c->links.lost;
+}
+
 // ---- in the order of a step
 
 void ob_cluster_settle(ob_cluster *c, ob_universe *u)
@@ -159,18 +186,18 @@ void ob_cluster_end_contacts(ob_cluster *c, ob_universe *u)
 
 void ob_cluster_involve_links(ob_cluster *c, ob_universe *u)
 {
-	const ob_step_data *data = ob_universe_step_data(u);
-	if (!c || !list_links(c, u, false))
+	if (!c || !list_all_links(c, u, false))
 		return;
 	const ob_mail those = c->links_across; // from now on complete
 	c->links_across = c->linked;
 	c->linked = those;
-	for (size_t i = 0; i < c->links_across.used / sizeof(uint32_t); i++) {
-		const ob_pair_key *k = &data->pair[pair_at(&c->links_across, i)];
-		for (int side = 0; side < 2; side++)
-			if (ob_home_rank(u, side ? k->b : k->a) == ob_universe_rank(u))
-				ob_involve_due(u, side ? k->b : k->a);
-	}
+	const ob_rank_link *link = (const ob_rank_link *)(const void *)c->links.bytes;
+	for (size_t i = 0; i < c->links.used / sizeof *link; i++)
+		for (int side = 0; side < 2; side++) {
+			const uint32_t id = side ? link[i].b : link[i].a;
+			if (ob_home_rank(u, id) == ob_universe_rank(u))
+				ob_involve_due(u, id);
+		}
 }
 
 bool ob_cluster_share_islands(ob_cluster *c, ob_universe *u, bool *elsewhere)
@@ -178,11 +205,10 @@ bool ob_cluster_share_islands(ob_cluster *c, ob_universe *u, bool *elsewhere)
 	*elsewhere = false;
 	if (!c)
 		return true;
-	if (!list_links(c, u, ob_universe_step_data(u)->count->merged))
+	if (!list_all_links(c, u, ob_universe_step_data(u)->count->merged))
 		return false;
-	const uint32_t *pair = (const uint32_t *)(const void *)c->linked.bytes,
-		       pairs = (uint32_t)(c->linked.used / sizeof *pair);
-	if (!ob_rank_islands_share(c->islands, u, &c->peers, pair, pairs, elsewhere))
+	const ob_rank_link *link = (const ob_rank_link *)(const void *)c->links.bytes;
+	if (!ob_rank_islands_share(c->islands, u, &c->peers, link, (uint32_t)(c->links.used / sizeof *link), elsewhere))
 		return false;
 	forget_links(c, u);
 	return true;

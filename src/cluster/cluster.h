@@ -19,6 +19,7 @@ typedef struct ob_cluster {
 	// links_across: have linked two ranks' bodies since islands were built; linked: those of them that still do.
 	// The last two are the same on all ranks.
 	ob_mail parted, checked, links_across, linked;
+	ob_mail links; // ob_rank_link: the linked ones, and joints of two ranks' bodies
 } ob_cluster;
 
 // Appends a pair to one of these lists. Without memory the step fails.

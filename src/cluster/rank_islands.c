@@ -36,7 +36,7 @@ typedef struct load {
 	uint64_t rank, work;
 } load;
 
-// Island of a body at a pair of two ranks' bodies.
+// Island of a body at a link of two ranks' bodies.
 typedef struct end {
 	uint32_t root, to, pinned, reserved; // as island
 	uint64_t work;
@@ -70,7 +70,7 @@ struct ob_rank_islands {
 	uint32_t *moved; // [object]: bodies that have a new home
 	uint32_t moved_count;
 	uint64_t *load; // [ranks]
-	ob_mail out, ends; // ends: those of all pairs, in the order of pairs, a's and b's
+	ob_mail out, ends; // ends: those of all links, in their order, a's and b's
 	ob_mail *dealt; // [ranks]
 };
 
@@ -163,18 +163,17 @@ static void find_islands(ob_rank_islands *s, ob_universe *u)
 	}
 }
 
-static uint32_t own_end(const ob_universe *u, const ob_pair_key *k, uint32_t rank)
+static uint32_t own_end(const ob_universe *u, const ob_rank_link *k, uint32_t rank)
 {
 	return ob_home_rank(u, k->a) == rank ? k->a : ob_home_rank(u, k->b) == rank ? k->b : NONE;
 }
 
-static void add_ends(ob_rank_islands *s, ob_universe *u, const uint32_t *pair, uint32_t pairs, uint64_t *ends)
+static void add_ends(ob_rank_islands *s, ob_universe *u, const ob_rank_link *link, uint32_t links, uint64_t *ends)
 {
-	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t *body, *root;
 	ob_involved_bodies(u, &body, &root);
-	for (uint32_t i = 0; i < pairs; i++) {
-		const uint32_t id = own_end(u, &data->pair[pair[i]], s->rank);
+	for (uint32_t i = 0; i < links; i++) {
+		const uint32_t id = own_end(u, &link[i], s->rank);
 		if (id == NONE)
 			continue;
 		island *is = &s->island[s->island_of[root[id]]];
@@ -205,7 +204,7 @@ static bool may_spill(const ob_rank_islands *s, const ob_universe *u, const isla
 	return !is->meets && is->pinned == NONE && ob_universe_rank_of(u, is->to) == s->rank;
 }
 
-static void write_summary(ob_rank_islands *s, ob_universe *u, const uint32_t *pair, uint32_t pairs, uint32_t fliers)
+static void write_summary(ob_rank_islands *s, ob_universe *u, const ob_rank_link *link, uint32_t links, uint32_t fliers)
 {
 	summary own = { .islands = s->islands,
 			.moves = fliers > 0,
@@ -215,7 +214,7 @@ static void write_summary(ob_rank_islands *s, ob_universe *u, const uint32_t *pa
 	ob_mail_append(&s->out, &own, sizeof own);
 	if (!is_merging(u))
 		add_loads(s, u, &own.loads);
-	add_ends(s, u, pair, pairs, &own.ends);
+	add_ends(s, u, link, links, &own.ends);
 	for (uint32_t i = 0; i < s->islands && !is_merging(u); i++) {
 		const island *is = &s->island[i];
 		own.moves |= !is->meets && ob_universe_rank_of(u, is->to) != s->rank;
@@ -282,10 +281,9 @@ static bool take_end(ob_rank_islands *s, const ob_universe *u, const char **next
 }
 
 // Reads the ends of all ranks. false: a rank has sent others than those of its bodies; or no memory.
-static bool read_ends(ob_rank_islands *s, const ob_universe *u, const char *all, const size_t *at, const uint32_t *pair,
-		      uint32_t pairs)
+static bool read_ends(ob_rank_islands *s, const ob_universe *u, const char *all, const size_t *at,
+		      const ob_rank_link *link, uint32_t links)
 {
-	const ob_step_data *data = ob_universe_step_data(u);
 	const char **next = calloc(s->ranks, sizeof *next);
 	uint64_t *left = calloc(s->ranks, sizeof *left);
 	bool sound = next && left;
@@ -296,11 +294,9 @@ static bool read_ends(ob_rank_islands *s, const ob_universe *u, const char *all,
 		left[r] = of.ends;
 	}
 	ob_mail_clear(&s->ends);
-	for (uint32_t i = 0; sound && i < pairs; i++)
-		for (int side = 0; sound && side < 2; side++) {
-			const ob_pair_key *k = &data->pair[pair[i]];
-			sound = take_end(s, u, next, left, ob_home_rank(u, side ? k->b : k->a));
-		}
+	for (uint32_t i = 0; sound && i < links; i++)
+		for (int side = 0; sound && side < 2; side++)
+			sound = take_end(s, u, next, left, ob_home_rank(u, side ? link[i].b : link[i].a));
 	free(next);
 	free(left);
 	return sound;
@@ -322,17 +318,17 @@ static bool is_better(const end *a, const end *b)
 }
 
 // Joins the islands that are linked. Returns true if there are any links.
-static bool join_islands(ob_rank_islands *s, uint32_t pairs)
+static bool join_islands(ob_rank_islands *s, uint32_t links)
 {
-	for (uint32_t i = 0; i < 2 * pairs; i++) {
+	for (uint32_t i = 0; i < 2 * links; i++) {
 		const uint32_t root = end_at(s, i).root;
 		s->parent[root] = root;
 	}
-	for (uint32_t i = 0; i < pairs; i++)
+	for (uint32_t i = 0; i < links; i++)
 		ob_forest_join(s->parent, end_at(s, 2 * i).root, end_at(s, 2 * i + 1).root);
-	for (uint32_t i = 0; i < 2 * pairs; i++)
+	for (uint32_t i = 0; i < 2 * links; i++)
 		s->best[ob_forest_root(s->parent, end_at(s, i).root)] = i;
-	for (uint32_t i = 0; i < 2 * pairs; i++) {
+	for (uint32_t i = 0; i < 2 * links; i++) {
 		const end e = end_at(s, i);
 		uint32_t *best = &s->best[ob_forest_root(s->parent, e.root)];
 		const end before = end_at(s, *best);
@@ -344,7 +340,7 @@ static bool join_islands(ob_rank_islands *s, uint32_t pairs)
 		if (is->meets)
 			is->to = end_at(s, s->best[ob_forest_root(s->parent, is->root)]).to;
 	}
-	return pairs > 0;
+	return links > 0;
 }
 
 static uint32_t least_loaded(const ob_rank_islands *s)
@@ -357,7 +353,7 @@ static uint32_t least_loaded(const ob_rank_islands *s)
 
 // Adds up all ranks' messages. false: one is malformed, or no memory; then the step has failed.
 static bool add_up(ob_rank_islands *s, ob_universe *u, const ob_peers *p, const char *all, const size_t *at,
-		   const uint32_t *pair, uint32_t pairs, totals *t)
+		   const ob_rank_link *link, uint32_t links, totals *t)
 {
 	uint64_t work = 0;
 	*t = (totals){ 0 };
@@ -373,11 +369,11 @@ static bool add_up(ob_rank_islands *s, ob_universe *u, const ob_peers *p, const 
 		t->work.all += of.work.all;
 		t->work.spilled += of.work.spilled;
 	}
-	if (!read_ends(s, u, all, at, pair, pairs)) {
+	if (!read_ends(s, u, all, at, link, links)) {
 		ob_step_fail(u, OB_STEP_DAMAGED, 0);
 		return false;
 	}
-	t->moves |= join_islands(s, pairs);
+	t->moves |= join_islands(s, links);
 	for (uint32_t r = 0; r < s->ranks; r++)
 		work += s->load[r];
 	t->most = ob_work_share(work, s->ranks);
@@ -582,32 +578,29 @@ static bool move(ob_rank_islands *s, ob_universe *u, ob_peers *p, const uint32_t
 	return true;
 }
 
-bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, const uint32_t *pair, uint32_t pairs,
+bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, const ob_rank_link *link, uint32_t links,
 			   bool *islands)
 {
-	const ob_step_data *data = ob_universe_step_data(u);
 	const size_t *at;
 	uint32_t fliers = 0;
 	totals t;
 	*islands = true;
-	if (is_merging(u) && !pairs)
+	if (is_merging(u) && !links)
 		return true;
 	const uint32_t *flier = is_merging(u) ? NULL : ob_regions_find_fliers(s->parts->regions, u, &fliers);
 	find_islands(s, u);
 	ob_peers_begin(&s->out);
-	write_summary(s, u, pair, pairs, fliers);
+	write_summary(s, u, link, links, fliers);
 	const char *all = ob_peers_exchange(p, u, (ob_peers_head){ .phase = OB_PEERS_SHARE }, &s->out, false, &at);
-	if (!all || !add_up(s, u, p, all, at, pair, pairs, &t))
+	if (!all || !add_up(s, u, p, all, at, link, links, &t))
 		return false;
 	*islands = t.islands;
 	if (!is_merging(u))
 		spill(s, u, t.most);
 	if (t.moves && !move(s, u, p, flier, fliers))
 		return false;
-	for (uint32_t i = 0; i < pairs; i++) {
-		const ob_pair_key *k = &data->pair[pair[i]];
-		if (ob_home_rank(u, k->a) == s->rank && ob_home_rank(u, k->b) == s->rank)
-			ob_involved_join(u, k->a, k->b);
-	}
+	for (uint32_t i = 0; i < links; i++)
+		if (ob_home_rank(u, link[i].a) == s->rank && ob_home_rank(u, link[i].b) == s->rank)
+			ob_involved_join(u, link[i].a, link[i].b);
 	return is_merging(u) || ob_regions_renew(s->parts->regions, u, p, &t.work);
 }

@@ -6,9 +6,9 @@
 //   - its rank would have a tenth more than its share of the work.
 //
 //   rank 0's bodies     rank 1's bodies
-//   o-o   o-o-o . . . . o-o   o       . . .   a pair that is expected to touch, or has touched late: all ranks know
-//    A      B            C    D               the few of two ranks' bodies; A and D concern their own ranks alone
-// One message carries each rank's load, and for each body at such a pair its island. From it all ranks find the same
+//   o-o   o-o-o . . . . o-o   o       . . .   a link: a joint, or a pair that is expected to touch, or has touched late.
+//    A      B            C    D               All ranks know the few of two ranks' bodies; A and D concern their own.
+// One message carries each rank's load, and for each body at such a link its island. From it all ranks find the same
 // islands across borders (a forest of those alone), and the ranks with too much work. If any island moves, a second
 // message carries it: its bodies' homes to all ranks, and to its new rank their motions (halo.h), and the contents of
 // their pairs (holdings.h).
@@ -30,15 +30,19 @@ typedef struct ob_rank_parts {
 	ob_regions *regions;
 } ob_rank_parts;
 
+// Link of two ranks' bodies.
+typedef struct ob_rank_link {
+	uint32_t a, b; // ids
+} ob_rank_link;
+
 typedef struct ob_rank_islands ob_rank_islands;
 
 ob_rank_islands *ob_rank_islands_create(const ob_universe *u, const ob_rank_parts *parts); // NULL: no memory
 void ob_rank_islands_destroy(ob_rank_islands *s); // NULL is allowed
 
 // Moves islands between ranks. All ranks call it, when each has found the islands of its bodies and before it lists
-// their members. pair: [pairs], links of two ranks' bodies, the same on all ranks. islands: set to true if any rank has
-// any. false: the step has failed.
-bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, const uint32_t *pair, uint32_t pairs,
+// their members. link: [links], the same on all ranks. islands: set to true if any rank has any. false: the step has failed.
+bool ob_rank_islands_share(ob_rank_islands *s, ob_universe *u, ob_peers *p, const ob_rank_link *link, uint32_t links,
 			   bool *islands);
 
 #endif

@@ -244,6 +244,27 @@ static const char *commit_contact(ob_committer *c, ob_universe *u, const ob_mail
 	return NULL;
 }
 
+// The simulator was given the island of one of its objects, and so of both.
+static const char *commit_joint(ob_committer *c, ob_universe *u, const ob_mail_record *from)
+{
+	const ob_found_joint *r = from->data;
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (from->bytes != sizeof *r || r->joint >= data->joints)
+		return "has found a joint that does not exist";
+	const ob_joint_passport *j = &data->joint[r->joint];
+	bool given = false;
+	for (int side = 0; side < 2; side++)
+		given |= j->object[side] < ob_universe_ids(u) &&
+			 ob_schedule_is_dynamic(&data->schedule[j->object[side]]) &&
+			 solves(c, u, from->worker, j->object[side]);
+	if (!given || !ob_joint_holds(u, j))
+		return "has found a joint of bodies that it was not given";
+	if (r->broke > 1 || !finite3(r->force) || !finite3(r->torque) || !isfinite(r->along))
+		return "has found a load of a joint that makes no sense";
+	ob_write_joint(u, r);
+	return NULL;
+}
+
 static const char *commit_touch(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const ob_touch_record *r = from->data;
@@ -259,7 +280,7 @@ static const char *commit_touch(ob_committer *c, ob_universe *u, const ob_mail_r
 
 static bool is_sound_script(const ob_script_record *r, size_t bytes)
 {
-	enum { FLAGS = 2 * OB_SCRIPT_WARNED - 1, ASKS = 2 * OB_SCRIPT_ASKS_ERROR - 1 };
+	enum { FLAGS = 2 * OB_SCRIPT_BROKE - 1, ASKS = 2 * OB_SCRIPT_ASKS_ERROR - 1 };
 	return bytes >= sizeof *r && r->state_bytes <= OB_SCRIPT_STATE_BYTES &&
 	       bytes == sizeof *r + ob_in_words(r->state_bytes) && r->outbox_bytes <= OB_SCRIPT_OUTBOX_BYTES &&
 	       r->outbox_bytes % 8 == 0 && !(r->flags & ~(uint32_t)FLAGS) && !(r->asks & ~(uint32_t)ASKS) &&
@@ -414,6 +435,7 @@ static const struct {
 	[OB_RECORD_BOUNDS] = { ISLANDS, commit_bounds, "has moved what was not to be moved" },
 	[OB_RECORD_EFFORT] = { ISLANDS, commit_effort, "has counted what was not to be counted" },
 	[OB_RECORD_CONTACT] = { ISLANDS, commit_contact, "has found a contact out of turn" },
+	[OB_RECORD_JOINT] = { ISLANDS, commit_joint, "has found a joint out of turn" },
 	[OB_RECORD_TOUCH] = { ISLANDS, commit_touch, "has felt out of turn" },
 	[OB_RECORD_SCRIPT] = { SCRIPTS, commit_script, "has run a script out of turn" },
 	[OB_RECORD_POSTS] = { SCRIPTS, commit_posts, "has asked for a script out of turn" },

@@ -12,6 +12,7 @@ typedef enum ob_record_kind {
 	OB_RECORD_BOUNDS,
 	OB_RECORD_EFFORT,
 	OB_RECORD_CONTACT,
+	OB_RECORD_JOINT,
 	OB_RECORD_CHECK,
 	OB_RECORD_NEIGHBOURS,
 	OB_RECORD_TOUCH,
@@ -88,6 +89,7 @@ void ob_write_effort(ob_universe *u, uint32_t island, uint32_t share);
 uint32_t ob_write_contact_key(ob_universe *u, const ob_found_contact *c);
 // Its warm-start state; returns the version to which it was written.
 int ob_write_contact_state(ob_universe *u, const ob_found_contact *c, uint32_t record);
+void ob_write_joint(ob_universe *u, const ob_found_joint *j);
 void ob_write_touch(ob_universe *u, const ob_touch_record *r);
 void ob_write_script(ob_universe *u, const ob_script_record *r);
 void ob_write_check(ob_universe *u, const ob_check_record *c);

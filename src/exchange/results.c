@@ -43,10 +43,7 @@ void ob_write_bounds(ob_universe *u, uint32_t id, const float box[6])
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	memcpy(data->bounds[id], box, sizeof data->bounds[id]);
-	if (data->neighbours[id].count != UINT32_MAX) { // none is pending
-		data->neighbours[id].count = UINT32_MAX;
-		ob_requery_append(u, id);
-	}
+	ob_pairs_requery(u, id);
 }
 
 void ob_write_effort(ob_universe *u, uint32_t island, uint32_t share)
@@ -79,6 +76,31 @@ int ob_write_contact_state(ob_universe *u, const ob_found_contact *c, uint32_t r
 	if (c->two_sided)
 		memcpy(data->impulse_b[record][version], c->impulse_b, sizeof c->impulse_b);
 	return version;
+}
+
+// The scripts of its objects look for it before the next step.
+static void note_break(ob_universe *u, const ob_joint_passport *j)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	for (int side = 0; data->script_of && side < 2; side++) {
+		const uint32_t id = j->object[side], cell = id < data->objects_max ? data->script_of[id] : 0;
+		if (cell)
+			data->script_turn[cell - 1].flags |= OB_SCRIPT_BROKE;
+	}
+}
+
+void ob_write_joint(ob_universe *u, const ob_found_joint *j)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_joint_state *to = &data->joint_state[j->joint];
+	const uint32_t step = (uint32_t)ob_step_count(u) + 1, version = step % 2;
+	to->version[version].force = j->force;
+	to->version[version].torque = j->torque;
+	to->version[version].along = j->along;
+	to->stamp[version] = step;
+	to->broke = j->broke ? step : 0;
+	if (j->broke)
+		note_break(u, &data->joint[j->joint]);
 }
 
 void ob_write_touch(ob_universe *u, const ob_touch_record *r)
@@ -212,6 +234,12 @@ void ob_commit_contact(ob_universe *u, const ob_found_contact *c)
 	const uint32_t record = ob_write_contact_key(u, c);
 	if (record != OB_NO_RECORD)
 		ob_write_contact_state(u, c, record);
+}
+
+void ob_commit_joint(ob_universe *u, const ob_found_joint *j)
+{
+	if (!hand_over(u, OB_RECORD_JOINT, j, sizeof *j))
+		ob_write_joint(u, j);
 }
 
 void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse, ob_vec3 point)

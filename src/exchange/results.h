@@ -22,6 +22,7 @@ void ob_commit_result(ob_universe *u, const ob_found_result *r); // ISLANDS
 void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6]); // ISLANDS; and by the host
 void ob_commit_effort(ob_universe *u, uint32_t island, uint32_t share); // ISLANDS; share: each member's
 void ob_commit_contact(ob_universe *u, const ob_found_contact *c); // ISLANDS
+void ob_commit_joint(ob_universe *u, const ob_found_joint *j); // ISLANDS
 // Notes for the object's script that it has begun to touch another, and adds a normal impulse (N s) at this point (m).
 // other OB_NO_OBJECT: drops the notes of this step.
 void ob_commit_touch(ob_universe *u, uint32_t id, uint32_t other, double impulse, ob_vec3 point); // ISLANDS, BASELINE

@@ -36,15 +36,14 @@ static bool check_joints(const ob_scene *scene, const ob_host_config *c, ob_erro
 	const ob_run_settings *r = &c->run, usual = ob_run_settings_default();
 	const char *lacks = !scene->joints                          ? NULL
 			    : r->monolith                           ? "arch: the one ODE world"
-			    : c->ranks.ranks > 1                    ? "ranks: a universe on several ranks"
 			    : c->free                               ? "sync: a free run"
 			    : r->solver != usual.solver             ? "solver: such a run"
 			    : r->integrator != usual.integrator     ? "integrator: such a run"
 			    : r->narrow_phase != usual.narrow_phase ? "narrow phase: such a run"
 								    : NULL;
 	return !lacks || ob_fail(e,
-				 "%s has no joints, as this scene has: take simulators in lockstep on one rank, with "
-				 "the usual methods",
+				 "%s has no joints, as this scene has: take simulators in lockstep, with the usual "
+				 "methods",
 				 lacks);
 }
 

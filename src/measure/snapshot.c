@@ -136,7 +136,8 @@ static bool take_joints(ob_snapshot *s, const ob_universe *u, ob_error *e)
 	if (!grow_joints(s, joints))
 		return ob_fail(e, "no memory for %u joints", joints);
 	for (uint32_t i = 0; i < joints; i++)
-		s->joints += ob_universe_get_joint(u, i, &s->joint[s->joints]);
+		s->joints += ob_universe_get_joint(u, i, &s->joint[s->joints]) &&
+			     !(s->joint[s->joints].flags & OB_JOINT_BROKEN);
 	return true;
 }
 

@@ -19,7 +19,7 @@ typedef struct joint {
 	ob_vec3 at, axis, across, from, to;
 	double length;
 	const char *name;
-	bool collide, motor;
+	bool collide, motor, breaks_at;
 	ob_joint_axis along; // low, high, rest and motor_target may be NaN
 } joint;
 
@@ -35,7 +35,9 @@ typedef struct joint {
 		ALONG(stiffness, .high = OB_JOINT_MOST), ALONG(rest, .low = -(most_value), .high = (most_value)), \
 		ALONG(damping, .high = OB_JOINT_MOST), ALONG(friction, .high = OB_JOINT_MOST), \
 		F(motor, .kind = OB_FIELD_TABLE)
-#define COMMON F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), F(collide, .kind = OB_FIELD_BOOLEAN)
+#define COMMON \
+	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), F(collide, .kind = OB_FIELD_BOOLEAN), \
+		F(breaks_at, .kind = OB_FIELD_TABLE)
 
 static const ob_field ball_fields[] = { REQUIRED_PLACE(at), COMMON };
 static const ob_field fixed_fields[] = { PLACE(at), COMMON };
@@ -58,6 +60,15 @@ static const ob_field motor_fields[] = { MOTOR(rate, .low = -OB_JOINT_MOST, .hig
 					 MOTOR(most, .high = OB_JOINT_MOST, .above = true),
 					 MOTOR(stiffness, .high = OB_JOINT_MOST, .above = true),
 					 MOTOR(damping, .high = OB_JOINT_MOST) };
+
+// Fields of breaks_at.
+typedef struct strength {
+	double force, torque;
+} strength;
+
+#define STRENGTH(member) \
+	OB_FIELD(strength, member, .name = #member, .kind = OB_FIELD_NUMBER, .high = OB_JOINT_MOST, .above = true)
+static const ob_field strength_fields[] = { STRENGTH(force), STRENGTH(torque) };
 
 // apart has none.
 static const struct {
@@ -229,6 +240,24 @@ static void read_motor(lua_State *L, const char *kind, ob_joint_axis *a)
 	a->motor_damping = m.damping;
 }
 
+// Reads the table of breaks_at, of the call's table at place 1.
+static void set_strength(lua_State *L, const char *kind, const joint *d, ob_joint_passport *j)
+{
+	enum { NAME = 40 };
+	char where[NAME];
+	strength s = { INFINITY, INFINITY };
+	if (d->breaks_at) {
+		snprintf(where, sizeof where, "%s.breaks_at", kind);
+		lua_getfield(L, 1, "breaks_at");
+		ob_fields_read(L, lua_gettop(L), where, strength_fields,
+			       sizeof strength_fields / sizeof *strength_fields, &s);
+		lua_pop(L, 1);
+		if (isinf(s.force) && isinf(s.torque))
+			ob_sandbox_fail(L, "%s: expected a force (N), a torque (N m), or both", where);
+	}
+	j->breaks_force = s.force, j->breaks_torque = s.torque;
+}
+
 static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_passport *j)
 {
 	ob_joint_axis *a = &j->axis;
@@ -288,7 +317,9 @@ int ob_scene_call_joint(lua_State *L)
 	ob_builder *b = ob_sandbox_user(L);
 	ob_joint_passport j = { .generation = { 1, 1 }, .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
 	const ob_vec3 none = { NAN, NAN, NAN };
-	joint d = { none, none, none, none, none, NAN, NULL, false, false, { .low = NAN, .high = NAN, .rest = NAN } };
+	joint d = {
+		none, none, none, none, none, NAN, NULL, false, false, false, { .low = NAN, .high = NAN, .rest = NAN }
+	};
 	const char *kind = ob_joint_kind_name(j.kind);
 	if (b->options->joining)
 		ob_sandbox_fail(L, "%s: joints cannot be added to a universe that runs", kind);
@@ -298,6 +329,7 @@ int ob_scene_call_joint(lua_State *L)
 	j.flags = d.collide ? OB_JOINT_COLLIDES : 0;
 	set_frames(L, b->scene, &d, &j);
 	set_axis(L, kind, &d, &j);
+	set_strength(L, kind, &d, &j);
 	set_name(L, b->scene, kind, d.name, &j);
 	add(L, b, kind, &j);
 	return 0;

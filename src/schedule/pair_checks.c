@@ -22,11 +22,23 @@ bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k)
 	return ob_universe_ranks(u) < 2 || ob_worker_is_here(u, ob_home_of(u, a ? k->a : k->b));
 }
 
-bool ob_pair_is_across(const ob_universe *u, const ob_pair_key *k)
+static bool is_across(const ob_universe *u, uint32_t a, uint32_t b)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	return ob_schedule_is_dynamic(&data->schedule[k->a]) && ob_schedule_is_dynamic(&data->schedule[k->b]) &&
-	       ob_home_rank(u, k->a) != ob_home_rank(u, k->b);
+	return ob_schedule_is_dynamic(&data->schedule[a]) && ob_schedule_is_dynamic(&data->schedule[b]) &&
+	       ob_home_rank(u, a) != ob_home_rank(u, b);
+}
+
+bool ob_pair_is_across(const ob_universe *u, const ob_pair_key *k)
+{
+	return is_across(u, k->a, k->b);
+}
+
+bool ob_joint_is_across(const ob_universe *u, const ob_joint_passport *j)
+{
+	const uint32_t most = ob_universe_step_data(u)->objects_max;
+	return j->kind != OB_JOINT_APART && j->object[0] < most && j->object[1] < most && ob_joint_holds(u, j) &&
+	       is_across(u, j->object[0], j->object[1]);
 }
 
 void ob_pair_enter_check(ob_universe *u, uint32_t pair, uint64_t step)

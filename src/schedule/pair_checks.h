@@ -13,6 +13,8 @@ bool ob_pair_is_known_here(const ob_universe *u, const ob_pair_key *k);
 bool ob_pair_is_checked_here(const ob_universe *u, const ob_pair_key *k);
 // True if the pair links two ranks' bodies.
 bool ob_pair_is_across(const ob_universe *u, const ob_pair_key *k);
+// The same of a joint that holds.
+bool ob_joint_is_across(const ob_universe *u, const ob_joint_passport *j);
 // Enters the pair for a check in this step. On several ranks one rank enters it, and all know that.
 void ob_pair_enter_check(ob_universe *u, uint32_t pair, uint64_t step);
 // Schedules a check of all pairs of the object before its next step, as its motion changes.

@@ -525,7 +525,7 @@ static uint32_t find_joint(lua_State *L, const ob_script_runner *r, const char *
 	ob_sandbox_fail(L, "%s: expected the name of a joint, got \"%s\"", call, name);
 }
 
-// Returns value and rate of a joint's axis; nothing if the joint has ended, or has none.
+// Returns value and rate of a joint's axis, and the force along it; nothing if the joint has ended, or has none.
 static int call_joint(lua_State *L)
 {
 	const ob_script_runner *r = runner_of(L);
@@ -544,7 +544,22 @@ static int call_joint(lua_State *L)
 		return 0;
 	lua_pushnumber(L, value);
 	lua_pushnumber(L, rate);
-	return 2;
+	lua_pushnumber(L, ob_joint_load_now(r->u, joint).along);
+	return 3;
+}
+
+// Returns force and torque of a joint on its first object, as x, y, z each; nothing if it has ended.
+static int call_joint_load(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	const uint32_t joint = find_joint(L, r, "joint_load");
+	if (joint == UINT32_MAX)
+		return 0;
+	const ob_joint_load load = ob_joint_load_now(r->u, joint);
+	const double x[] = { load.force.x, load.force.y, load.force.z, load.torque.x, load.torque.y, load.torque.z };
+	for (int i = 0; i < 6; i++)
+		lua_pushnumber(L, x[i]);
+	return 6;
 }
 
 static int call_motor(lua_State *L)
@@ -767,6 +782,7 @@ int ob_script_calls_open(lua_State *L)
 		{ "find", call_find },
 		{ "near", call_near },
 		{ "joint", call_joint },
+		{ "joint_load", call_joint_load },
 		{ "motor", call_motor },
 		{ "ray", call_ray },
 		{ "send", call_send },

@@ -87,7 +87,7 @@ uint64_t ob_script_run_foreign(ob_script_runner *r, ob_script_turn *t, ob_script
 	ob_script_begin_turn(r, t, c);
 	if (step(r, t, &e)) {
 		t->flags |= OB_SCRIPT_STARTED | OB_SCRIPT_EACH_STEP;
-		t->flags &= ~(uint32_t)(OB_SCRIPT_MAIL | OB_SCRIPT_TOUCHED);
+		t->flags &= ~(uint32_t)(OB_SCRIPT_MAIL | OB_SCRIPT_TOUCHED | OB_SCRIPT_BROKE);
 		if (leaves)
 			ob_script_leave(r);
 	} else {

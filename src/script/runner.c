@@ -10,8 +10,9 @@
 #include "script/runner.h"
 
 static const char *const handler_names[OB_HANDLERS] = {
-	[OB_HANDLER_START] = "on_start",     [OB_HANDLER_STEP] = "on_step", [OB_HANDLER_CONTACT] = "on_contact",
-	[OB_HANDLER_MESSAGE] = "on_message", [OB_HANDLER_WAKE] = "on_wake", [OB_HANDLER_STOP] = "on_stop",
+	[OB_HANDLER_START] = "on_start",     [OB_HANDLER_STEP] = "on_step",   [OB_HANDLER_CONTACT] = "on_contact",
+	[OB_HANDLER_MESSAGE] = "on_message", [OB_HANDLER_BREAK] = "on_break", [OB_HANDLER_WAKE] = "on_wake",
+	[OB_HANDLER_STOP] = "on_stop",
 };
 
 // ---- interpreters
@@ -147,6 +148,7 @@ typedef struct delivery {
 	ob_interpreter *p;
 	const ob_script_post *post;
 	const ob_script_touch *touch;
+	uint32_t joint;
 } delivery;
 
 static void push_object(lua_State *L, uint32_t id, uint32_t generation)
@@ -192,6 +194,21 @@ static int tell_touch(lua_State *L)
 	return 0;
 }
 
+// Name of the joint, force and torque by which it broke.
+static int tell_break(lua_State *L)
+{
+	const delivery *d = lua_touserdata(L, 1);
+	const ob_joint_passport *j = &d->r->data->joint[d->joint];
+	const ob_joint_load load = ob_joint_load_now(d->r->u, d->joint);
+	lua_settop(L, 0);
+	lua_rawgeti(L, LUA_REGISTRYINDEX, d->p->handler[OB_HANDLER_BREAK]);
+	lua_pushlstring(L, j->name, strnlen(j->name, sizeof j->name));
+	lua_pushnumber(L, ob_norm(load.force));
+	lua_pushnumber(L, ob_norm(load.torque));
+	lua_call(L, 3, 0);
+	return 0;
+}
+
 static bool call_with(lua_CFunction f, delivery *d, ob_error *e)
 {
 	lua_State *L = ob_sandbox_lua(d->p->sandbox);
@@ -210,7 +227,7 @@ static bool tell_mail(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 		if (post->used > post->bytes || at > OB_SCRIPT_INBOX_BYTES) // not the data that was sent
 			break;
 		if (p->handler[OB_HANDLER_MESSAGE] != LUA_NOREF)
-			good = call_with(tell_message, &(delivery){ r, p, post, NULL }, e);
+			good = call_with(tell_message, &(delivery){ r, p, post, NULL, 0 }, e);
 	}
 	return good;
 }
@@ -220,7 +237,19 @@ static bool tell_touches(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 	bool good = true;
 	for (uint32_t i = 0; good && !r->ended && i < r->cell->touches && i < OB_SCRIPT_TOUCHES; i++)
 		if (p->handler[OB_HANDLER_CONTACT] != LUA_NOREF)
-			good = call_with(tell_touch, &(delivery){ r, p, NULL, &r->cell->touch[i] }, e);
+			good = call_with(tell_touch, &(delivery){ r, p, NULL, &r->cell->touch[i], 0 }, e);
+	return good;
+}
+
+static bool tell_breaks(ob_script_runner *r, ob_interpreter *p, ob_error *e)
+{
+	const uint32_t id = r->turn->object;
+	bool good = true;
+	if (p->handler[OB_HANDLER_BREAK] == LUA_NOREF)
+		return true;
+	for (uint32_t j = ob_joint_first(r->data, id); j && good && !r->ended; j = ob_joint_next(r->data, j, id))
+		if (ob_joint_broke_now(r->u, j - 1))
+			good = call_with(tell_break, &(delivery){ r, p, NULL, NULL, j - 1 }, e);
 	return good;
 }
 
@@ -253,7 +282,7 @@ static bool call_all(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 {
 	ob_script_turn *t = r->turn;
 	const uint32_t flags = t->flags, wake = t->wake;
-	t->flags = (flags | OB_SCRIPT_STARTED) & ~(uint32_t)(OB_SCRIPT_MAIL | OB_SCRIPT_TOUCHED);
+	t->flags = (flags | OB_SCRIPT_STARTED) & ~(uint32_t)(OB_SCRIPT_MAIL | OB_SCRIPT_TOUCHED | OB_SCRIPT_BROKE);
 	if (p->handler[OB_HANDLER_STEP] != LUA_NOREF)
 		t->flags |= OB_SCRIPT_EACH_STEP;
 	if (p->handler[OB_HANDLER_CONTACT] != LUA_NOREF)
@@ -263,6 +292,8 @@ static bool call_all(ob_script_runner *r, ob_interpreter *p, ob_error *e)
 	if (flags & OB_SCRIPT_MAIL && !tell_mail(r, p, e))
 		return false;
 	if (flags & OB_SCRIPT_TOUCHED && !tell_touches(r, p, e))
+		return false;
+	if (flags & OB_SCRIPT_BROKE && !tell_breaks(r, p, e))
 		return false;
 	if (wake <= r->step && flags & OB_SCRIPT_STARTED) {
 		if (t->wake == wake) // and no other wake-up was requested meanwhile

@@ -191,9 +191,22 @@ typedef struct ob_joint_end {
 	ob_body_row given; // m/s, rad/s: velocity of one that does not move by forces
 } ob_joint_end;
 
+// Action of a joint on its first object: N s, N m s.
+typedef struct ob_joint_action {
+	ob_vec3 force, torque;
+	double along;
+} ob_joint_action;
+
 // A joint of an island (solver/joints.c).
 typedef struct ob_held_joint {
 	uint32_t kind; // ob_joint_kind
+	double breaks_force, breaks_torque; // N, N m
+	bool broken; // in this step: it has no rows any more
+	struct { // solver/joint_load.h
+		ob_joint_action now, kept; // since the begin of a part of the step; when states were kept
+		ob_joint_action whole; // of the parts before
+		double time; // s: for which "whole" acted, if not for the step: it broke
+	} action;
 	double length; // m, of a distance
 	ob_joint_end end[2];
 	const ob_joint_axis *axis; // what acts along its free axis; NULL: nothing
@@ -235,7 +248,8 @@ typedef struct ob_joint_set {
 	double now; // s: time of the poses at which the ends were found
 	// Share of its part, and s, length of the part, of the last flight; 0: none whose impulses are a guess for the next.
 	double last_share, last_length;
-	ob_joint_kept *kept; // [bodies]: states to return to
+	bool breakable; // some of them may break
+	ob_joint_kept *kept; // [2 bodies]: states to return to: of an event, of the begin of a part of the step
 	uint32_t kept_max;
 } ob_joint_set;
 

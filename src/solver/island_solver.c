@@ -15,6 +15,7 @@
 #include "solver/error_control.h"
 #include "solver/frame.h"
 #include "solver/impacts.h"
+#include "solver/joint_load.h"
 #include "solver/joint_rows.h"
 #include "solver/joints.h"
 #include "solver/methods.h"
@@ -97,6 +98,7 @@ static void solve_partial_substep(ob_solver *s, double left, bool first_of_step)
 	ob_solver_enter(s, OB_PROFILE_PROJECT);
 	ob_push_apart(s);
 	ob_joints_project(s);
+	ob_joint_loads_keep(&s->island.joints);
 }
 
 // Solves the substeps in turn.
@@ -107,6 +109,7 @@ static void solve_substeps(ob_solver *s)
 		bool first = k == 0;
 		for (double left = w->substep; left > 0 && !ob_budget_spent(s); left -= w->h, first = false)
 			solve_partial_substep(s, left, first);
+		ob_joints_end(s);
 	}
 }
 
@@ -196,6 +199,7 @@ void ob_island_report(ob_solver *s)
 	ob_solver_enter(s, OB_PROFILE_LOAD);
 	const uint32_t rest = rest_flag(s);
 	ob_contacts_report(s);
+	ob_joint_loads_report(s);
 	ob_solver_enter(s, OB_PROFILE_PUBLISH);
 	ob_bodies_report(s, rest);
 }

@@ -6,6 +6,7 @@
 
 #include "base/allocate.h"
 #include "solver/joint_axis.h"
+#include "solver/joint_load.h"
 
 static const double compliance = 1e-9; // of a row, as a share of its own response
 
@@ -209,8 +210,9 @@ double ob_joint_axis_rate(const ob_held_joint *j, const ob_body_row *rows)
 	return ob_joint_row_velocity(j, j->base, rows);
 }
 
-void ob_joint_push_axis(const ob_held_joint *j, double impulse, ob_body_row *rows)
+void ob_joint_push_axis(ob_held_joint *j, double impulse, ob_body_row *rows)
 {
+	ob_joint_note_axis(j, impulse);
 	for (int i = 0; i < 6; i++) {
 		rows[1 + j->child][i] += impulse * j->response[0][j->base][i];
 		if (j->parent != OB_SPARSE_FIXED)
@@ -245,6 +247,7 @@ void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
 		for (uint32_t i = 0; i < w->joints.count; i++) {
 			ob_held_joint *j = &w->joints.joint[i];
 			ob_joint_respond(j, j->rows.x, rows);
+			ob_joint_note(j, j->rows.x);
 			for (uint32_t r = 0; r < j->rows.rows; r++)
 				j->sum[r] += j->rows.x[r];
 		}
@@ -291,7 +294,11 @@ static void load_end(ob_island_work *w, const ob_island_input *in, uint32_t obje
 static void load_joint(ob_island_work *w, const ob_island_input *in, const ob_island_joint *from)
 {
 	ob_held_joint *j = &w->joints.joint[w->joints.count++];
-	*j = (ob_held_joint){ .kind = from->joint->kind, .length = from->joint->length };
+	*j = (ob_held_joint){ .kind = from->joint->kind,
+			      .length = from->joint->length,
+			      .breaks_force = from->joint->breaks_force,
+			      .breaks_torque = from->joint->breaks_torque };
+	w->joints.breakable |= isfinite(j->breaks_force) || isfinite(j->breaks_torque);
 	for (int side = 0; side < 2; side++) {
 		j->end[side].frame = from->joint->frame[side];
 		load_end(w, in, from->object[side], &j->end[side]);
@@ -325,13 +332,13 @@ void ob_joints_load(ob_solver *s, const ob_island_input *in)
 	set->step_begin = (double)in->step * s->settings->step_length;
 	set->stiffness = set->last_share = 0;
 	set->axes = 0;
-	set->failed = false;
+	set->failed = set->breakable = false;
 	ob_sparse_begin(&set->sparse, w->bodies);
 	for (uint32_t i = 0; i < in->joints; i++)
 		load_joint(w, in, &in->joint[i]);
 	ob_sparse_analyse(&set->sparse, UINT32_MAX);
-	if (set->axes && w->bodies > set->kept_max) {
-		set->kept_max = w->bodies + w->bodies / 2;
+	if ((set->axes || set->breakable) && 2 * w->bodies > set->kept_max) {
+		set->kept_max = 3 * w->bodies;
 		set->kept = ob_reallocate(set->kept, set->kept_max * sizeof *set->kept);
 	}
 }

@@ -39,7 +39,7 @@ void ob_joints_solve(ob_island_work *w, ob_body_row *rows);
 void ob_joints_iterate(ob_island_work *w);
 // Rate (m/s, rad/s) of a joint's axis at the velocities in rows; gives it an impulse (N s, N m s).
 double ob_joint_axis_rate(const ob_held_joint *j, const ob_body_row *rows);
-void ob_joint_push_axis(const ob_held_joint *j, double impulse, ob_body_row *rows);
+void ob_joint_push_axis(ob_held_joint *j, double impulse, ob_body_row *rows);
 
 void ob_joints_finish(ob_joint_set *j);
 

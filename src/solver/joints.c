@@ -7,6 +7,7 @@
 #include "solver/budget.h"
 #include "solver/contacts.h"
 #include "solver/joint_axis.h"
+#include "solver/joint_load.h"
 #include "solver/joint_rows.h"
 #include "solver/midpoint.h"
 
@@ -65,7 +66,7 @@ static void twist(ob_island_work *w, double h)
 {
 	twist_bodies(w, h);
 	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
-		const ob_held_joint *j = &w->joints.joint[i];
+		ob_held_joint *j = &w->joints.joint[i];
 		if (j->axis)
 			ob_joint_push_axis(j, .5 * h * ob_axis_force(j, ob_joint_axis_rate(j, w->v), h), w->v);
 	}
@@ -200,6 +201,8 @@ static void fly(ob_island_work *w, double h, double end)
 		memcpy(w->dv[row], w->v[row], sizeof *w->dv);
 	}
 	aim(w, h, end);
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		ob_joint_note(&w->joints.joint[i], w->joints.joint[i].sum);
 	ob_joints_factor(w);
 	twist_bodies(w, h);
 	clear_sums(w);
@@ -294,7 +297,7 @@ static division divide(const ob_solver *s)
 {
 	const uint32_t usual = s->settings->substeps, n = s->island.substeps;
 	const bool blocks = n >= usual && n <= MOST_BLOCKS * usual;
-	const uint32_t parts = blocks ? n / usual : n;
+	const uint32_t parts = blocks && !s->island.joints.breakable ? n / usual : n;
 	return (division){ parts, blocks ? sizeof shares / sizeof *shares : 1, blocks ? shares : single,
 			   s->settings->step_length / parts };
 }
@@ -329,23 +332,28 @@ static void change_rows(ob_island_work *w)
 
 // ---- events along axes
 
-static void keep_states(ob_island_work *w)
+// States kept: of the last event, and of the begin of the part.
+enum { OF_EVENT, OF_PART };
+
+static void keep_states(ob_island_work *w, uint32_t of)
 {
 	for (uint32_t row = 1; row <= w->bodies; row++) {
-		ob_joint_kept *k = &w->joints.kept[row - 1];
+		ob_joint_kept *k = &w->joints.kept[of * w->bodies + row - 1];
 		k->p = w->body[row].p, k->q = w->body[row].q;
 		memcpy(k->v, w->v[row], sizeof k->v);
 	}
+	ob_joint_loads_keep(&w->joints);
 }
 
 // Goes back to the states kept, of this time (s).
-static void put_back(ob_island_work *w, double time)
+static void put_back(ob_island_work *w, uint32_t of, double time)
 {
 	for (uint32_t row = 1; row <= w->bodies; row++) {
-		const ob_joint_kept *k = &w->joints.kept[row - 1];
+		const ob_joint_kept *k = &w->joints.kept[of * w->bodies + row - 1];
 		ob_body_place(&w->body[row], k->p, k->q);
 		memcpy(w->v[row], k->v, sizeof k->v);
 	}
+	ob_joint_loads_put_back(&w->joints);
 	ob_joints_find(w, time);
 	ob_joints_factor(w);
 	clear_sums(w);
@@ -411,10 +419,11 @@ static void hit_limit(ob_island_work *w, ob_held_joint *hit, int limit)
 			ob_axis_disengage(j);
 	}
 	ob_axis_rest(hit, limit, w->joints.now);
-	keep_states(w);
+	keep_states(w, OF_EVENT);
 	do {
 		for (uint32_t row = 1; row <= w->bodies; row++)
 			memcpy(w->v[row], w->joints.kept[row - 1].v, sizeof *w->v);
+		ob_joint_loads_put_back(&w->joints);
 		ob_joints_factor(w);
 		set_targets(w);
 		hit->target[hit->base] = -e * rate;
@@ -468,7 +477,7 @@ static double fly_to_event(ob_solver *s, const division *d, double from, double 
 	const double shortest = 1e-3 * d->h,
 		     exact_time = 1e-10 * d->h; // shorter flights find no forces, but for rounding
 	ob_island_work *w = &s->island;
-	keep_states(w);
+	keep_states(w, OF_EVENT);
 	fly_part(s, d, from, h);
 	axis_event event = next_event(w);
 	if (w->joints.failed || event.margin >= 0 || ob_budget_spent(s))
@@ -476,7 +485,7 @@ static double fly_to_event(ob_solver *s, const division *d, double from, double 
 	bracket b = { 0, h, 0, event.margin, 0 };
 	double t = h;
 	for (int round = 0; round < MOST_ROUNDS && b.high - b.low > exact_time && b.high > shortest; round++) {
-		put_back(w, w->joints.step_begin + from * d->h);
+		put_back(w, OF_EVENT, w->joints.step_begin + from * d->h);
 		t = try_at(&b);
 		fly_part(s, d, from, t);
 		const axis_event now = next_event(w);
@@ -485,7 +494,7 @@ static double fly_to_event(ob_solver *s, const division *d, double from, double 
 			event = now;
 	}
 	if (t != b.low) {
-		put_back(w, w->joints.step_begin + from * d->h);
+		put_back(w, OF_EVENT, w->joints.step_begin + from * d->h);
 		if (b.low > 0)
 			fly_part(s, d, from, b.low);
 	}
@@ -505,17 +514,52 @@ static void fly_with_axes(ob_solver *s, const division *d, uint32_t part)
 		fly_part(s, d, (double)part + done / d->h, d->h - done);
 }
 
+static void fly_whole_part(ob_solver *s, const division *d, uint32_t part)
+{
+	if (s->island.joints.axes)
+		fly_with_axes(s, d, part);
+	else
+		fly_part(s, d, part, d->h);
+}
+
+static void find_axes(ob_island_work *w, double time)
+{
+	ob_joints_find(w, time);
+	if (!w->joints.axes)
+		return;
+	ob_joints_factor(w);
+	enter_axes(w);
+	ob_joints_find(w, time);
+}
+
+// Flies through a part of the step, and again without each joint that it breaks.
+static void fly_and_break(ob_solver *s, const division *d, uint32_t part)
+{
+	ob_island_work *w = &s->island;
+	ob_held_joint *weakest;
+	ob_joint_loads_begin(&w->joints);
+	if (w->joints.breakable)
+		keep_states(w, OF_PART);
+	fly_whole_part(s, d, part);
+	while (!w->joints.failed && !ob_budget_spent(s) && (weakest = ob_joint_loads_weakest(&w->joints, d->h))) {
+		const double begin = w->joints.step_begin + part * d->h;
+		ob_joint_break(w, weakest, d->h);
+		ob_joint_loads_begin(&w->joints);
+		ob_joint_loads_keep(&w->joints);
+		put_back(w, OF_PART, begin);
+		find_axes(w, begin);
+		change_rows(w);
+		fly_whole_part(s, d, part);
+	}
+	ob_joint_loads_end(&w->joints);
+}
+
 // Puts bodies where their joints hold them as the step begins, and takes away velocities that these do not allow.
 static void begin_flights(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	double none;
-	ob_joints_find(w, w->joints.step_begin);
-	if (w->joints.axes) {
-		ob_joints_factor(w);
-		enter_axes(w);
-		ob_joints_find(w, w->joints.step_begin);
-	}
+	find_axes(w, w->joints.step_begin);
 	if (largest_error(w, &none) > misplaced) {
 		ob_joints_project(s);
 		ob_joints_find(w, w->joints.step_begin);
@@ -529,10 +573,7 @@ bool ob_joints_fly(ob_solver *s)
 	const division d = divide(s);
 	begin_flights(s);
 	for (uint32_t k = 0; k < d.parts && !w->joints.failed && !ob_budget_spent(s); k++) {
-		if (w->joints.axes)
-			fly_with_axes(s, &d, k);
-		else
-			fly_part(s, &d, k, d.h);
+		fly_and_break(s, &d, k);
 		note_paths(w, d.h);
 	}
 	w->time = s->settings->step_length;
@@ -588,7 +629,9 @@ void ob_joints_begin(ob_solver *s)
 	ob_joints_find(w, begin);
 	ob_joints_factor(w);
 	set_targets(w);
+	ob_joint_loads_put_back(&w->joints); // drops a try that was too long
 	ob_joints_solve(w, w->v); // impacts know no joints
+	ob_joint_loads_keep(&w->joints);
 	for (uint32_t row = 1; row <= w->bodies; row++)
 		if (w->body[row].joints)
 			ob_midpoint_halve(s, row);
@@ -607,4 +650,13 @@ void ob_joints_begin(ob_solver *s)
 	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++)
 		if (w->joints.joint[i].axis)
 			ob_joint_push_axis(&w->joints.joint[i], w->joints.joint[i].along.applied, w->dv);
+}
+
+void ob_joints_end(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	ob_held_joint *weakest = ob_joint_loads_weakest(&w->joints, w->substep);
+	if (weakest)
+		ob_joint_break(w, weakest, w->substep);
+	ob_joint_loads_end(&w->joints);
 }

@@ -27,5 +27,7 @@ uint32_t ob_joints_substeps(const ob_solver *s);
 void ob_joints_begin(ob_solver *s);
 // Moves bodies until no joint is violated, after positions are integrated.
 void ob_joints_project(ob_solver *s);
+// Lets the joint break that the substep has overloaded most. At its end.
+void ob_joints_end(ob_solver *s);
 
 #endif

@@ -47,6 +47,7 @@ typedef struct ob_island_pair {
 
 // A joint of which one or both objects are members.
 typedef struct ob_island_joint {
+	uint32_t number; // with which its load is reported
 	const ob_joint_passport *joint;
 	uint32_t object[2]; // indices of objects; OB_NO_FIXED: the world
 } ob_island_joint;
@@ -70,6 +71,14 @@ typedef struct ob_found_contact {
 	double impulse_b[OB_PAIR_ROWS];
 } ob_found_contact;
 
+// Action of a joint on its first object, as ob_joint_load: mean over the step, or over the substep in which it broke.
+typedef struct ob_found_joint {
+	uint32_t joint; // as ob_island_joint.number
+	uint32_t broke; // 1 = it has broken in this step
+	ob_vec3 force, torque;
+	double along;
+} ob_found_joint;
+
 // Reports and requests of the solver while it works.
 typedef struct ob_island_calls {
 	void *with;
@@ -83,9 +92,10 @@ typedef struct ob_island_calls {
 	void (*touch)(void *with, uint32_t a, uint32_t b, double impulse, ob_vec3 point);
 	// The engine could not move this object: the step fails.
 	void (*fail)(void *with, uint32_t object);
-	// Results, of the attempt that stands: each contact, then the motion of each member after the step. free: it touched
-	// nothing, so its flight goes on. m->reach is left to the caller.
+	// Results, of the attempt that stands: each contact, each joint, then the motion of each member after the step. free: it
+	// touched nothing, so its flight goes on. m->reach is left to the caller.
 	void (*contact)(void *with, const ob_found_contact *c);
+	void (*joint)(void *with, const ob_found_joint *j);
 	void (*motion)(void *with, const ob_island_object *object, ob_motion *m, bool free);
 } ob_island_calls;
 

@@ -201,11 +201,21 @@ static bool check_list(const check *c, uint32_t id)
 	return true;
 }
 
+// True if a joint of the object broke in the last step.
+static bool lost_a_joint(const check *c, uint32_t id)
+{
+	for (uint32_t j = ob_joint_first(c->data, id); j; j = ob_joint_next(c->data, j, id))
+		if (ob_joint_broke_now(c->u, j - 1))
+			return true;
+	return false;
+}
+
 // Checks that each object with an overlapping fat AABB has a pair with this one, which check_list has just found.
 static bool check_neighbours(const check *c, uint32_t id)
 {
 	uint64_t tests = 0;
-	if (!ob_schedule_is_dynamic(&c->data->schedule[id]) || c->when == OB_INVARIANTS_AT_RESUME)
+	if (!ob_schedule_is_dynamic(&c->data->schedule[id]) || c->when == OB_INVARIANTS_AT_RESUME ||
+	    lost_a_joint(c, id)) // it looks for neighbours before the next step
 		return true;
 	const uint32_t n = ob_index_query(c->u, id, c->near, c->ids, &tests);
 	for (uint32_t i = 0; i < n && i < c->ids; i++)

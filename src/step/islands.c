@@ -92,7 +92,8 @@ static void read_joints(ob_sim *s, uint32_t id)
 			x->in.joint = x->joint;
 		}
 		x->joint[x->in.joints++] =
-			(ob_island_joint){ .joint = joint,
+			(ob_island_joint){ .number = j - 1,
+					   .joint = joint,
 					   .object = { read_end(s, joint->object[0]), read_end(s, joint->object[1]) } };
 	}
 }
@@ -185,6 +186,11 @@ static void hand_over_contact(void *sim, const ob_found_contact *c)
 	ob_commit_contact(((ob_sim *)sim)->u, c);
 }
 
+static void hand_over_joint(void *sim, const ob_found_joint *j)
+{
+	ob_commit_joint(((ob_sim *)sim)->u, j);
+}
+
 static void publish_body(void *sim, const ob_island_object *object, ob_motion *m, bool free)
 {
 	ob_sim *s = sim;
@@ -207,6 +213,7 @@ ob_island_calls ob_island_calls_of(ob_sim *s)
 				  .touch = note_touch,
 				  .fail = fail,
 				  .contact = hand_over_contact,
+				  .joint = hand_over_joint,
 				  .motion = publish_body };
 }
 

@@ -616,6 +616,22 @@ static ob_phase after_baseline(const scheduler *c)
 	return OB_PHASE_COMPLETE;
 }
 
+// Looks for contacts of objects whose joint has broken in the step that is complete. Returns true if there are any.
+static bool free_broken(const scheduler *c)
+{
+	const ob_step_data *data = c->data;
+	bool any = false;
+	for (uint32_t i = 0; i < data->joints; i++)
+		for (int side = 0; ob_joint_broke_now(c->u, i) && side < 2; side++) {
+			const uint32_t id = data->joint[i].object[side];
+			if (id >= data->objects_max || !ob_schedule_is_dynamic(&data->schedule[id]))
+				continue;
+			ob_pairs_requery(c->u, id);
+			any = true;
+		}
+	return any;
+}
+
 static ob_phase complete_step(const scheduler *c)
 {
 	const struct ob_step_counts *count = c->data->count;
@@ -623,7 +639,7 @@ static ob_phase complete_step(const scheduler *c)
 	ob_step_work_reset(c->u);
 	if (!ob_cluster_gather(c->cluster, c->u) || !ob_invariants_check(c->u, OB_INVARIANTS_AFTER_STEP))
 		return OB_PHASE_PAUSE;
-	return begin_step(c);
+	return free_broken(c) ? OB_PHASE_BROADPHASE_START : begin_step(c);
 }
 
 // ---- the step

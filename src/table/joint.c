@@ -1,5 +1,5 @@
 // Joints of a universe: passports, and the list of each object; and the pairs that may touch. Written by the host before
-// the run; then constant.
+// the run; then constant. The solver of a joint's island writes its state in each step.
 #include <math.h>
 #include <string.h>
 
@@ -31,8 +31,35 @@ uint32_t ob_joint_next(const ob_step_data *data, uint32_t joint, uint32_t id)
 	return next > joint && next <= data->joints ? next : 0;
 }
 
+// A joint that breaks in the running step holds until that is complete: its island may be solved again.
+static bool has_broken(const ob_universe *u, uint32_t joint)
+{
+	const uint32_t broke = u->step_data.joint_state[joint].broke;
+	return broke && broke <= ob_step_count(u);
+}
+
+bool ob_joint_broke_now(const ob_universe *u, uint32_t joint)
+{
+	return u->step_data.joint_state[joint].broke == ob_step_count(u) && ob_step_count(u) > 0;
+}
+
+ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint)
+{
+	const ob_joint_state *s = &u->step_data.joint_state[joint];
+	const uint64_t step = ob_step_count(u), of = has_broken(u, joint) ? s->broke : step;
+	ob_joint_load out = { .broke = has_broken(u, joint) ? of : 0 };
+	if (s->stamp[of % 2] == of) {
+		out.force = s->version[of % 2].force;
+		out.torque = s->version[of % 2].torque;
+		out.along = s->version[of % 2].along;
+	}
+	return out;
+}
+
 bool ob_joint_holds(const ob_universe *u, const ob_joint_passport *j)
 {
+	if (has_broken(u, (uint32_t)(j - u->step_data.joint)))
+		return false;
 	for (int side = 0; side < 2; side++) {
 		if (j->object[side] == OB_JOINT_WORLD)
 			continue;
@@ -82,6 +109,7 @@ bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passpo
 	if (joint >= u->step_data.joints)
 		return false;
 	*out = u->step_data.joint[joint];
+	out->flags = (out->flags & ~(uint32_t)OB_JOINT_BROKEN) | (has_broken(u, joint) ? OB_JOINT_BROKEN : 0);
 	for (int side = 0; side < 2; side++) {
 		ob_passport p;
 		if (out->object[side] == OB_JOINT_WORLD)
@@ -89,8 +117,9 @@ bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passpo
 		if (!ob_universe_get_passport(u, out->object[side], &p) || p.generation != out->generation[side])
 			return false;
 	}
-	return out->kind < OB_JOINT_KINDS && axis_makes_sense(&out->axis) && pose_makes_sense(&out->frame[0]) &&
-	       pose_makes_sense(&out->frame[1]) && isfinite(out->length) && memchr(out->name, 0, sizeof out->name);
+	return out->kind < OB_JOINT_KINDS && axis_makes_sense(&out->axis) && out->breaks_force > 0 &&
+	       out->breaks_torque > 0 && pose_makes_sense(&out->frame[0]) && pose_makes_sense(&out->frame[1]) &&
+	       isfinite(out->length) && memchr(out->name, 0, sizeof out->name);
 }
 
 bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *value, double *rate)
@@ -101,7 +130,7 @@ bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *v
 	ob_joint_passport j;
 	ob_passport p;
 	ob_motion m;
-	if (!ob_universe_get_joint(u, joint, &j))
+	if (!ob_universe_get_joint(u, joint, &j) || j.flags & OB_JOINT_BROKEN)
 		return false;
 	ob_universe_get_info(u, &info);
 	for (int side = 0; side < 2; side++) {
@@ -112,4 +141,19 @@ bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *v
 		states[side] = ob_motion_at(&m, p.inertia, fmax(info.time, m.t0));
 	}
 	return ob_joint_value(&j, states, value, rate);
+}
+
+bool ob_universe_get_joint_load(const ob_universe *u, uint32_t joint, ob_joint_load *out)
+{
+	enum { TRIES = 8 };
+	ob_joint_passport j;
+	if (!ob_universe_get_joint(u, joint, &j))
+		return false;
+	for (int i = 0; i < TRIES; i++) {
+		const uint64_t step = ob_step_count(u);
+		*out = ob_joint_load_now(u, joint);
+		if (ob_step_count(u) == step)
+			break;
+	}
+	return isfinite(ob_norm2(out->force) + ob_norm2(out->torque) + out->along);
 }

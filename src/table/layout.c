@@ -106,6 +106,7 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_SCRIPT_CELL] = { ELEMENT(script_cell), PER_SCRIPT_CELL, 1, 0 },
 	[OB_AREA_SCRIPT_DUE] = { ELEMENT(script_due), PER_SCRIPT_CELL, 1, 0 },
 	[OB_AREA_JOINT] = { ELEMENT(joint), PER_JOINT, 1, 0 },
+	[OB_AREA_JOINT_STATE] = { ELEMENT(joint_state), PER_JOINT, 1, 0 },
 	[OB_AREA_NEXT_JOINT] = { ELEMENT(next_joint), PER_JOINT, 1, 0 },
 	[OB_AREA_FIRST_JOINT] = { ELEMENT(first_joint), PER_JOINED_OBJECT, 1, 0 },
 	[OB_AREA_SCRATCH] = { ELEMENT(scratch), PER_OBJECT, 4, 0 },
@@ -308,6 +309,7 @@ static void bind_step_data(ob_universe *u)
 	if (u->header.sizes.joints) {
 		data->joints = u->header.sizes.joints;
 		data->joint = (void *)(base + area[OB_AREA_JOINT]);
+		data->joint_state = (void *)(base + area[OB_AREA_JOINT_STATE]);
 		data->next_joint = (void *)(base + area[OB_AREA_NEXT_JOINT]);
 		data->first_joint = (void *)(base + area[OB_AREA_FIRST_JOINT]);
 	}

@@ -99,10 +99,11 @@ static void save_scripts(const ob_universe *u, ob_saved_universe *out)
 		memcpy(out->script_text, data->script_text, out->script_bytes);
 }
 
-static void save_motors(const ob_universe *u, ob_saved_universe *out)
+static void save_joints(const ob_universe *u, ob_saved_universe *out)
 {
+	const ob_step_data *data = &u->step_data;
 	for (uint32_t i = 0; i < out->joints; i++)
-		out->motor[i] = u->step_data.joint[i].axis.target;
+		out->joint[i] = (ob_saved_joint){ data->joint[i].axis.target, data->joint_state[i] };
 }
 
 void ob_universe_save(const ob_universe *u, ob_saved_universe *out)
@@ -113,7 +114,7 @@ void ob_universe_save(const ob_universe *u, ob_saved_universe *out)
 		save_object(u, id, out);
 	memcpy(out->plane, data->plane, out->planes * sizeof *out->plane);
 	save_pairs(u, out);
-	save_motors(u, out);
+	save_joints(u, out);
 }
 
 // ---- checking
@@ -249,7 +250,7 @@ static bool check_pairs(const ob_saved_universe *s, ob_error *e)
 
 static bool script_makes_sense(const ob_saved_universe *s, uint32_t cell)
 {
-	enum { KNOWN = (OB_SCRIPT_FEELS << 1) - 1 };
+	enum { KNOWN = (OB_SCRIPT_BROKE << 1) - 1 };
 	const ob_script_turn *t = &s->script_turn[cell];
 	const ob_script_cell *c = &s->script_cell[cell];
 	if (!t->script)
@@ -275,11 +276,21 @@ static bool check_scripts(const ob_saved_universe *s, ob_error *e)
 	return sense ? true : ob_fail(e, "what its scripts keep makes no sense");
 }
 
-static bool check_motors(const ob_saved_universe *s, ob_error *e)
+static bool joint_makes_sense(const ob_saved_joint *j, uint64_t step)
+{
+	const ob_joint_state *s = &j->state;
+	bool sense = isfinite(j->target) && s->broke <= step && !s->zero;
+	for (int i = 0; i < 2; i++)
+		sense = sense && s->stamp[i] <= step &&
+			all_finite((const double *)&s->version[i], sizeof s->version[i] / sizeof(double));
+	return sense;
+}
+
+static bool check_joints(const ob_saved_universe *s, ob_error *e)
 {
 	for (uint32_t i = 0; i < s->joints; i++)
-		if (!isfinite(s->motor[i]))
-			return ob_fail(e, "the motor of joint %u makes no sense", i);
+		if (!joint_makes_sense(&s->joint[i], s->step))
+			return ob_fail(e, "the state of joint %u makes no sense", i);
 	return true;
 }
 
@@ -290,7 +301,7 @@ bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e)
 	for (uint32_t id = 0; id < s->ids; id++)
 		if (!check_object(s, id, e))
 			return false;
-	return check_planes(s, e) && check_pairs(s, e) && check_scripts(s, e) && check_motors(s, e);
+	return check_planes(s, e) && check_pairs(s, e) && check_scripts(s, e) && check_joints(s, e);
 }
 
 // ---- loading
@@ -380,8 +391,10 @@ bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 	memcpy(data->pair, s->pair, s->pairs * sizeof *s->pair);
 	for (uint32_t i = 0; i < s->records; i++)
 		load_record(u, i, &s->record[i]);
-	for (uint32_t i = 0; i < s->joints; i++)
-		data->joint[i].axis.target = s->motor[i];
+	for (uint32_t i = 0; i < s->joints; i++) {
+		data->joint[i].axis.target = s->joint[i].target;
+		data->joint_state[i] = s->joint[i].state;
+	}
 	data->count->planes = s->planes;
 	data->count->pairs = s->pairs;
 	data->count->records_used = s->records;

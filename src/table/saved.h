@@ -29,6 +29,12 @@ typedef struct ob_saved_record {
 	uint32_t zero;
 } ob_saved_record;
 
+// State of a joint.
+typedef struct ob_saved_joint {
+	double target; // of its motor
+	ob_joint_state state;
+} ob_saved_joint;
+
 // The arrays belong to their creator.
 typedef struct ob_saved_universe {
 	uint64_t step; // complete
@@ -48,7 +54,7 @@ typedef struct ob_saved_universe {
 	uint32_t script_bytes; // size of the texts, with their directory; must be the same when resumed
 	char *script_text;
 	uint32_t joints; // length of the next one; must be the same when resumed
-	double *motor; // targets of the joints' motors
+	ob_saved_joint *joint;
 } ob_saved_universe;
 
 // Sets step, checked and the lengths, for allocating the arrays.

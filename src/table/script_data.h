@@ -32,6 +32,7 @@ enum { // ob_script_turn.flags
 	OB_SCRIPT_LEAVING = 1 << 5, // another script removes its object: on_stop is due
 	OB_SCRIPT_FEELS = 1 << 6, // it has an on_contact
 	OB_SCRIPT_WARNED = 1 << 7, // what it does is of no effect, as the cell's error says
+	OB_SCRIPT_BROKE = 1 << 8, // a joint of its object may have broken in the last step
 };
 
 typedef struct ob_script_turn {
@@ -123,7 +124,7 @@ typedef struct ob_script_counts {
 
 static inline bool ob_script_is_due(const ob_script_turn *t, uint64_t step)
 {
-	enum { NOW = OB_SCRIPT_EACH_STEP | OB_SCRIPT_TOUCHED | OB_SCRIPT_MAIL | OB_SCRIPT_LEAVING };
+	enum { NOW = OB_SCRIPT_EACH_STEP | OB_SCRIPT_TOUCHED | OB_SCRIPT_MAIL | OB_SCRIPT_LEAVING | OB_SCRIPT_BROKE };
 	return t->script && !(t->flags & OB_SCRIPT_STOPPED) &&
 	       (!(t->flags & OB_SCRIPT_STARTED) || t->flags & NOW || t->wake <= step);
 }

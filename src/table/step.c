@@ -103,6 +103,15 @@ void ob_requery_append(ob_universe *u, uint32_t id)
 		u->step_data.count->failure = OB_STEP_DAMAGED;
 }
 
+void ob_pairs_requery(ob_universe *u, uint32_t id)
+{
+	ob_step_data *data = &u->step_data;
+	if (data->neighbours[id].count == UINT32_MAX)
+		return;
+	data->neighbours[id].count = UINT32_MAX;
+	ob_requery_append(u, id);
+}
+
 bool ob_requery_lists(const ob_universe *u, uint32_t id)
 {
 	return __atomic_load_n(&u->requery_bit[id / 64], __ATOMIC_RELAXED) >> id % 64 & 1;

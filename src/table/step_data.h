@@ -148,6 +148,17 @@ typedef struct ob_index_cell {
 enum { OB_STEP_BLAME_MAX = 200 }; // bytes of a blame's text
 
 // The areas, as pointers into this process's mapping (made once per process by the table module).
+// State of a joint that changes by steps. A step writes the version that the step before has not written.
+typedef struct ob_joint_state {
+	uint32_t broke; // number of complete steps when it had broken, so from then on it holds nothing; 0: it holds
+	uint32_t zero;
+	uint32_t stamp[2]; // number of complete steps after which each version was the newest
+	struct {
+		ob_vec3 force, torque; // as ob_joint_load
+		double along;
+	} version[2];
+} ob_joint_state;
+
 typedef struct ob_step_data {
 	uint32_t objects_max, pairs_max, buckets, neighbours_max;
 	struct ob_step_counts {
@@ -229,6 +240,7 @@ typedef struct ob_step_data {
 	// 0 and NULL unless the scene has joints (joint.c).
 	uint32_t joints;
 	ob_joint_passport *joint; // [joints]
+	ob_joint_state *joint_state; // [joints]
 	uint32_t (*next_joint)[2]; // [joints]: 1 + the next one of either object; 0 ends
 	uint32_t *first_joint; // [object]: 1 + the first of its joints, ascending; 0: it has none
 } ob_step_data;

@@ -100,8 +100,13 @@ static inline uint32_t ob_joint_first(const ob_step_data *data, uint32_t id)
 	return first <= data->joints ? first : 0;
 }
 uint32_t ob_joint_next(const ob_step_data *data, uint32_t joint, uint32_t id);
-// True if the joint holds: its objects exist as those that it was made for.
+// True if a joint of the universe (ob_step_data.joint) holds: its objects exist as those that it was made for, and it has not
+// broken in a step before.
 bool ob_joint_holds(const ob_universe *u, const ob_joint_passport *j);
+// True if it broke in the last complete step.
+bool ob_joint_broke_now(const ob_universe *u, uint32_t joint);
+// Action of the joint in the last complete step, as ob_universe_get_joint_load.
+ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint);
 // True if the two may have contacts: neither is a sensor, their groups hit each other, and no joint lets them overlap.
 bool ob_may_touch(const ob_universe *u, uint32_t a, uint32_t b);
 // True if a sensor looks for such an object: it moves, is no sensor, and their groups hit each other.
@@ -238,6 +243,8 @@ void ob_task_reset_from(ob_universe *u, uint32_t total, uint32_t first, uint32_t
 bool ob_task_claim(ob_universe *u, uint32_t *index);
 // Appends to the list of objects whose neighbours the broad phase must query again (any worker, any order).
 void ob_requery_append(ob_universe *u, uint32_t id);
+// Has the object look for its neighbours, unless that is pending.
+void ob_pairs_requery(ob_universe *u, uint32_t id);
 // Takes an object off the list, if it is there. The host, at a pause.
 void ob_requery_drop(ob_universe *u, uint32_t id);
 // The list so far; reset empties it. Only for the scheduler.

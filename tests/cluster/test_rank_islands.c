@@ -160,24 +160,24 @@ static void write_world(rank *r)
 }
 
 // Lists the pairs that link bodies of two ranks.
-static uint32_t list_links_across(const rank *r, bool late, uint32_t *pair)
+static uint32_t list_links_across(const rank *r, bool late, ob_rank_link *link)
 {
 	uint32_t n = 0;
 	for (uint32_t i = 0; i < r->s->pairs; i++) {
 		const ob_pair_key *k = &ob_universe_step_data(r->u)->pair[i];
 		if ((late ? k->late : k->expected) && ob_pair_is_across(r->u, k))
-			pair[n++] = i;
+			link[n++] = (ob_rank_link){ k->a, k->b };
 	}
 	return n;
 }
 
 static void share(rank *r, bool late)
 {
-	uint32_t pair[MOST_PAIRS];
+	ob_rank_link link[MOST_PAIRS];
 	bool islands;
-	const uint32_t n = list_links_across(r, late, pair);
+	const uint32_t n = list_links_across(r, late, link);
 	r->met = n;
-	r->wrong += !ob_rank_islands_share(r->islands, r->u, &r->p, pair, n, &islands) || !islands;
+	r->wrong += !ob_rank_islands_share(r->islands, r->u, &r->p, link, n, &islands) || !islands;
 	ob_islands_list_members(r->u);
 	ob_islands_deal(r->u, r->parts.regions);
 	ob_islands_list_dealt_pairs(r->u, r->parts.halo);
@@ -185,14 +185,13 @@ static void share(rank *r, bool late)
 
 static void build(rank *r)
 {
-	uint32_t pair[MOST_PAIRS];
+	ob_rank_link link[MOST_PAIRS];
 	ob_islands_begin(r->u);
-	const uint32_t n = list_links_across(r, false, pair);
+	const uint32_t n = list_links_across(r, false, link);
 	for (uint32_t i = 0; i < n; i++) {
-		const ob_pair_key *k = &ob_universe_step_data(r->u)->pair[pair[i]];
 		for (int side = 0; side < 2; side++)
-			if (ob_home_rank(r->u, side ? k->b : k->a) == r->p.rank)
-				ob_involve_due(r->u, side ? k->b : k->a);
+			if (ob_home_rank(r->u, side ? link[i].b : link[i].a) == r->p.rank)
+				ob_involve_due(r->u, side ? link[i].b : link[i].a);
 	}
 	for (uint32_t i = 0; i < ob_islands_link_tasks(r->u); i++)
 		ob_islands_link(r->u, i);

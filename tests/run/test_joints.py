@@ -82,6 +82,30 @@ for i, x in ipairs { -.4, .4 } do
 end
 """
 
+# Joints that break: of a shelf on which a ball lands, of a chain under a load, of a swing, and at once: the cap then falls
+# on its post, which it did not touch before.
+BREAKS = """scene { title = "Breaks", duration = 1.5 }
+ground {}
+local telling = [[
+	function on_break(name, force, torque) print("@broke " .. name, time(), force, torque) end
+	function on_start() self:wake(1.4) end
+	function on_wake() print("@at", self:name(), self:position()) end
+]]
+box { name = "shelf", size = { 1, .4, .05 }, at = { .5, 0, 1.5 }, mass = 5, script = telling }
+fixed { "shelf", name = "bracket", at = { 0, 0, 1.5 }, breaks_at = { torque = 100 } }
+sphere { name = "ball", radius = .15, at = { .8, 0, 2 }, mass = 20 }
+box { name = "post", size = { .4, .4, .4 }, at = { 3, 0, .2 }, mass = 4 }
+box { name = "cap", size = { .4, .4, .1 }, at = { 3, 0, .46 }, mass = 1, script = telling }
+fixed { "cap", "post", name = "glue", at = { 3, 0, .4 }, breaks_at = { force = 9 } }
+for i = 1, 4 do
+	sphere { name = "link" .. i, radius = .05, at = { -2, 0, 3.2 - .2 * i }, mass = i < 4 and .1 or 5, script = telling }
+	ball { "link" .. i, i > 1 and "link" .. i - 1 or nil, name = "eye" .. i, at = { -2, 0, 3.3 - .2 * i },
+		breaks_at = i == 3 and { force = 50 } or nil }
+end
+sphere { name = "bob", radius = .1, at = { 1, 3, 2 }, mass = 2, script = telling }
+hinge { "bob", name = "rope", at = { 0, 3, 2 }, axis = { 0, 1, 0 }, breaks_at = { force = 40 }, friction = .1 }
+"""
+
 
 def kept(folder, text):
 	path = os.path.join(folder, "scene.lua")
@@ -108,7 +132,7 @@ class Joints(unittest.TestCase):
 			self.assertEqual(len({state(*scene, *way)[0] for way in WAYS}), 1, scene)
 
 	def test_mechanisms(self):
-		for text in (MECHANISMS, DRIVES, CRANK):
+		for text in (MECHANISMS, DRIVES, CRANK, BREAKS):
 			with tempfile.TemporaryDirectory() as folder:
 				path = kept(folder, text)
 				self.assertEqual(len({state(path, *way)[0] for way in WAYS}), 1)
@@ -124,6 +148,34 @@ class Joints(unittest.TestCase):
 		self.assertAlmostEqual(at["seat"][2], 1 - 15 * 9.81 / 2000, delta=1e-3)
 		self.assertAlmostEqual(at["lift"][2], 1.2, delta=1e-6)
 		self.assertAlmostEqual(at["car"][3], 2, delta=.01)
+
+	def test_breaks(self):
+		with tempfile.TemporaryDirectory() as folder:
+			done = program.call("run", kept(folder, BREAKS), "--measure", "end")
+		self.assertEqual(done.returncode, 0, done.stderr)
+		broke = {name: (float(t), float(force), float(torque)) for name, t, force, torque in
+			re.findall(r"@broke (\w+)\s+(\S+)\s+(\S+)\s+(\S+)", done.stderr)}
+		self.assertEqual(set(broke), {"bracket", "glue", "eye3", "rope"})
+		self.assertGreater(broke["bracket"][2], 100)
+		self.assertGreater(broke["rope"][1], 40)
+		self.assertLess(broke["rope"][1], 42)
+		self.assertLess(broke["eye3"][0], .05)
+		at = {name: [float(x) for x in rest.split()] for name, rest in re.findall(r"@at\s+(\w+)(.*)", done.stderr)}
+		self.assertAlmostEqual(at["cap"][2], .45, delta=1e-3)
+		self.assertAlmostEqual(at["link2"][2], 2.8, delta=.05)
+		self.assertLess(at["link3"][2], .3)
+
+	# A joint that has broken stays broken, whenever the run is saved, and whoever dies.
+	def test_breaks_again(self):
+		with tempfile.TemporaryDirectory() as folder:
+			path, saved = kept(folder, BREAKS), os.path.join(folder, "kept.ck")
+			bits = state(path)[0]
+			for duration in (1 / 60, .2, .8):
+				state(path, "--duration", duration, "--checkpoint", saved)
+				self.assertEqual(state("--resume", saved, "--duration", 1.5)[0], bits)
+			killed, words = state(path, "--isolation", "process", "--workers", 2, "--fault", "kill:p=.01,seed=3")
+			self.assertRegex(words, r"deaths +[1-9]")
+			self.assertEqual(killed, bits)
 
 	def test_script(self):
 		with tempfile.TemporaryDirectory() as folder:

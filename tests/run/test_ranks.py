@@ -23,6 +23,8 @@ SCENES = {
 	"cradle": ["--duration", "1"],
 	"machines": ["--duration", "1"],
 	"flock": ["--duration", "1"],
+	"wrecking_ball": ["-D", "links=4", "-D", "rows=3", "--duration", "1.4"],
+	"bridge": ["-D", "planks=8", "--duration", "1"],
 }
 # In contact in the first solution of its step 25, and not in the last.
 PARTED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "parted")

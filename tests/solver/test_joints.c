@@ -17,6 +17,7 @@ typedef struct mechanism {
 	ob_passport passport[BODIES];
 	ob_motion motion[BODIES];
 	ob_joint_passport joint[JOINTS];
+	ob_found_joint load[JOINTS];
 	ob_solver solver;
 	uint64_t steps;
 	ob_run_settings run;
@@ -44,6 +45,11 @@ static void keep_contact(void *with, const ob_found_contact *c)
 	CHECK(false);
 }
 
+static void keep_joint(void *with, const ob_found_joint *j)
+{
+	((mechanism *)with)->load[j->joint] = *j;
+}
+
 static void keep_motion(void *with, const ob_island_object *object, ob_motion *m, bool free)
 {
 	((mechanism *)with)->motion[object->id] = *m;
@@ -53,7 +59,8 @@ static void keep_motion(void *with, const ob_island_object *object, ob_motion *m
 static mechanism *create(double g)
 {
 	mechanism *m = calloc(1, sizeof *m);
-	const ob_island_calls calls = { m, spend, NULL, begin_attempt, touch, fail, keep_contact, keep_motion };
+	const ob_island_calls calls = { m,    spend,        NULL,       begin_attempt, touch,
+					fail, keep_contact, keep_joint, keep_motion };
 	m->run = ob_run_settings_default();
 	m->run.gravity = ob_v3(0, 0, -g);
 	m->run.step_length = step_length;
@@ -90,7 +97,9 @@ static ob_quat turned_back(ob_quat q)
 static ob_joint_passport *join(mechanism *m, ob_joint_kind kind, uint32_t a, uint32_t b, ob_vec3 at, ob_quat q)
 {
 	ob_joint_passport *j = &m->joint[m->joints++];
-	*j = (ob_joint_passport){ .object = { a, b }, .kind = kind };
+	*j = (ob_joint_passport){
+		.object = { a, b }, .kind = kind, .breaks_force = INFINITY, .breaks_torque = INFINITY
+	};
 	for (int side = 0; side < 2; side++) {
 		const uint32_t id = j->object[side];
 		if (id == OB_JOINT_WORLD) {
@@ -118,7 +127,7 @@ static void step(mechanism *m)
 						.now = { { before[k].p, before[k].q }, before[k].v, before[k].w },
 						.path = before[k].path };
 	for (uint32_t k = 0; k < m->joints; k++) {
-		joint[k] = (ob_island_joint){ .joint = &m->joint[k] };
+		joint[k] = (ob_island_joint){ .number = k, .joint = &m->joint[k] };
 		for (int side = 0; side < 2; side++)
 			joint[k].object[side] =
 				m->joint[k].object[side] == OB_JOINT_WORLD ? OB_NO_FIXED : m->joint[k].object[side];
@@ -308,7 +317,9 @@ static void test_cone(void)
 		(ob_joint_passport){ .object = { bob, OB_JOINT_WORLD },
 				     .kind = OB_JOINT_DISTANCE,
 				     .frame = { { { 0, 0, 0 }, { 1, 0, 0, 0 } }, { { 0, 0, 0 }, { 1, 0, 0, 0 } } },
-				     .length = 1 };
+				     .length = 1,
+				     .breaks_force = INFINITY,
+				     .breaks_torque = INFINITY };
 	m->motion[bob].v = ob_v3(0, rate * sin(tilt), 0);
 	for (int i = 0; i < 600; i++) {
 		step(m);
@@ -642,6 +653,110 @@ static void test_servo(void)
 	destroy(m);
 }
 
+// A motor that holds a rate against a weight: its mean torque is published, and the energy gained is its work.
+static void test_work(void)
+{
+	mechanism *m = create_pendulum(0);
+	ob_joint_axis *a = drive(m);
+	a->motor = OB_MOTOR_RATE, a->target = -2, a->most = INFINITY;
+	steps(m, 2);
+	const double begin = energy_of(m);
+	double work = 0, most = 0;
+	for (int i = 0; i < 300; i++) {
+		step(m);
+		work += m->load[0].along * a->target * step_length;
+		most = ob_max(most, fabs(work));
+		CHECK_NEAR(energy_of(m) - begin, work, 1e-6 * most);
+		CHECK_NEAR(m->load[0].torque.y, m->load[0].along, 1e-9 * most);
+	}
+	CHECK(most > 10);
+	destroy(m);
+}
+
+// A beam that the world holds at one end: its weight, and the moment of it.
+static void test_load(void)
+{
+	mechanism *m = create(gravity);
+	const uint32_t beam = add_body(m, OB_SHAPE_BOX, ob_v3(2, .2, .2), 3, ob_v3(1, 0, 0));
+	join(m, OB_JOINT_FIXED, beam, OB_JOINT_WORLD, ob_v3(0, 0, 0), ob_quat_identity());
+	steps(m, 10);
+	CHECK(ob_norm(ob_sub(m->load[0].force, ob_v3(0, 0, 3 * gravity))) < 1e-8);
+	CHECK(ob_norm(ob_sub(m->load[0].torque, ob_v3(0, -3 * gravity, 0))) < 1e-8);
+	CHECK(m->load[0].along == 0 && !m->load[0].broke);
+	m->joint[0].breaks_torque = 3 * gravity * (1 + 1e-6);
+	steps(m, 10);
+	CHECK(!m->load[0].broke);
+	m->joint[0].breaks_torque = 3 * gravity * (1 - 1e-6);
+	step(m);
+	CHECK(m->load[0].broke);
+	CHECK_NEAR(m->motion[beam].v.z, -gravity * step_length, 1e-9); // from the step's begin it falls
+	CHECK(ob_norm(m->motion[beam].w) < 1e-9);
+	destroy(m);
+}
+
+// Swing of a bob on a ball joint, let go level: angle below the level, its rate, and the joint's force.
+typedef struct swing {
+	double angle, rate;
+} swing;
+
+static swing swung(swing s, double k, double h)
+{
+	const double a1 = k * cos(s.angle), r2 = s.rate + .5 * h * a1, a2 = k * cos(s.angle + .5 * h * s.rate),
+		     r3 = s.rate + .5 * h * a2, a3 = k * cos(s.angle + .5 * h * r2), r4 = s.rate + h * a3,
+		     a4 = k * cos(s.angle + h * r3);
+	return (swing){ s.angle + h / 6 * (s.rate + 2 * r2 + 2 * r3 + r4),
+			s.rate + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4) };
+}
+
+// The joint breaks within a substep of the instant at which its force is reached.
+static void test_break(void)
+{
+	enum { FINE = 1000 };
+	const double mass = 2, radius = .1, inertia = .4 * mass * radius * radius + mass, k = mass * gravity / inertia;
+	mechanism *m = create(gravity);
+	const uint32_t bob = add_body(m, OB_SHAPE_SPHERE, ob_v3(radius, radius, radius), mass, ob_v3(1, 0, 0));
+	ob_joint_passport *j = join(m, OB_JOINT_BALL, bob, OB_JOINT_WORLD, ob_v3(0, 0, 0), ob_quat_identity());
+	const double sub = step_length / m->run.substeps, fine = sub / FINE;
+	j->breaks_force = 2 * mass * gravity;
+	swing now = { 0, 0 };
+	double reached = 0, broke = 0;
+	for (double force = 0; force < j->breaks_force;) {
+		now = swung(now, k, fine);
+		reached += fine;
+		const double pull = mass * now.rate * now.rate + mass * gravity * sin(now.angle),
+			     across = mass * (k - gravity) * cos(now.angle);
+		force = sqrt(pull * pull + across * across);
+	}
+	for (int i = 0; i < 100 && !m->load[0].broke; i++)
+		step(m);
+	CHECK(m->load[0].broke && ob_norm(m->load[0].force) > j->breaks_force);
+	CHECK(ob_norm(m->load[0].force) < 1.1 * j->breaks_force);
+	for (now = (swing){ 0, 0 }; now.rate < m->motion[bob].w.y;
+	     now = swung(now, k, fine)) // it keeps its spin from then on
+		broke += fine;
+	CHECK(fabs(broke - reached) < sub);
+	destroy(m);
+}
+
+// The weakest of three links breaks, and the others hold what is left.
+static void test_weakest(void)
+{
+	mechanism *m = create(gravity);
+	for (uint32_t i = 0; i < 3; i++) {
+		const uint32_t link = add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, .1, .1), 1, ob_v3(0, 0, -1. - i));
+		ob_joint_passport *j = join(m, OB_JOINT_BALL, link, i ? link - 1 : OB_JOINT_WORLD, ob_v3(0, 0, -.0 - i),
+					    ob_quat_identity());
+		j->breaks_force = (i == 1 ? 1.9 : 2.5) * gravity; // they bear 3, 2 and 1 weights
+	}
+	m->joint[0].breaks_force = 3.5 * gravity;
+	step(m);
+	CHECK(!m->load[0].broke && m->load[1].broke && !m->load[2].broke);
+	CHECK_NEAR(m->motion[0].p.z, -1, 1e-12);
+	CHECK_NEAR(m->load[0].force.z, gravity, 1e-8);
+	CHECK_NEAR(ob_norm(m->load[2].force), 0, 1e-8); // they fall together
+	destroy(m);
+}
+
 int main(void)
 {
 	test_period();
@@ -662,5 +777,9 @@ int main(void)
 	test_friction();
 	test_motor();
 	test_servo();
+	test_work();
+	test_load();
+	test_break();
+	test_weakest();
 	return check_end();
 }

@@ -72,7 +72,7 @@ static tower *create(double gravity)
 		.id = PLANE, .flags = OB_OBJECT_PRESENT | OB_OBJECT_STATIC, .shape = OB_SHAPE_PLANE, .friction = .5
 	};
 	t->motion[PLANE] = (ob_motion){ .q = { 1, 0, 0, 0 } };
-	const ob_island_calls calls = { t, spend, NULL, begin_attempt, touch, fail, keep_contact, keep_motion };
+	const ob_island_calls calls = { t, spend, NULL, begin_attempt, touch, fail, keep_contact, NULL, keep_motion };
 	if (!ob_solver_create(&t->solver, &run, &calls, CUBES))
 		abort();
 	return t;
