@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "contact/manifold.h"
+#include "contact/pairs.h"
 #include "contact/polytope.h"
 #include "elementary/lanes.h"
 
@@ -34,8 +34,6 @@ typedef struct axis_gaps {
 	double largest_face, largest_edge;
 	int face, edge; // axes of the largest gaps: faces 0 .. 5, edges 0 .. 8
 } axis_gaps;
-
-static const double same_axis = .99; // cosine: axes that count as one
 
 static inline lanes lanes_of_three(double x, double y, double z)
 {
@@ -171,21 +169,42 @@ static double face_cosine(const frame_pair *f, int k, int l)
 	return k < 3 ? f->q[k][l - 3] : f->q[l][k - 3];
 }
 
+// Normal of a face of either box, from b to a.
+static ob_vec3 face_normal(const ob_placed *a, const ob_placed *b, int face)
+{
+	const ob_vec3 n = ob_column(face < 3 ? &a->r : &b->r, face % 3);
+	return ob_dot(n, ob_sub(a->p, b->p)) < 0 ? ob_scale(n, -1) : n;
+}
+
+// Normal across an edge of each box, from b to a.
+static ob_vec3 edge_normal(const ob_placed *a, const ob_placed *b, int edge)
+{
+	const ob_vec3 n = ob_cross(ob_column(&a->r, edge / 3), ob_column(&b->r, edge % 3)), d = ob_sub(b->p, a->p);
+	return ob_scale(n, (ob_dot(n, d) > 0 ? -1 : 1) / ob_norm(n));
+}
+
+static ob_vec3 normal_along(const ob_placed *a, const ob_placed *b, int axis)
+{
+	return axis < FACES ? face_normal(a, b, axis) : edge_normal(a, b, axis - FACES);
+}
+
 // Chooses an axis, among those that separate the boxes or along which they touch no deeper than at rest. The one that
 // closes last is the one along which they will meet: as long as one stays open, nothing is hit along the others. So a
 // box that slides over a seam of two coplanar faces does not hit the side of the next one. Among axes that never close,
 // those of touching faces come first: something else holds the boxes there. Returns -1 if no axis separates. crossing:
-// the boxes touch along two axes of faces that do not close; edge to edge, they may go on along either.
-static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair *f, const axis_gaps *s, bool *crossing)
+// the boxes touch along two axes of faces that do not close; edge to edge, they may go on along either. together: two
+// axes close last at the same instant; the boxes meet corner to corner, or with parallel edges.
+static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair *f, const axis_gaps *s, bool *crossing,
+			bool *together)
 {
 	frame_rates d;
 	int best = -1, touching = -1;
 	unsigned open = 0;
-	double latest = -1, largest = 0, steadiest = INFINITY;
-	const double never = ob_time_to_close(a, b, 1, 0), rest = f->rest;
-	*crossing = false;
+	double latest = -1, largest = 0, steadiest = INFINITY, fastest = 0;
+	const double never = ob_time_to_close(a, b, 1, 0), rest = f->rest, touch = rest + same_gap * f->thin;
+	*crossing = *together = false;
 	for (int k = 0; k < AXES / 3; k++)
-		open |= (lanes_bits(s->gap[k] - (3 * k < FACES ? 0 : f->discount) > -rest) & 7u) << 3 * k;
+		open |= (lanes_bits(s->gap[k] - (3 * k < FACES ? 0 : f->discount) > -touch) & 7u) << 3 * k;
 	if (open == 0)
 		return -1;
 	if ((open & (open - 1)) == 0)
@@ -202,24 +221,15 @@ static int closing_last(const ob_placed *a, const ob_placed *b, const frame_pair
 			    (fabs(rate) == steadiest && gap > gap_along(s, touching)))
 				steadiest = fabs(rate), touching = axis;
 		}
+		fastest = ob_max(fastest, -rate);
+		if (best >= 0 && latest < never && fabs(time - latest) * fastest <= same_gap * f->thin)
+			*together |= ob_dot(normal_along(a, b, best), normal_along(a, b, axis)) < same_axis;
+		else if (time > latest)
+			*together = false;
 		if (time > latest || (time == latest && gap > largest))
 			latest = time, largest = gap, best = axis;
 	}
 	return touching >= 0 ? touching : best;
-}
-
-// Normal of a face of either box, from b to a.
-static ob_vec3 face_normal(const ob_placed *a, const ob_placed *b, int face)
-{
-	const ob_vec3 n = ob_column(face < 3 ? &a->r : &b->r, face % 3);
-	return ob_dot(n, ob_sub(a->p, b->p)) < 0 ? ob_scale(n, -1) : n;
-}
-
-// Normal across an edge of each box, from b to a.
-static ob_vec3 edge_normal(const ob_placed *a, const ob_placed *b, int edge)
-{
-	const ob_vec3 n = ob_cross(ob_column(&a->r, edge / 3), ob_column(&b->r, edge % 3)), d = ob_sub(b->p, a->p);
-	return ob_scale(n, (ob_dot(n, d) > 0 ? -1 : 1) / ob_norm(n));
 }
 
 // Manifold of two edges: one point, midway between their nearest points.
@@ -391,7 +401,7 @@ static void boxes(const ob_placed *a, const ob_placed *b, double margin, ob_mani
 {
 	frame_pair f;
 	axis_gaps s;
-	bool crossing = false;
+	bool crossing = false, together = false;
 	int axis = -1;
 	frame_pair_init(&f, a, b);
 	find_face_gaps(&f, &s);
@@ -401,8 +411,12 @@ static void boxes(const ob_placed *a, const ob_placed *b, double margin, ob_mani
 	out->points = 0;
 	out->separation = ob_max(s.largest_face, s.largest_edge);
 	if (out->separation <= margin) {
-		axis = closing_last(a, b, &f, &s, &crossing);
+		axis = closing_last(a, b, &f, &s, &crossing, &together);
 		out->valid_path = crossing ? f.rest : INFINITY;
+	}
+	if (together && !crossing) {
+		ob_manifold_polytopes(a, b, margin, out);
+		return;
 	}
 	if (out->separation > margin || crossing) {
 		out->normal = axis_normal(a, b, &s);

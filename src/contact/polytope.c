@@ -345,28 +345,33 @@ static double opening_rate(const polytope *a, const polytope *b, const axis *x)
 }
 
 // Chooses an axis as between boxes: the one that closes last, but first a touching face that does not close. Returns
-// NULL if no axis separates. crossing: the shapes touch along two crossing faces that do not close.
+// NULL if no axis separates. crossing: the shapes touch along two crossing faces that do not close. together: the sum of
+// the normals of axes that close last at the same instant; otherwise 0.
 static const axis *closing_last(const polytope *a, const polytope *b, const axes *s, double rest, double discount,
-				bool *crossing)
+				bool *crossing, ob_vec3 *together)
 {
 	const axis *best = NULL, *touching = NULL;
-	double latest = -1, largest = 0, steadiest = INFINITY;
-	const double never = ob_time_to_close(a->placed, b->placed, 1, 0);
-	*crossing = false;
+	double latest = -1, largest = 0, steadiest = INFINITY, all[OPEN_MAX], fastest = 0;
+	const double never = ob_time_to_close(a->placed, b->placed, 1, 0), thin = ob_min(a->thin, b->thin);
+	*crossing = false, *together = ob_v3(0, 0, 0);
 	if (s->open <= 1)
 		return s->open ? &s->list[0] : NULL;
 	for (int k = 0; k < s->open; k++) {
 		const axis *x = &s->list[k];
 		const double gap = x->gap - (x->is_face ? 0 : discount), rate = opening_rate(a, b, x);
-		const double time = ob_time_to_close(a->placed, b->placed, gap + rest, rate);
+		const double time = all[k] = ob_time_to_close(a->placed, b->placed, gap + rest, rate);
 		if (time == never && x->is_face && fabs(gap) <= rest) {
 			*crossing |= touching && fabs(ob_dot(touching->normal, x->normal)) < crossing_faces;
 			if (fabs(rate) < steadiest || (fabs(rate) == steadiest && gap > touching->gap))
 				steadiest = fabs(rate), touching = x;
 		}
+		fastest = ob_max(fastest, -rate);
 		if (time > latest || (time == latest && gap > largest))
 			latest = time, largest = gap, best = x;
 	}
+	for (int k = 0; latest < never && fastest > 0 && k < s->open; k++)
+		if ((latest - all[k]) * fastest <= same_gap * thin)
+			*together = ob_add(*together, s->list[k].normal);
 	return touching ? touching : best;
 }
 
@@ -594,6 +599,53 @@ static void edge_manifold(const polytope *a, const polytope *b, const axis *x, o
 	m->at[0] = ob_add(origin, ob_scale(ob_add(xa, xb), .5));
 }
 
+// Collects the one or two corners that are lowest along n. Returns their number; 0 for more.
+static int collect_lowest(const polytope *x, ob_vec3 n, ob_vec3 at[2])
+{
+	const ob_vec3 l = to_local(x, n);
+	const double low = lowest_along(x, l) + as_low * x->radius;
+	int found = 0;
+	for (uint32_t k = 0; k < x->shape->corners; k++)
+		if (ob_dot(l, x->corner[k]) <= low) {
+			if (found == 2)
+				return 0;
+			at[found++] = corner_of(x, k);
+		}
+	return found;
+}
+
+// Manifold of a corner that meets a corner, or of two parallel edges, exactly head-on: the faces on all sides close at
+// the same instant, and none of them decides. The mean of their normals does, so mirrored bodies stay mirrored.
+// Returns false where other features meet.
+static bool corners_manifold(const polytope *a, const polytope *b, ob_vec3 n, ob_vec3 origin, double margin,
+			     ob_manifold *m)
+{
+	ob_vec3 xa[2], xb[2];
+	const int in_a = collect_lowest(a, n, xa), in_b = collect_lowest(b, ob_scale(n, -1), xb);
+	if (!in_a || in_a != in_b)
+		return false;
+	const double gap = ob_dot(n, ob_sub(xa[0], xb[0]));
+	m->normal = n;
+	m->points = gap > margin ? 0 : in_a;
+	m->valid_path = ob_min(a->placed->rest_depth, b->placed->rest_depth);
+	if (in_a == 1) {
+		m->at[0] = ob_add(origin, ob_scale(ob_add(xa[0], xb[0]), .5)), m->gap[0] = gap;
+		return true;
+	}
+	// ends of the stretch over which both edges run
+	const ob_vec3 way = ob_sub(xa[1], xa[0]), along = ob_scale(way, 1 / ob_norm(way));
+	const double to = ob_norm(way), b0 = ob_dot(along, ob_sub(xb[0], xa[0])),
+		     b1 = ob_dot(along, ob_sub(xb[1], xa[0]));
+	const double end[2] = { ob_max(0, ob_min(b0, b1)), ob_min(to, ob_max(b0, b1)) };
+	if (fabs(fabs(b1 - b0) - ob_norm(ob_sub(xb[1], xb[0]))) > as_low * b->radius || !(end[0] < end[1]))
+		return false;
+	for (int k = 0; k < 2; k++) {
+		m->at[k] = ob_add(origin, ob_madd(ob_madd(xa[0], end[k], along), -.5 * gap, n));
+		m->gap[k] = gap;
+	}
+	return true;
+}
+
 // Finds the face whose normal is nearest to the axis of two edges, among the faces of these edges. Returns false if
 // none is near enough.
 static bool face_along(const polytope *a, const polytope *b, const axis *x, uint32_t *face, bool *of_b)
@@ -649,19 +701,25 @@ void ob_manifold_polytopes(const ob_placed *pa, const ob_placed *pb, double marg
 		return;
 	polytope_init(&a, pa, origin);
 	polytope_init(&b, pb, origin);
-	const double thin = ob_min(a.thin, b.thin), discount = ob_min(prefer_face * thin, rest);
-	try_faces(&s, &a, &b, false, rest, &heights_a);
-	try_faces(&s, &b, &a, true, rest, &heights_b);
+	const double thin = ob_min(a.thin, b.thin), discount = ob_min(prefer_face * thin, rest),
+		     touch = rest + same_gap * thin;
+	try_faces(&s, &a, &b, false, touch, &heights_a);
+	try_faces(&s, &b, &a, true, touch, &heights_b);
 	out->separation = s.face.gap;
 	if (s.face.gap > margin + nearby * thin)
 		return;
-	try_edges(&s, &a, &b, ob_min(s.face.gap, discount - rest), rest, discount, &heights_a, &heights_b);
+	try_edges(&s, &a, &b, ob_min(s.face.gap, discount - touch), touch, discount, &heights_a, &heights_b);
 	out->separation = ob_max(s.face.gap, s.edge.gap);
 	if (out->separation > margin)
 		return;
-	const axis *x = closing_last(&a, &b, &s, rest, discount, &crossing);
+	ob_vec3 together;
+	const axis *x = closing_last(&a, &b, &s, rest, discount, &crossing, &together);
 	out->valid_path = crossing ? rest : INFINITY;
 	if (crossing)
+		return;
+	const double length = ob_norm(together);
+	if (x && length > 0 && ob_dot(together, x->normal) < same_axis * length &&
+	    corners_manifold(&a, &b, ob_scale(together, 1 / length), origin, margin, out))
 		return;
 	if (!x)
 		x = s.edge.gap > s.face.gap + discount - prefer_face_when_deep * s.face.gap ? &s.edge : &s.face;

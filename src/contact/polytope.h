@@ -6,6 +6,8 @@
 #include <ob/hull.h>
 
 // Decisions about boxes and other polyhedra.
+static const double same_axis = .99; // cosine: axes that count as one
+static const double same_gap = 1e-9; // fraction of the thickness: axes this near to closing at one instant do
 static const double along_face = .99; // cosine: an axis of edges this near counts as a face's normal
 // Fraction of the thickness by which an axis of edges must separate more than a face's. The resting depth limits it:
 // bodies get that deep before the edge holds them.

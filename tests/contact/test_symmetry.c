@@ -136,8 +136,40 @@ static void test_flat(double tilt, bool rests)
 	CHECK(all == 0);
 }
 
+// A box and its mirror image meet head-on: an edge parallel to the other's, or a corner, in front. No axis of a face
+// or of edges decides, so the normal is the way on which they meet.
+static void test_head_on(bool corner)
+{
+	uint64_t seed = 3;
+	int wrong = 0, failed = 0;
+	for (int i = 0; i < 4000; i++) {
+		const ob_vec3 half = random_size(&seed), front = { half.x, half.y, corner ? half.z : 0 };
+		const double lean = within(&seed, -.6, .6), apart = i % 2 ? within(&seed, 0, 1e-4) : 1e-12;
+		ob_quat q = ob_quat_turn(ob_quat_identity(), ob_v3(0, 0, corner ? 0 : lean - M_PI / 4));
+		if (corner) // the diagonal of a cube forward, then a little beside
+			q = ob_quat_mul(ob_quat_turn(ob_quat_identity(), random_vector(&seed, .1)),
+					ob_quat_turn(ob_quat_identity(),
+						     ob_scale(ob_v3(0, M_SQRT1_2, -M_SQRT1_2), acos(1 / sqrt(3)))));
+		const ob_mat3 r = ob_quat_matrix(q);
+		ob_placed a = place(OB_SHAPE_BOX, half, ob_sub(ob_v3(-apart / 2, 0, 0), ob_rotate(&r, front)), q);
+		a.v.x = within(&seed, .1, 10), a.rest_depth = i % 3 ? 2e-4 : 1e-6, a.far_future = 10;
+		const view mirror = { .moved.q = ob_quat_identity(), .mirrored = true };
+		const ob_placed b = seen(&mirror, &a);
+		view w = random_view(&seed, i % 16);
+		ob_manifold m = { .valid_path = INFINITY };
+		ob_manifold_find(&a, &b, 3e-3, &m);
+		wrong += m.points != (corner ? 1 : 2) || ob_norm(ob_sub(m.normal, ob_v3(-1, 0, 0))) > 1e-7;
+		failed += !same(&a, &b, 3e-3, &w);
+	}
+	printf("head-on, %s: %d have another normal, %d are seen otherwise\n", corner ? "corners" : "edges", wrong,
+	       failed);
+	CHECK(wrong == 0 && failed == 0);
+}
+
 int main(void)
 {
+	test_head_on(false);
+	test_head_on(true);
 	test_random(OB_SHAPE_BOX, OB_SHAPE_BOX);
 	test_random(OB_SHAPE_SPHERE, OB_SHAPE_BOX);
 	for (int rests = 0; rests < 2; rests++) {
