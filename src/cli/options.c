@@ -112,7 +112,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_SIZE] = { NULL, "size", "WxH", "pixels (1280x720)", RUN, 0 },
 	[OB_OPTION_QUALITY] = { NULL, "quality", "draft|fine",
 				"fine: soft shadows, light of the sky; takes some 20 times as long (draft)", RUN, 0 },
-	[OB_OPTION_SAMPLES] = { NULL, "samples", "N", "samples a pixel (draft: 4; fine: 16)", RUN, 0 },
+	[OB_OPTION_SAMPLES] = { NULL, "samples", "N", "samples a pixel (draft: 4 on a GPU; fine: 16)", RUN, 0 },
 	[OB_OPTION_CAMERA] = { NULL, "camera", "NAME", "which of the scene's cameras (the first)", RUN, 0 },
 	[OB_OPTION_OVERLAY] = { NULL, "overlay", "LIST",
 				"draw over it: aabb, contacts, joints, caption; several with commas", RUN, 0 },

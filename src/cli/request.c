@@ -257,7 +257,7 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e
 	if (quality && strcmp(quality, "draft") != 0 && strcmp(quality, "fine") != 0)
 		return ob_fail(e, "--quality %s: expected draft or fine", quality);
 	f->quality = quality && strcmp(quality, "fine") == 0 ? OB_QUALITY_FINE : OB_QUALITY_DRAFT;
-	uint32_t samples = f->quality == OB_QUALITY_FINE ? 16 : 4;
+	uint32_t samples = f->quality == OB_QUALITY_FINE ? 16 : 0; // 0: the renderer's choice
 	if (!count(a, OB_OPTION_SAMPLES, 1, f->quality == OB_QUALITY_FINE ? 256 : 32, &samples, e))
 		return false;
 	f->samples = (int)samples;

@@ -15,7 +15,9 @@ typedef enum ob_quality {
 typedef struct ob_render_setup {
 	int width, height;
 	ob_quality quality;
-	int samples; // draft: multisampling, 1 = none; fine: number of averaged pictures
+	// draft: samples a pixel; 0 = 4 on a GPU, else 1, and edges are smoothed afterwards. fine: number of averaged
+	// pictures, at least 1
+	int samples;
 	// NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0", "1", ..
 	const char *device;
 	bool overlay_aabb, overlay_contacts, overlay_joints;

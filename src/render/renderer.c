@@ -4,7 +4,9 @@
 
 #include "render/context.h"
 #include "render/passes.h"
+#include "render/smooth.h"
 
+enum { SAMPLES = 4 }; // a pixel, on a GPU, unless the setup says how many
 static const double occlusion_height = .8; // m above the ground, up to which a body occludes it
 
 struct ob_renderer {
@@ -18,6 +20,7 @@ struct ob_renderer {
 	ob_light light;
 	ob_instances casters, near_ground, visible;
 	ob_overlay overlay;
+	uint8_t *rough, *brightness; // a picture before its edges are smoothed; NULL: they are not
 };
 
 static void destroy(ob_renderer *r)
@@ -34,14 +37,30 @@ static void destroy(ob_renderer *r)
 	ob_instances_finish(&r->near_ground);
 	ob_instances_finish(&r->visible);
 	ob_overlay_finish(&r->overlay);
+	free(r->rough);
+	free(r->brightness);
 	free(r);
+}
+
+// Gets memory to smooth edges, where no GPU takes several samples a pixel.
+static bool prepare_samples(ob_renderer *r, ob_error *e)
+{
+	const size_t pixels = (size_t)r->setup.width * (size_t)r->setup.height;
+	if (r->setup.samples > 0)
+		return true;
+	r->setup.samples = r->light == OB_LIGHT_DRAFT ? 1 : SAMPLES;
+	if (r->light != OB_LIGHT_DRAFT)
+		return true;
+	r->rough = malloc(4 * pixels);
+	r->brightness = malloc(pixels);
+	return (r->rough && r->brightness) || ob_fail(e, "out of memory");
 }
 
 static ob_renderer *create(const ob_render_setup *setup, const ob_look_def *look, ob_error *e)
 {
-	if (setup->width < 1 || setup->height < 1 || setup->samples < 1) {
-		ob_fail(e, "frames of %dx%d with %d samples: expected at least 1 of each", setup->width, setup->height,
-			setup->samples);
+	if (setup->width < 1 || setup->height < 1 || setup->samples < 0) {
+		ob_fail(e, "frames of %dx%d with %d samples: expected at least 1x1, and no less than 0 samples",
+			setup->width, setup->height, setup->samples);
 		return NULL;
 	}
 	ob_renderer *r = calloc(1, sizeof *r);
@@ -53,7 +72,8 @@ static ob_renderer *create(const ob_render_setup *setup, const ob_look_def *look
 	r->look = *look;
 	if (ob_context_create(&r->context, setup->device, e)) {
 		r->light = ob_light_choose(setup->quality);
-		if (ob_targets_create(&r->targets, setup->width, setup->height, setup->samples, r->light, e) &&
+		if (prepare_samples(r, e) &&
+		    ob_targets_create(&r->targets, setup->width, setup->height, r->setup.samples, r->light, e) &&
 		    ob_passes_create(&r->passes, r->light, setup->mesh, setup->meshes, e)) {
 			r->list.mesh = setup->mesh;
 			r->list.meshes = setup->meshes;
@@ -155,7 +175,9 @@ static bool draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now
 		ob_passes_resolve(&r->passes, &r->targets);
 	if (!draw_overlays(r, now, &f.view))
 		return ob_fail(e, "out of memory");
-	ob_passes_read(&r->targets, rgba);
+	ob_passes_read(&r->targets, r->rough ? r->rough : rgba);
+	if (r->rough)
+		ob_smooth(r->rough, rgba, r->brightness, r->setup.width, r->setup.height);
 	GLenum error = glGetError();
 	return error == GL_NO_ERROR ? true : ob_fail(e, "the OpenGL driver reported error 0x%x while drawing", error);
 }
