@@ -33,6 +33,7 @@ static const char *const kinds[OB_DO_KINDS] = {
 	[OB_DO_SIMULATORS] = "simulators",
 	[OB_DO_ENERGY] = "energy",
 	[OB_DO_SET] = "set",
+	[OB_DO_ANEW] = "anew",
 };
 
 enum {

@@ -18,6 +18,7 @@
 //      rate      rate (s a s); 0: as fast as possible
 //      set       name, value: the scene starts anew with this value of a parameter
 //      contacts  on;  energy: likewise
+//      anew      the whole state once more, as at the start of a connection
 //      inspect   id
 //
 // Other members are errors, and no byte is trusted. Pure; any thread.
@@ -49,6 +50,7 @@ typedef enum ob_command_kind {
 	OB_DO_SIMULATORS,
 	OB_DO_ENERGY,
 	OB_DO_SET,
+	OB_DO_ANEW,
 	OB_DO_KINDS,
 } ob_command_kind;
 

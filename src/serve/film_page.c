@@ -84,7 +84,8 @@ static void put_recording(ob_message *m, const ob_message *film)
 		put_content(m, "", c->path, "</script>\n");
 	}
 	put_text(m, "<script type=\"text/plain\" id=\"recording\">");
-	put_base64(m, film->bytes, film->size);
+	if (film)
+		put_base64(m, film->bytes, film->size);
 	put_text(m, "</script>\n");
 }
 

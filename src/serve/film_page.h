@@ -6,7 +6,8 @@
 
 // The page of a server, which serves scripts, style and shaders, too, and the film as "recording".
 ob_message *ob_film_page_served(void);
-// The page with all of these in it, without a server. NULL: out of memory.
+// The page with all of these in it, without a server. film: NULL: a page into which a viewer puts its own record.
+// NULL: out of memory.
 ob_message *ob_film_page_whole(const ob_message *film);
 
 #endif

@@ -28,6 +28,7 @@ static const double share = .3; // limit of their share of the time
 static const double detail_interval = .25; // s, between two statistics, and details of inspected objects
 static const double commands_rate = 200, creations_rate = 40; // 1/s, per client
 static const char film_path[] = "/recording", meshes_path[] = "/meshes/";
+static const char player_path[] = "/player.html"; // a page for the record that a viewer makes
 static const char metrics_path[] = "/metrics";
 static const double door_interval = .25; // s, between two checks of deadlines
 static const struct timespec idle_wait = { .tv_nsec = 1000000 };
@@ -51,7 +52,9 @@ struct ob_server {
 	char token[OB_ROLES][33], url[OB_ROLES][160]; // of each role; "" = none
 	int port; // the actual port
 	own_content *own_bytes; // storage of own
-	ob_content *own; // a film's page and the film itself, else the scene's meshes; ends with one without a path
+	// a film's page and the film itself; else the scene's meshes, and an empty page for a film. Ends with one
+	// without a path
+	ob_content *own;
 
 	pthread_t thread;
 	bool held; // the thread has ended
@@ -328,6 +331,10 @@ static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 		return;
 	case OB_DO_ENERGY:
 		c->energy = asked->on;
+		return;
+	case OB_DO_ANEW:
+		c->behind = true;
+		lws_callback_on_writable(c->wsi);
 		return;
 	case OB_DO_INSPECT:
 		c->inspected = asked->id;
@@ -750,7 +757,7 @@ static bool prepare_own(ob_server *s, ob_error *e)
 {
 	const ob_message *film = s->config.film;
 	const ob_scene *scene = s->config.scene;
-	const uint32_t count = film ? 2 : scene->meshes;
+	const uint32_t count = film ? 2 : scene->meshes + 1;
 	s->own_bytes = calloc(count + 1, sizeof *s->own_bytes);
 	s->own = calloc(count + 1, sizeof *s->own);
 	bool ok = s->own_bytes && s->own;
@@ -762,11 +769,18 @@ static bool prepare_own(ob_server *s, ob_error *e)
 			add_own(s, 1, film_path, "application/gzip", film);
 		}
 	}
-	for (uint32_t i = 0; i < count && ok && !film; i++) {
+	for (uint32_t i = 0; ok && !film && i < scene->meshes; i++) {
 		s->own_bytes[i].bytes = ob_feed_mesh(&scene->mesh[i], i + 1);
 		ok = s->own_bytes[i].bytes;
 		if (ok)
 			add_own(s, i, NULL, "application/octet-stream", s->own_bytes[i].bytes);
+	}
+	if (ok && !film) {
+		own_content *player = &s->own_bytes[scene->meshes];
+		player->bytes = ob_film_page_whole(NULL);
+		ok = player->bytes;
+		if (ok)
+			add_own(s, scene->meshes, player_path, "text/html; charset=utf-8", player->bytes);
 	}
 	return ok || ob_fail(e, "out of memory");
 }

@@ -190,6 +190,37 @@ class Viewer(server.Case):
 		self.assertEqual(b.console(), [])
 		self.end()
 
+	def test_record(self):
+		"""A visitor records what happens by a button: a page that plays it back without the server."""
+		self.serve("--isolation", "process", "--workers", "2")
+		b = self.open()
+		self.assertEqual(b.run("obsim.ask = () => document.querySelector('[data-do=record]').click(); obsim.ask(); return obsim.recorder.on"), True)
+		b.wait("obsim.recorder.end > obsim.recorder.begin")
+		b.run("obsim.universe.send({ do: 'create', shape: 'sphere', size: [.3, 0, 0], at: [4, 0, 6], mass: 90, name: 'visitor' })")
+		b.wait("[...obsim.universe.objects.values()].some((o) => o.name === 'visitor')")
+		since = b.run("return obsim.universe.told")
+		b.run("obsim.universe.send({ do: 'anew' })") # as a viewer that has lost messages
+		b.wait(f"obsim.recorder.end > {since} + .6")
+		with open(self.path("session.html"), "w") as f:
+			f.write(b.run("obsim.ask(); return obsim.recorder.page"))
+		objects = b.run("return obsim.universe.objects.size")
+		self.assertEqual(b.console(), [])
+		self.end()
+		b = browser.Browser(self.driver)
+		self.addCleanup(b.close)
+		b.go("file://" + self.path("session.html"))
+		b.wait(SEEN)
+		named = "[...obsim.universe.objects.values()].find((o) => o.name === 'visitor')"
+		height = lambda t: b.run(f"obsim.universe.seek(arguments[0]); const o = {named}; return o ? obsim.universe.pose(o).p[2] : null", t)
+		begin, end = b.run("obsim.universe.paused = true; return [obsim.universe.begin, obsim.universe.end]")
+		self.assertIsNone(height(begin)) # not there yet
+		self.assertLess(height(end), 5.5) # it has fallen
+		self.assertEqual(b.run("return obsim.universe.objects.size"), objects)
+		self.assertGreater(b.run("return obsim.universe.simulators.size"), 0)
+		self.assertIsNone(height(begin))
+		self.keep(b, "session.png")
+		self.assertEqual(b.console(), [])
+
 	def test_avatar(self):
 		"""A visitor's avatar walks by keys, the viewpoint behind it, and pushes a crate, which another visitor sees."""
 		with open(self.path("scene.lua"), "w") as f:

@@ -4,7 +4,7 @@ import { isEndless, isHulled, outlineOf } from './shapes.js';
 import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes, hullVertices } from './meshes.js';
 import { turned } from './motion.js';
 
-const SHADOW_TEXELS = 1792, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: border for the
+const SHADOW_TEXELS = 1280, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: border for the
                                                                                   // filter
 const SKY_MAPS = 12; // as in light.glsl
 const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2, UNIT_PLAIN = 3, UNIT_SKY = 4, UNIT_COLOUR_IMAGE = 5, UNIT_SURFACE_IMAGE = 6;

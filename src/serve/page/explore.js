@@ -24,7 +24,7 @@ function line() {
 	return svg;
 }
 
-function save(url, name) {
+export function save(url, name) {
 	element('a', { href: url, download: name }).click();
 }
 

@@ -55,7 +55,8 @@ export class Film extends Universe {
 
 	tell(name, detail) {
 		if (name === 'film') {
-			Object.assign(this, { begin: detail.begin, end: detail.end, interval: detail.interval, time: detail.begin });
+			// gaps: a viewer's own record, in which whole states stand where messages were left out
+			Object.assign(this, { begin: detail.begin, end: detail.end, interval: detail.interval, time: detail.begin, gaps: detail.gaps === true });
 			for (const [id, generation, mass, friction, restitution] of detail.objects)
 				this.facts.set(`${id} ${generation}`, { mass, friction, restitution });
 		}
@@ -70,7 +71,7 @@ export class Film extends Universe {
 			this.begins(this.steps.findLastIndex((s) => s.anew && s.time <= this.time));
 		while (this.heard < this.time && this.shown + 1 < this.steps.length) {
 			const step = this.steps[++this.shown];
-			if (step.anew)
+			if (step.anew && !this.gaps)
 				continue; // only for a start there
 			if (!step.aside)
 				[this.since, this.heard] = [this.heard, step.time];

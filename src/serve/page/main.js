@@ -10,6 +10,7 @@ import { colourBy } from './colouring.js';
 import { Workers } from './workers.js';
 import { Hand } from './hand.js';
 import { Explore } from './explore.js';
+import { Recorder } from './recorder.js';
 import { Offers } from './offers.js';
 
 const THROWN = 12; // m/s
@@ -23,7 +24,7 @@ const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const recording = document.querySelector('meta[name=recording]').content;
-const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers();
+const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), recorder = new Recorder(universe);
 let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '';
 
 // ---- the picture
@@ -217,7 +218,7 @@ function throwOne() {
 // ---- requests
 
 function askSimulators() {
-	universe.send({ do: 'simulators', on: panel.on.simulators || workers.key !== 'own' });
+	universe.send({ do: 'simulators', on: panel.on.simulators || workers.key !== 'own' || recorder.on });
 }
 
 panel.addEventListener('pause', () => universe.send({ do: universe.paused ? 'resume' : 'pause' }));
@@ -247,6 +248,20 @@ offers.addEventListener('control', ({ detail: { to, text } }) => {
 explore.addEventListener('pick', (e) => pick(e.detail));
 panel.addEventListener('picture', () => explore.picture(canvas));
 panel.addEventListener('video', () => document.querySelector('[data-do=video]').setAttribute('aria-pressed', explore.video(canvas)));
+// Begins a record, with who simulates what, or ends it.
+function record() {
+	if (recorder.on)
+		recorder.stop(look, addressOf).catch((error) => panel.notice(error.message));
+	else
+		recorder.start();
+	document.querySelector('[data-do=record]').setAttribute('aria-pressed', recorder.on);
+	askSimulators();
+}
+panel.addEventListener('record', record);
+recorder.addEventListener('end', () => {
+	record();
+	panel.notice('the record ends here: the universe went back, or it has become too long', 8);
+});
 panel.addEventListener('link', () => {
 	asked.set('view', [...camera.eye, ...camera.target].map((x) => Number(x.toFixed(4)) + 0).join());
 	asked.delete('token'); // the receiver needs one of their own
@@ -349,12 +364,15 @@ universe.addEventListener('avatar', (e) => {
 	camera.behind = true;
 });
 universe.addEventListener('workers', (e) => workers.hear(e.detail, (id) => universe.objects.get(id)?.name || `object ${id}`));
+// Address of a content that may need the token.
+function addressOf(path) { return token ? `${path}?token=${encodeURIComponent(token)}` : path; }
+
 // Fetches meshes, which a browser keeps as contents; a recording holds its own. Until they arrive, objects show their
 // collision shapes.
 async function fetchMeshes(paths) {
 	drawing.forgetMeshes();
 	await Promise.all(paths.map(async (path) => {
-		const answer = await fetch(token ? `${path}?token=${encodeURIComponent(token)}` : path);
+		const answer = await fetch(addressOf(path));
 		if (!answer.ok)
 			throw new Error(`${path}: ${answer.status}`);
 		universe.hear(await answer.arrayBuffer());
@@ -411,5 +429,5 @@ async function begin() {
 }
 
 // For tests and the console
-window.obsim = { avatar: () => avatar, offers, universe, camera, panel, workers, hand, explore, pick, frames: () => frames, drawing: () => drawing };
+window.obsim = { avatar: () => avatar, offers, universe, camera, panel, workers, hand, explore, recorder, pick, frames: () => frames, drawing: () => drawing };
 begin().catch((error) => panel.notice(error.message, 0));

@@ -139,8 +139,8 @@ export class Panel extends EventTarget {
 		document.body.classList.add('film');
 		for (const what of ['pause', 'step', 'back'])
 			$(`[data-do=${what}]`).disabled = $(`[data-do=${what}]`).hidden = false;
-		this.off = new Set(['make', 'throw', 'contacts', 'remove', 'restart']);
-		for (const what of ['make', 'contacts', 'remove', 'restart'])
+		this.off = new Set(['make', 'throw', 'contacts', 'remove', 'restart', 'record']);
+		for (const what of ['make', 'contacts', 'remove', 'restart', 'record'])
 			$(`[data-do=${what}]`).hidden = true;
 		for (const part of document.querySelectorAll('#film, .film'))
 			part.hidden = false;
@@ -148,7 +148,7 @@ export class Panel extends EventTarget {
 		Object.assign($('#rate').options[4], { value: '16', textContent: '16 ×' });
 		Object.assign($('#time'), { min: f.begin, max: f.end });
 		$('#length').value = `${f.end.toFixed(2)} s`;
-		$('#statistics').textContent = `recorded ${f.created.slice(0, 10)} by obsim ${f.version}, seed ${f.seed}`;
+		$('#statistics').textContent = `recorded ${f.created.slice(0, 10)} by obsim ${f.version}${f.seed ? `, seed ${f.seed}` : ''}`;
 		$('#statistics').title = `commit ${f.commit}`;
 		const shown = f.events.filter((_, i) => i % Math.ceil(f.events.length / MARKS_MOST) === 0);
 		$('#marks').replaceChildren(...shown.map(([time, kind, , name]) => {

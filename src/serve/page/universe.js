@@ -57,6 +57,7 @@ export class Universe extends EventTarget {
 		this.ended = false; // no step will follow
 		this.bytes = this.messages = 0;
 		this.news = 0; // grows with each received change
+		this.tap = null; // is handed each message, too
 	}
 
 	connect() {
@@ -75,6 +76,7 @@ export class Universe extends EventTarget {
 	}
 
 	hear(data) {
+		this.tap?.(data);
 		this.messages++;
 		this.bytes += data.byteLength ?? data.length;
 		if (typeof data === 'string') {
