@@ -14,6 +14,7 @@ enum { // limits for a polyhedron with so many corners (Euler)
 	OB_HULL_CORNERS_MAX = 64,
 	OB_HULL_FACES_MAX = 2 * OB_HULL_CORNERS_MAX - 4,
 	OB_HULL_EDGES_MAX = 3 * OB_HULL_CORNERS_MAX - 6,
+	OB_HULL_PARTS_MAX = 15, // convex parts of a compound
 };
 
 typedef struct ob_hull_edge {
@@ -23,16 +24,22 @@ typedef struct ob_hull_edge {
 
 // Convex hull in the body's frame: the origin is the centre of mass, the axes are the principal ones. It contains no
 // pointers, so it lies in the universe as it is.
+//
+// A compound is a body of several convex parts. Its hull holds them all, and is what planes touch; volume, moments and
+// frame are those of the parts, the thickness is the least of theirs. The hulls of its parts follow it by number, in the
+// compound's frame: the origin may lie outside a part.
 typedef struct ob_hull {
 	uint32_t corners, faces, edges; // 4 .., 4 .., 6 ..
-	uint32_t zero;
+	uint16_t parts; // of a compound: so many hulls after this one; 0: the body is this hull
+	uint16_t is_part; // 1: of a compound
 	double radius; // m, of the smallest ball about the origin that contains it
-	double inner; // m, of the largest ball about the origin inside it
+	// m, of the largest ball about the origin inside it; < 0, where the origin is outside: minus a bound of its distance
+	double inner;
 	double thickness; // m, least width
 	double volume; // m^3
-	ob_vec3 inertia; // m^2, principal moments per kilogram
-	ob_vec3 centre; // m, the origin in the frame of the original points
-	ob_quat frame; // body's frame to that of the original points
+	ob_vec3 inertia; // m^2, principal moments per kilogram; a part's are about its own centre
+	ob_vec3 centre; // m, the origin in the frame of the original points; a part's own centre in the compound's frame
+	ob_quat frame; // body's frame to that of the original points; a part's principal frame to the compound's
 	ob_vec3 corner[OB_HULL_CORNERS_MAX]; // m
 	ob_vec3 normal[OB_HULL_FACES_MAX]; // unit, outward
 	double offset[OB_HULL_FACES_MAX]; // m, distance of the face from the origin

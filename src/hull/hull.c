@@ -378,10 +378,9 @@ static double least_width(const ob_hull *h)
 	return least;
 }
 
-static void set_sizes(ob_hull *h)
+static void set_balls(ob_hull *h)
 {
 	h->radius = radius_of(h);
-	h->thickness = least_width(h);
 	h->inner = INFINITY;
 	for (uint32_t f = 0; f < h->faces; f++)
 		h->inner = fmin(h->inner, h->offset[f]);
@@ -430,7 +429,8 @@ static bool build(raw_hull *raw, ob_hull *out, ob_error *e)
 		return ob_fail(e, "%s", too_flat);
 	set_frame(out, middle);
 	set_planes(out);
-	set_sizes(out);
+	set_balls(out);
+	out->thickness = least_width(out);
 	if (!(out->thickness > thinnest * out->radius) || !ob_hull_makes_sense(out))
 		return ob_fail(e, "%s", too_flat);
 	return true;
@@ -486,24 +486,127 @@ void ob_hull_find_corners(const ob_hull *h, const ob_vec3 *point, size_t points,
 	}
 }
 
-bool ob_hull_set_inertia(ob_hull *h, ob_vec3 inertia, ob_error *e)
+// ---- other frames
+
+// Gives the hull another frame: its origin and axes in the frame of its points.
+static void move_frame(ob_hull *h, ob_vec3 centre, const ob_mat3 *axes)
 {
 	const ob_mat3 r = ob_quat_matrix(h->frame);
-	const double least_share = .25; // in half thicknesses: collision tests take the ball inside for a core
-	h->radius = 0;
-	h->inner = INFINITY;
+	double nearest = INFINITY;
 	for (uint32_t k = 0; k < h->corners; k++) {
-		h->corner[k] = ob_add(h->centre, ob_rotate(&r, h->corner[k]));
-		h->radius = fmax(h->radius, ob_norm(h->corner[k]));
+		h->corner[k] = ob_rotate_back(axes, ob_sub(ob_add(h->centre, ob_rotate(&r, h->corner[k])), centre));
+		nearest = fmin(nearest, ob_norm(h->corner[k]));
 	}
 	for (uint32_t f = 0; f < h->faces; f++) {
-		h->normal[f] = ob_rotate(&r, h->normal[f]);
-		h->offset[f] += ob_dot(h->normal[f], h->centre);
-		h->inner = fmin(h->inner, h->offset[f]);
+		const ob_vec3 n = ob_rotate(&r, h->normal[f]);
+		h->offset[f] += ob_dot(n, ob_sub(h->centre, centre));
+		h->normal[f] = ob_rotate_back(axes, n);
 	}
+	set_balls(h);
+	if (!(h->inner > 0))
+		h->inner = -nearest; // no corner is nearer than the hull
+}
+
+bool ob_hull_set_inertia(ob_hull *h, ob_vec3 inertia, ob_error *e)
+{
+	const ob_mat3 same = ob_quat_matrix(ob_quat_identity());
+	const double least_share = .25; // in half thicknesses: collision tests take the ball inside for a core
+	move_frame(h, ob_v3(0, 0, 0), &same);
 	h->centre = ob_v3(0, 0, 0);
 	h->frame = ob_quat_identity();
 	h->inertia = inertia;
 	return h->inner >= least_share * .5 * h->thickness ||
 	       ob_fail(e, "inertia: expected the origin, which is the centre of mass then, well inside the hull");
+}
+
+// ---- compounds
+
+// Adds m (kg) times the tensor of a part about the point "centre" (m): its own moments, and those of its distance.
+static void add_tensor(const ob_hull *part, double m, ob_vec3 centre, double tensor[3][3])
+{
+	const ob_mat3 r = ob_quat_matrix(part->frame);
+	const ob_vec3 off = ob_sub(part->centre, centre);
+	const double moment[3] = { part->inertia.x, part->inertia.y, part->inertia.z }, d[3] = { off.x, off.y, off.z };
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++) {
+			double own = (i == j ? ob_norm2(off) : 0) - d[i] * d[j];
+			for (int k = 0; k < 3; k++)
+				own += r.m[i][k] * moment[k] * r.m[j][k];
+			tensor[i][j] += m * own;
+		}
+}
+
+// Mass of a compound: kg, in the unit of the parts' densities; m^3; centre and axes in the frame of their points; m^2.
+typedef struct parts_mass {
+	double mass, volume;
+	ob_vec3 centre, inertia;
+	ob_quat frame;
+} parts_mass;
+
+// Finds the parts' common centre, principal axes and moments per kilogram. hull: of the parts.
+static parts_mass weigh(const ob_hull_part *part, uint32_t parts, const ob_hull *hull)
+{
+	double tensor[3][3] = { { 0 } }, axes[3][3];
+	parts_mass out = { 0 };
+	for (uint32_t i = 0; i < parts; i++) {
+		const double m = part[i].density * hull[i].volume;
+		out.mass += m, out.volume += hull[i].volume;
+		out.centre = ob_madd(out.centre, m, hull[i].centre);
+	}
+	out.centre = ob_scale(out.centre, 1 / out.mass);
+	for (uint32_t i = 0; i < parts; i++)
+		add_tensor(&hull[i], part[i].density * hull[i].volume / out.mass, out.centre, tensor);
+	diagonalise(tensor, axes);
+	make_equal(tensor, 10 * noise * (tensor[0][0] + tensor[1][1] + tensor[2][2]));
+	out.frame = quaternion_of(axes);
+	out.inertia = ob_v3(tensor[0][0], tensor[1][1], tensor[2][2]);
+	return out;
+}
+
+// Moves a compound's hull and those of its parts into the frame of its mass.
+static void join_parts(ob_hull *out, uint32_t parts, const parts_mass *m)
+{
+	const ob_mat3 turn = ob_quat_matrix(m->frame);
+	const ob_quat back = { m->frame.w, -m->frame.x, -m->frame.y, -m->frame.z };
+	for (uint32_t i = 0; i <= parts; i++) {
+		ob_hull *h = &out[i];
+		move_frame(h, m->centre, &turn);
+		h->centre = i ? ob_rotate_back(&turn, ob_sub(h->centre, m->centre)) : m->centre;
+		h->frame = i ? ob_quat_mul(back, h->frame) : m->frame;
+		h->is_part = i > 0;
+		out->thickness = fmin(out->thickness, h->thickness);
+	}
+	out->parts = (uint16_t)parts;
+	out->volume = m->volume;
+	out->inertia = m->inertia;
+}
+
+bool ob_hull_build_compound(const ob_hull_part *part, uint32_t parts, ob_vec3 inertia, ob_hull *out, uint32_t *failed,
+			    ob_error *e)
+{
+	size_t all = 0;
+	for (*failed = 1; *failed <= parts; ++*failed) {
+		const ob_hull_part *p = &part[*failed - 1];
+		if (!ob_hull_build(p->point, p->points, &out[*failed], e))
+			return false;
+		all += p->points;
+	}
+	*failed = 0;
+	ob_vec3 *point = malloc(all * sizeof *point), *at = point;
+	if (!point)
+		return ob_fail(e, "no memory");
+	for (uint32_t i = 0; i < parts; at += part[i++].points)
+		memcpy(at, part[i].point, part[i].points * sizeof *at);
+	const bool built = ob_hull_build(point, all, out, e);
+	free(point);
+	if (!built)
+		return false;
+	parts_mass m = weigh(part, parts, out + 1);
+	if (!isnan(inertia.x)) {
+		m.centre = ob_v3(0, 0, 0);
+		m.frame = ob_quat_identity();
+		m.inertia = inertia;
+	}
+	join_parts(out, parts, &m);
+	return ob_hull_makes_sense(out) || ob_fail(e, "expected the centre of mass inside of the hull of its parts");
 }

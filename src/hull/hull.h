@@ -14,6 +14,21 @@ enum { OB_HULL_POINTS_MAX = 1 << 14 };
 // without a place, on fewer than four points, all in one plane, too thin, too many corners, or not finite. Thread-safe.
 bool ob_hull_build(const ob_vec3 *point, size_t points, ob_hull *out, ob_error *e);
 
+// A convex part of a compound: its points (m), in the frame of the compound's author.
+typedef struct ob_hull_part {
+	const ob_vec3 *point;
+	size_t points;
+	double density; // kg/m^3, or in any unit if the parts' ratios alone matter
+} ob_hull_part;
+
+// Builds the hulls of a compound and of its parts, of which there are 1 to OB_HULL_PARTS_MAX: out[0], and out[1] ..
+// out[parts]. inertia: m^2, principal moments per kilogram, about the origin of the points and the axes of their frame,
+// which becomes the compound's; NAN: those of its parts. Returns false and e, without a place, if a part has no hull,
+// or all together have none, or the centre of mass lies outside of it. *failed: the part, from 1; 0: all together.
+// Thread-safe.
+bool ob_hull_build_compound(const ob_hull_part *part, uint32_t parts, ob_vec3 inertia, ob_hull *out, uint32_t *failed,
+			    ob_error *e);
+
 // Points that are the corners of a hull, in the frame of their source.
 typedef struct ob_hull_corners {
 	uint32_t count, zero;

@@ -17,7 +17,8 @@ static bool faces_make_sense(const ob_hull *h)
 	for (uint32_t f = 0; f < h->faces; f++) {
 		if (h->first[f + 1] < h->first[f] + 3 || h->first[f + 1] > 2 * h->edges)
 			return false;
-		if (!finite3(h->normal[f]) || !is_length(h->offset[f]) || !(fabs(ob_norm2(h->normal[f]) - 1) < .1))
+		if (!finite3(h->normal[f]) || !(h->is_part ? isfinite(h->offset[f]) : is_length(h->offset[f])) ||
+		    !(fabs(ob_norm2(h->normal[f]) - 1) < .1))
 			return false;
 	}
 	for (uint32_t k = 0; k < 2 * h->edges; k++)
@@ -31,10 +32,12 @@ bool ob_hull_makes_sense(const ob_hull *h)
 	const ob_quat q = h->frame;
 	const double norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
 	if (h->corners < 4 || h->corners > OB_HULL_CORNERS_MAX || h->faces < 4 || h->faces > OB_HULL_FACES_MAX ||
-	    h->edges != h->corners + h->faces - 2 || h->edges > OB_HULL_EDGES_MAX || h->zero)
+	    h->edges != h->corners + h->faces - 2 || h->edges > OB_HULL_EDGES_MAX || h->parts > OB_HULL_PARTS_MAX ||
+	    h->is_part > 1 || (h->is_part && h->parts))
 		return false;
-	if (!is_length(h->radius) || !is_length(h->inner) || !is_length(h->thickness) || !is_length(h->volume) ||
-	    !finite3(h->inertia) || !finite3(h->centre) || !(norm > .9 && norm < 1.1) || !faces_make_sense(h))
+	if (!is_length(h->radius) || !(h->is_part ? isfinite(h->inner) : is_length(h->inner)) ||
+	    !is_length(h->thickness) || !is_length(h->volume) || !finite3(h->inertia) || !finite3(h->centre) ||
+	    !(norm > .9 && norm < 1.1) || !faces_make_sense(h))
 		return false;
 	for (uint32_t k = 0; k < h->corners; k++)
 		if (!finite3(h->corner[k]))

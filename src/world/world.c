@@ -91,15 +91,26 @@ ob_world_body ob_world_capsule(ob_world *w, double mass, double radius, double h
 	return ob_world_add(w, OB_SHAPE_CAPSULE, ob_v3(radius, half, 0), mass, p);
 }
 
-// Number of the hull; several bodies may share one.
+// Number of the hull, which its parts follow; several bodies may share one.
 static uint32_t add_hull(ob_world *w, const ob_hull *h)
 {
-	for (uint32_t i = 0; i < w->hulls; i++)
-		if (!memcmp(&w->hull[i], h, sizeof *h))
+	const uint32_t all = 1 + h->parts, number = w->hulls;
+	for (uint32_t i = 0; i + all <= w->hulls; i++)
+		if (!memcmp(&w->hull[i], h, all * sizeof *h))
 			return i;
-	w->hull = grown(w->hull, w->hulls + 1, sizeof *w->hull);
-	w->hull[w->hulls] = *h;
-	return w->hulls++;
+	w->hull = grown(w->hull, w->hulls + all, sizeof *w->hull);
+	memcpy(w->hull + number, h, all * sizeof *h);
+	w->hulls += all;
+	return number;
+}
+
+static ob_world_body add_hulled(ob_world *w, double mass, const ob_hull *h, ob_vec3 p)
+{
+	ob_world_body b = ob_world_add(w, OB_SHAPE_HULL, ob_hull_size(h), mass, ob_add(p, h->centre));
+	b.passport->hull = (uint16_t)add_hull(w, h);
+	b.passport->inertia = ob_scale(h->inertia, mass);
+	b.state->pose.q = h->frame;
+	return b;
 }
 
 ob_world_body ob_world_hull(ob_world *w, double mass, const ob_vec3 *point, uint32_t points, ob_vec3 p)
@@ -110,10 +121,20 @@ ob_world_body ob_world_hull(ob_world *w, double mass, const ob_vec3 *point, uint
 		fprintf(stderr, "hull: %s\n", e.text);
 		abort();
 	}
-	ob_world_body b = ob_world_add(w, OB_SHAPE_HULL, ob_hull_size(&h), mass, ob_add(p, h.centre));
-	b.passport->hull = (uint16_t)add_hull(w, &h);
-	b.passport->inertia = ob_scale(h.inertia, mass);
-	b.state->pose.q = h.frame;
+	return add_hulled(w, mass, &h, p);
+}
+
+ob_world_body ob_world_compound(ob_world *w, double mass, const ob_hull_part *part, uint32_t parts, ob_vec3 p)
+{
+	ob_hull *h = grown(NULL, 1 + parts, sizeof *h);
+	uint32_t failed;
+	ob_error e;
+	if (!ob_hull_build_compound(part, parts, ob_v3(NAN, NAN, NAN), h, &failed, &e)) {
+		fprintf(stderr, "compound: %s\n", e.text);
+		abort();
+	}
+	const ob_world_body b = add_hulled(w, mass, h, p);
+	free(h);
 	return b;
 }
 

@@ -10,6 +10,7 @@
 #include <ob/hull.h>
 #include <ob/motion.h>
 
+#include "hull/hull.h"
 #include "motion/path.h"
 
 #define OB_WORLD_GRAVITY 9.81 // m/s^2
@@ -61,6 +62,8 @@ ob_world_body ob_world_capsule(ob_world *w, double mass, double radius, double h
 // Adds the hull of these points (m), with their origin at p; the body's own frame differs (ob/hull.h). Points without a
 // hull end the program.
 ob_world_body ob_world_hull(ob_world *w, double mass, const ob_vec3 *point, uint32_t points, ob_vec3 p);
+// Adds a compound of these parts, with the origin of their points at p.
+ob_world_body ob_world_compound(ob_world *w, double mass, const ob_hull_part *part, uint32_t parts, ob_vec3 p);
 // Plane z = 0, and the same turned by "angle" (rad) about y: bodies on it slide towards +x.
 ob_world_body ob_world_ground(ob_world *w);
 ob_world_body ob_world_slope(ob_world *w, double angle);
