@@ -125,7 +125,7 @@ static void try_direction(search *s, ob_vec3 n, bool facet)
 // Tries d in the sense from b to a: the other sense cannot be best.
 static void try_along(search *s, ob_vec3 d, bool facet)
 {
-	try_direction(s, ob_dot(d, ob_sub(s->a->p, s->b->p)) < 0 ? ob_scale(d, -1) : d, facet);
+	try_direction(s, ob_dot(d, ob_sub(s->a->p, ob_middle(s->b))) < 0 ? ob_scale(d, -1) : d, facet);
 }
 
 static void try_facets(search *s, const ob_placed *x)
@@ -303,7 +303,7 @@ static void climb(search *s, const ob_vec3 *edge, int n, double enough)
 // Climbs from several starts, since the separation of shapes that overlap deeply has several maxima.
 static void climb_from_everywhere(search *s, const ob_vec3 *edge, int n)
 {
-	ob_vec3 d = ob_sub(s->a->p, s->b->p), start[STARTS];
+	ob_vec3 d = ob_sub(s->a->p, ob_middle(s->b)), start[STARTS];
 	int starts = 0;
 	if (ob_norm2(d) > 0)
 		start[starts++] = unit(d);

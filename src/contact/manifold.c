@@ -279,7 +279,7 @@ static void try_direction(const ob_placed *a, const ob_placed *b, ob_vec3 n, ob_
 	const double least = 1e-6, length = ob_norm(n);
 	if (!(length > least)) // parallel axes, or no direction
 		return;
-	n = ob_scale(n, (ob_dot(n, ob_sub(a->p, b->p)) < 0 ? -1 : 1) / length);
+	n = ob_scale(n, (ob_dot(n, ob_sub(ob_middle(a), ob_middle(b))) < 0 ? -1 : 1) / length);
 	const double apart = ob_apart_along(a, b, n);
 	if (apart > *most)
 		*most = apart, *best = n;
@@ -296,7 +296,7 @@ static double find_direction(const ob_placed *a, const ob_placed *b, double know
 	for (int k = 0; k < 6 && most < enough; k++)
 		try_direction(a, b, ob_column(k < 3 ? &a->r : &b->r, k % 3), along, &most);
 	if (most < enough)
-		try_direction(a, b, ob_sub(a->p, b->p), along, &most);
+		try_direction(a, b, ob_sub(ob_middle(a), ob_middle(b)), along, &most);
 	for (int k = 0; k < 9 && most < enough; k++)
 		try_direction(a, b, ob_cross(ob_column(&a->r, k / 3), ob_column(&b->r, k % 3)), along, &most);
 	return most;

@@ -103,7 +103,7 @@ ob_vec3 ob_climb_across(const ob_placed *a, const ob_placed *b, ob_vec3 e, ob_ve
 	enum { WIDEN = 40, NARROW = 80 };
 	ob_vec3 p = ob_madd(from, -ob_dot(from, e), e);
 	if (ob_norm2(p) < 1e-8) {
-		ob_vec3 d = ob_sub(a->p, b->p);
+		ob_vec3 d = ob_sub(ob_middle(a), ob_middle(b));
 		p = ob_madd(d, -ob_dot(d, e), e);
 		if (ob_norm2(p) < 1e-8 * ob_norm2(d) || !(ob_norm2(p) > 0))
 			return from;

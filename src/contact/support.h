@@ -8,6 +8,12 @@
 // Support point: the farthest point of the shape along n (world frame, any length). Boxes, cylinders, capsules, hulls.
 ob_vec3 ob_support(const ob_placed *x, ob_vec3 n);
 
+// Middle of the shape (m): its centre, or of a compound's part that does not hold the body's centre, its own.
+static inline ob_vec3 ob_middle(const ob_placed *x)
+{
+	return x->hull && x->hull->inner < 0 ? ob_add(x->p, ob_rotate(&x->r, x->hull->centre)) : x->p;
+}
+
 // Extent of the shape from its centre along n, times the length of n (m): a convex function of n.
 double ob_reach(const ob_placed *x, ob_vec3 n);
 

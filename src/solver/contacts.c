@@ -638,6 +638,7 @@ void ob_contacts_load(ob_solver *s, const ob_island_input *in)
 		*t = (ob_contact){ .key = w->contact_order[i],
 				   .a = w->row_of[pair->a],
 				   .b = w->row_of[pair->b],
+				   .part = { pair->part[0], pair->part[1] },
 				   .lane = OB_NO_LANE,
 				   .since = INFINITY };
 		const uint32_t own = w->surfaces.count ? ob_surface_row(w, w->contact_order[i]) : 0;

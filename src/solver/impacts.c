@@ -130,8 +130,8 @@ static void find_between(ob_solver *s, const ob_contact *contact, const ob_body_
 {
 	const ob_island_work *w = &s->island;
 	ob_placed pa, pb;
-	ob_narrowphase_place(s, contact->a, a->p, &a->r, a->v, a->w, &pa);
-	ob_narrowphase_place(s, contact->b, b->p, &b->r, b->v, b->w, &pb);
+	ob_narrowphase_place(s, contact->a, contact->part[0], a->p, &a->r, a->v, a->w, &pa);
+	ob_narrowphase_place(s, contact->b, contact->part[1], b->p, &b->r, b->v, b->w, &pb);
 	const double closing = ob_contact_speed(w, contact);
 	const double thin = ob_min(w->body[contact->a].thickness, w->body[contact->b].thickness);
 	const ob_manifold_finder finder = ob_narrowphase_finder(s);

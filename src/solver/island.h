@@ -70,6 +70,7 @@ typedef struct ob_body {
 typedef struct ob_contact {
 	uint32_t key; // index of its pair in the input
 	uint32_t a, b; // rows
+	const ob_hull *part[2]; // as ob_island_pair.part
 	uint32_t lane; // batch * OB_LANES + lane; OB_NO_LANE = in no batch
 	uint32_t colour;
 	uint32_t points;

@@ -87,8 +87,8 @@ double ob_narrowphase_far_future(const ob_solver *s)
 	return far_future * s->island.unit.time;
 }
 
-void ob_narrowphase_place(const ob_solver *s, uint32_t row, ob_vec3 p, const ob_mat3 *r, ob_vec3 v, ob_vec3 w,
-			  ob_placed *out)
+void ob_narrowphase_place(const ob_solver *s, uint32_t row, const ob_hull *part, ob_vec3 p, const ob_mat3 *r, ob_vec3 v,
+			  ob_vec3 w, ob_placed *out)
 {
 	const ob_body *body = &s->island.body[row];
 	out->shape = body->shape;
@@ -101,15 +101,15 @@ void ob_narrowphase_place(const ob_solver *s, uint32_t row, ob_vec3 p, const ob_
 	out->a = body->acceleration;
 	out->rest_depth = body->rest_depth;
 	out->far_future = ob_narrowphase_far_future(s);
-	out->hull = body->hull;
+	out->hull = part ? part : body->hull;
 }
 
-// Fills in the body in its present state.
-static void place(const ob_solver *s, uint32_t row, ob_placed *out)
+// Fills in the body, or a part of it, in its present state.
+static void place(const ob_solver *s, uint32_t row, const ob_hull *part, ob_placed *out)
 {
 	const ob_body *body = &s->island.body[row];
 	const double *v = s->island.v[row];
-	ob_narrowphase_place(s, row, body->p, &body->r, ob_v3(v[0], v[1], v[2]), ob_v3(v[3], v[4], v[5]), out);
+	ob_narrowphase_place(s, row, part, body->p, &body->r, ob_v3(v[0], v[1], v[2]), ob_v3(v[3], v[4], v[5]), out);
 }
 
 bool ob_narrowphase_area(const ob_solver *s, const ob_contact *contact, ob_contact_area *out)
@@ -119,8 +119,8 @@ bool ob_narrowphase_area(const ob_solver *s, const ob_contact *contact, ob_conta
 	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
 		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
 	ob_placed pa, pb;
-	place(s, contact->a, &pa);
-	place(s, contact->b, &pb);
+	place(s, contact->a, contact->part[0], &pa);
+	place(s, contact->b, contact->part[1], &pb);
 	return ob_area_find(&pa, &pb, n, ob_add(pa.p, contact->friction_a), ob_add(pb.p, contact->friction_b), t1, t2,
 			    out);
 }
@@ -130,8 +130,8 @@ double ob_narrowphase_distance(ob_solver *s, uint32_t a, uint32_t b, double marg
 	ob_placed pa, pb;
 	ob_manifold m;
 	s->counters.narrowphase_tests++;
-	place(s, a, &pa);
-	place(s, b, &pb);
+	place(s, a, NULL, &pa);
+	place(s, b, NULL, &pb);
 	find_manifold(s, &pa, &pb, margin, &m);
 	return m.separation;
 }
@@ -168,8 +168,8 @@ static double time_of_impact(ob_solver *s, const ob_contact *contact, double hor
 {
 	const ob_island_work *w = &s->island;
 	ob_placed a, b;
-	place(s, contact->a, &a);
-	place(s, contact->b, &b);
+	place(s, contact->a, contact->part[0], &a);
+	place(s, contact->b, contact->part[1], &b);
 	double near = ob_min(swept_gap * w->unit.length, .25 * smaller_thickness(w, contact));
 	s->counters.swept_tests++;
 	return ob_time_of_impact(&a, &b, closing_speed(s, contact), horizon, near, reach, ob_narrowphase_follower(s),
@@ -188,8 +188,8 @@ void ob_narrowphase_find(ob_solver *s, const ob_contact *contact, double toleran
 {
 	const ob_island_work *w = &s->island;
 	ob_placed a, b;
-	place(s, contact->a, &a);
-	place(s, contact->b, &b);
+	place(s, contact->a, contact->part[0], &a);
+	place(s, contact->b, contact->part[1], &b);
 	double thin = smaller_thickness(w, contact), travel = closing_speed(s, contact) * w->h;
 	*when = 0;
 	if (travel < swept_travel * thin) {

@@ -10,7 +10,8 @@
 // tolerance: m, gaps up to it are always found. Both bodies' poses must be up to date (ob_body_update_pose).
 void ob_narrowphase_find(ob_solver *s, const ob_contact *t, double tolerance, ob_manifold *m, double *when);
 
-// Lower bound, m, of the distance of two rows of the island; beyond the margin, a value somewhat larger than it.
+// Lower bound, m, of the distance of two rows of the island, compounds as the hull of their parts; beyond the margin, a
+// value somewhat larger than it.
 double ob_narrowphase_distance(ob_solver *s, uint32_t a, uint32_t b, double margin);
 
 // Depth (m) to which a shape of this thickness (m) may rest in others, and the time (s) that counts as far future: see
@@ -18,9 +19,10 @@ double ob_narrowphase_distance(ob_solver *s, uint32_t a, uint32_t b, double marg
 double ob_narrowphase_rest_depth(const ob_solver *s, double thickness, bool pressed);
 double ob_narrowphase_far_future(const ob_solver *s);
 
-// Fills in a body of the island for collision tests, in this pose and at these rates.
-void ob_narrowphase_place(const ob_solver *s, uint32_t row, ob_vec3 p, const ob_mat3 *r, ob_vec3 v, ob_vec3 w,
-			  ob_placed *out);
+// Fills in a body of the island for collision tests, in this pose and at these rates. part: of a compound; NULL: all of
+// the body.
+void ob_narrowphase_place(const ob_solver *s, uint32_t row, const ob_hull *part, ob_vec3 p, const ob_mat3 *r, ob_vec3 v,
+			  ob_vec3 w, ob_placed *out);
 
 // Returns the collision test that the run's settings ask for; it takes any two shapes.
 ob_manifold_finder ob_narrowphase_finder(ob_solver *s);

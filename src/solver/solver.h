@@ -36,6 +36,8 @@ typedef struct ob_island_pair {
 	uint32_t pair; // number with which its contact is reported
 	uint32_t a, b; // indices of objects
 	uint32_t fixed; // index of the one that is no member; OB_NO_FIXED: both are members
+	const ob_hull
+		*part[2]; // of a and b, those of compounds: the parts that may touch; NULL: their own hulls, if any
 	double limit; // m, as ob_pair_key.limit
 	bool kept; // its state has been kept, so it is to be reported from now on
 	bool newest; // its state was written in the step before

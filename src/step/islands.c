@@ -52,6 +52,10 @@ static void read_pair(ob_sim *s, ob_island_pair *to, uint32_t pair)
 				.limit = k->limit,
 				.kept = k->record != OB_NO_RECORD,
 				.before = before };
+	if (ob_pair_parts(k))
+		for (int side = 0; side < 2; side++)
+			to->part[side] = ob_part_of(s->u, ob_passport_of(s->u, side ? k->b : k->a),
+						    side ? k->part_b : k->part_a);
 	if (before) {
 		const ob_pair_record *r = &s->data->record[k->record];
 		to->newest = r->stamp[before - r->version] == x->in.step + 1;
@@ -235,7 +239,7 @@ static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 
 // ---- ballistic advance
 
-// True for a body near planes only, or two near each other and planes, with no resting contact, and no late contact in
+// True for a body near planes only, or two that are no compounds near each other and planes, with no resting contact, and no late contact in
 // this step: a ballistic advance may suffice. A contact rests if it carried a load, or if the body has been slow.
 static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 {
@@ -253,7 +257,7 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 		const ob_pair_key *k = &data->pair[data->island_pair[is->first_pair + i]];
 		const bool a = data->schedule[k->a].state == OB_SCHEDULE_PLANE,
 			   b = data->schedule[k->b].state == OB_SCHEDULE_PLANE;
-		const bool met = data->result_island[k->a] == data->result_island[k->b];
+		const bool met = data->result_island[k->a] == data->result_island[k->b] && !ob_pair_parts(k);
 		if ((!a && !b && !met) || (k->active && (ob_newest_motion(s->u, a ? k->b : k->a)->rest_time > 0 ||
 							 ob_pair_carried_load(ob_pair_state_before(s->u, k)))))
 			return false;

@@ -40,7 +40,7 @@ typedef struct moving_pair {
 } moving_pair;
 
 // Returns shape, pose and velocity in the coming step, if nothing new touches the object.
-static ob_placed shape_of(const pair_check *c, uint32_t id, const ob_motion *m, uint64_t steps)
+static ob_placed shape_of(const pair_check *c, uint32_t id, uint32_t part, const ob_motion *m, uint64_t steps)
 {
 	const ob_passport *p = ob_passport_of(c->u, id);
 	const double h = c->h;
@@ -57,7 +57,7 @@ static ob_placed shape_of(const pair_check *c, uint32_t id, const ob_motion *m, 
 			  .rest_depth = ob_narrowphase_rest_depth(&c->s->solver, ob_shape_thickness(p->shape, p->size),
 								  ob_norm2(c->s->settings->gravity) > 0),
 			  .far_future = ob_narrowphase_far_future(&c->s->solver),
-			  .hull = ob_hull_of(c->u, p) };
+			  .hull = ob_part_of(c->u, p, part) };
 	return out;
 }
 
@@ -69,7 +69,7 @@ static moving_pair moving_pair_of(const pair_check *c, const ob_pair_key *k)
 	p.reach = a->reach + b->reach;
 	for (int i = 0; i < 2; i++) {
 		uint32_t id = i ? k->b : k->a;
-		p.at[i] = shape_of(c, id, ob_result_of(c->u, id), c->steps);
+		p.at[i] = shape_of(c, id, i ? k->part_b : k->part_a, ob_result_of(c->u, id), c->steps);
 		p.thin = ob_min(p.thin, ob_shape_thickness(p.at[i].shape, p.at[i].size));
 	}
 	return p;
@@ -102,7 +102,7 @@ static bool passed_through(const pair_check *c, const ob_pair_key *k, const movi
 	moving_pair start = *end;
 	double apart;
 	for (int i = 0; i < 2; i++) {
-		start.at[i] = shape_of(c, id[i], ob_newest_motion(c->u, id[i]), step);
+		start.at[i] = shape_of(c, id[i], i ? k->part_b : k->part_a, ob_newest_motion(c->u, id[i]), step);
 		start.at[i].v = ob_scale(ob_sub(end->at[i].p, start.at[i].p), 1 / end->h);
 	}
 	if (relative_speed(&start.at[0], &start.at[1], end->h) * end->h < tunnel_share * end->thin)

@@ -190,18 +190,33 @@ double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t 
 	return distance > path_in_step(u, a, b, paths, steps) ? paths + distance : -1;
 }
 
-static void add_pair(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps)
+static void add_pair(ob_universe *u, const ob_pair_key *key, uint64_t steps)
 {
 	ob_step_data *data = ob_universe_step_data(u);
-	const uint32_t a = id < other ? id : other, b = id < other ? other : id;
 	uint32_t pair;
 	if (!take_pair(u, &pair))
 		return;
-	data->pair[pair] = (ob_pair_key){ .a = a, .b = b, .record = OB_NO_RECORD, .limit = NAN };
+	data->pair[pair] = *key;
 	link_pair(u, pair);
 	ob_pair_enter_check(u, pair, steps); // check at once
 	if (data->count->checks < data->pairs_max)
 		data->check[data->count->checks++] = pair;
+}
+
+// Adds a pair of the two, or one for each part of a compound. A plane touches the hull of all parts.
+static void add_pairs(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps)
+{
+	ob_pair_key k = {
+		.a = id < other ? id : other, .b = id < other ? other : id, .record = OB_NO_RECORD, .limit = NAN
+	};
+	const ob_passport *a = ob_passport_of(u, k.a), *b = ob_passport_of(u, k.b);
+	const bool plane = ob_shape_is(a->shape, OB_UNBOUNDED) || ob_shape_is(b->shape, OB_UNBOUNDED);
+	const uint32_t of_a = plane ? 0 : ob_parts_of(u, a), of_b = plane ? 0 : ob_parts_of(u, b);
+	for (uint32_t i = of_a > 0; i <= of_a; i++)
+		for (uint32_t j = of_b > 0; j <= of_b; j++) {
+			k.part_a = i & OB_HULL_PARTS_MAX, k.part_b = j & OB_HULL_PARTS_MAX;
+			add_pair(u, &k, steps);
+		}
 }
 
 void ob_pairs_measure(ob_universe *u, uint64_t steps)
@@ -254,6 +269,20 @@ static void add_change(changes *c, uint32_t change)
 	c->n++;
 }
 
+// True if the pair may end: a pair with a record stays until the step is over, as it may have to be solved again, and so
+// do all pairs of its two objects.
+static bool may_end(const ob_step_data *data, uint32_t id, const ob_pair_key *k)
+{
+	ob_pair_place at;
+	bool kept = k->record != OB_NO_RECORD;
+	for (uint32_t link = ob_pair_parts(k) ? data->first_pair[id] : 0; !kept && ob_pair_at(data, link, &at);
+	     link = ob_pair_next(data, at)) {
+		const ob_pair_key *x = &data->pair[at.pair];
+		kept = x->a == k->a && x->b == k->b && x->record != OB_NO_RECORD;
+	}
+	return !kept;
+}
+
 // Ends pairs that the query has not found again, and begins new ones. found: n neighbours, ascending; had: [n] scratch.
 // Static objects keep no list of their pairs, and are queried when they are created: then they have none.
 static void compare_pairs(const ob_universe *u, uint32_t id, const uint32_t *found, uint32_t n, uint32_t *had,
@@ -269,8 +298,7 @@ static void compare_pairs(const ob_universe *u, uint32_t id, const uint32_t *fou
 		const uint32_t other = at.side ? k->a : k->b, place = place_of(found, n, other);
 		if (place < n)
 			had[place] = 1;
-		// A pair with a record stays until the step is over: it may have to be solved again.
-		else if (k->record == OB_NO_RECORD && decides(u, id, other))
+		else if (may_end(data, id, k) && decides(u, id, other))
 			add_change(to, OB_PAIR_ENDS | at.pair);
 	}
 	for (uint32_t i = 0; i < n; i++)
@@ -321,7 +349,7 @@ static void change_pairs(ob_universe *u, uint32_t id, uint64_t steps)
 		else if (*change & OB_PAIR_ENDS)
 			drop_pair(u, *change & ~OB_PAIR_ENDS);
 		else
-			add_pair(u, id, *change, steps);
+			add_pairs(u, id, *change, steps);
 }
 
 static void prefetch_changes(const ob_step_data *data, const uint32_t *queried, uint32_t i, uint32_t n)

@@ -12,7 +12,7 @@ typedef struct copy {
 	float bounds[6];
 } copy;
 
-// Copies an object at a time (s). false: there is none, or its numbers are implausible.
+// Copies an object at a time (s), with its hull. false: there is none, or its numbers are implausible.
 static bool take(const ob_universe *u, uint32_t id, double time, copy *out)
 {
 	ob_motion m;
@@ -25,6 +25,24 @@ static bool take(const ob_universe *u, uint32_t id, double time, copy *out)
 	const ob_state s = ob_published_at(&m, p, time);
 	out->solid = (ob_solid){ p->shape, p->size, s.pose.p, ob_quat_matrix(s.pose.q), hulled ? &out->hull : NULL };
 	return true;
+}
+
+// Copies the hull of part k of n of an object that was taken. n 0: it is no compound, and has its hull.
+static bool take_part(const ob_universe *u, uint32_t k, uint32_t n, copy *x)
+{
+	return !n || ob_universe_get_hull(u, x->passport.hull + k + 1, &x->hull);
+}
+
+// True if a part of one overlaps a part of the other. An object that is no compound is its only part.
+static bool overlap(const ob_universe *u, copy *a, copy *b)
+{
+	const uint32_t of_a = a->solid.hull ? a->hull.parts : 0, of_b = b->solid.hull ? b->hull.parts : 0;
+	bool found = false;
+	for (uint32_t i = 0; !found && i <= of_a - (of_a > 0); i++)
+		for (uint32_t j = 0; !found && j <= of_b - (of_b > 0); j++)
+			found = take_part(u, i, of_a, a) && take_part(u, j, of_b, b) &&
+				ob_depth(&a->solid, &b->solid) > 0;
+	return found;
 }
 
 static bool boxes_overlap(const float *a, const float *b)
@@ -52,8 +70,8 @@ size_t ob_universe_get_inside(const ob_universe *u, uint32_t sensor, uint32_t *i
 	for (uint32_t id = 0; id < info.capacity; id++) {
 		if (!ob_universe_get_passport(u, id, &other.passport) ||
 		    !ob_sensor_finds(&one.passport, &other.passport) || !ob_universe_get_bounds(u, id, other.bounds) ||
-		    !boxes_overlap(one.bounds, other.bounds) || !take(u, id, info.time, &other) ||
-		    !(ob_depth(&one.solid, &other.solid) > 0))
+		    !boxes_overlap(one.bounds, other.bounds) || !take(u, sensor, info.time, &one) ||
+		    !take(u, id, info.time, &other) || !overlap(u, &one, &other))
 			continue;
 		if (n < max)
 			ids[n] = id;

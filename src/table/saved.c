@@ -233,10 +233,10 @@ static bool check_pairs(const ob_saved_universe *s, ob_error *e)
 	for (uint32_t i = 0; i < s->pairs; i++) {
 		const ob_pair_key *k = &s->pair[i], *last = i ? k - 1 : NULL;
 		const bool ids = k->a < k->b && is_there(s, k->a) && is_there(s, k->b) &&
-				 (!last || k->a > last->a || (k->a == last->a && k->b > last->b));
+				 (!last || ob_pairs_by_ids(last, k) < 0);
 		const bool moves = ids && (ob_schedule_is_dynamic(&s->schedule[k->a]) ||
 					   ob_schedule_is_dynamic(&s->schedule[k->b]));
-		const bool flags = k->active <= 1 && k->expected <= 1 && k->late <= 1 && k->in_island <= 1;
+		const bool flags = k->active <= 1 && k->in_island <= 1;
 		if (!moves || !flags || isnan(k->limit) || (k->active && k->record == OB_NO_RECORD))
 			return ob_fail(e, "pair %u makes no sense", i);
 		if (k->record == OB_NO_RECORD)

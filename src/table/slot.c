@@ -73,6 +73,18 @@ const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
 	return ob_shape_is(p->shape, OB_HULLED) ? ob_hull_at(u, p->hull) : NULL;
 }
 
+uint32_t ob_parts_of(const ob_universe *u, const ob_passport *p)
+{
+	const ob_hull *h = ob_hull_of(u, p);
+	return !h || h->parts > OB_HULL_PARTS_MAX || p->hull + h->parts >= u->header.sizes.hulls ? 0 : h->parts;
+}
+
+const ob_hull *ob_part_of(const ob_universe *u, const ob_passport *p, uint32_t part)
+{
+	const ob_hull *h = ob_hull_of(u, p);
+	return part && part <= ob_parts_of(u, p) ? h + part : h;
+}
+
 bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h)
 {
 	if (hull >= u->header.sizes.hulls || !ob_hull_makes_sense(h) || !ob_pages_take(u, OB_AREA_HULL, hull, 1))

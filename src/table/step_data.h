@@ -51,9 +51,11 @@ typedef struct ob_pair_key {
 	uint32_t a, b; // ids, a < b
 	uint32_t record; // index of its ob_pair_record; OB_NO_RECORD = none: it did not touch when the step began
 	uint8_t active; // 1 = touching: its record has points
-	uint8_t expected; // 1 = apart, and expected to touch in the coming step
+	uint8_t expected : 1; // 1 = apart, and expected to touch in the coming step
 	// 1 = a late contact: it touched in this step unexpectedly; both islands are merged and solved again
-	uint8_t late;
+	uint8_t late : 1;
+	// Parts of compounds, from 1: each part that may touch has a pair. 0: the object as a whole.
+	uint8_t part_a : 4, part_b : 4;
 	uint8_t in_island; // 1 = its island's solver handles it in this step
 	double limit; // m: the pair cannot touch before path_a + path_b exceeds this
 	uint32_t
@@ -61,11 +63,18 @@ typedef struct ob_pair_key {
 	uint32_t clear_as_of; // published another motion since so many steps were complete
 } ob_pair_key;
 
-// For qsort: by ids, ascending. Places in pair[] depend on the run, so code that needs an order sorts.
+static inline uint32_t ob_pair_parts(const ob_pair_key *k)
+{
+	return (uint32_t)k->part_a << 4 | k->part_b;
+}
+
+// For qsort: by ids, then by parts, ascending. Places in pair[] depend on the run, so code that needs an order sorts.
 static inline int ob_pairs_by_ids(const void *x, const void *y)
 {
 	const ob_pair_key *a = x, *b = y;
-	return a->a != b->a ? (a->a < b->a ? -1 : 1) : a->b < b->b ? -1 : a->b > b->b;
+	if (a->a != b->a || a->b != b->b)
+		return a->a != b->a ? (a->a < b->a ? -1 : 1) : a->b < b->b ? -1 : 1;
+	return ob_pair_parts(a) < ob_pair_parts(b) ? -1 : ob_pair_parts(a) > ob_pair_parts(b);
 }
 
 // A pair's place in the lists of pairs of its two objects (step/pairs.h): [0] in that of a, [1] in that of b. Links are

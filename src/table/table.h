@@ -179,6 +179,9 @@ void ob_prefetch_versions(const ob_universe *u, uint32_t id); // read by the two
 void ob_prefetch_slot(const ob_universe *u, uint32_t id); // all of it
 const ob_hull *ob_hull_at(const ob_universe *u, uint32_t hull); // NULL: no such hull
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p); // NULL: not a hull
+// Hull of a part of a compound, from 1; part 0: as ob_hull_of.
+const ob_hull *ob_part_of(const ob_universe *u, const ob_passport *p, uint32_t part);
+uint32_t ob_parts_of(const ob_universe *u, const ob_passport *p); // 0: not a compound
 // The data of the step (step_data.h); ordered by the gate.
 ob_step_data *ob_universe_step_data(const ob_universe *u);
 
