@@ -77,6 +77,14 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		ob_number_real("delay", a->value[OB_OPTION_DELAY], 0, 10, &r->free.delay, e));
 }
 
+static bool has_compounds(const ob_scene *s)
+{
+	uint32_t i = 0;
+	while (i < s->hulls && !s->hull[i].parts)
+		i++;
+	return i < s->hulls;
+}
+
 // Refuses what a free run cannot have.
 static bool check(const ob_run_request *r, const ob_scene *s, ob_error *e)
 {
@@ -91,6 +99,8 @@ static bool check(const ob_run_request *r, const ob_scene *s, ob_error *e)
 		return ob_fail(e, "--sync free: the scene has scripts, which run in lockstep alone");
 	if (s->joints > 0)
 		return ob_fail(e, "--sync free: the scene has joints, which hold in lockstep alone");
+	if (has_compounds(s))
+		return ob_fail(e, "--sync free: the scene has compounds, which collide in lockstep alone");
 	if (r->free.coupling == OB_COUPLING_LEDGER &&
 	    (r->run.solver != OB_SOLVER_COLOURED || r->run.integrator != OB_INTEGRATOR_EXACT))
 		return ob_fail(e, "--coupling ledger: a pair has one impulse, so leave --solver and --integrator away");

@@ -128,6 +128,7 @@ struct joined {
 
 struct search {
 	const ob_passport *passport; // [ids]
+	uint32_t items; // at most, of solids and planes
 	struct item *item;
 	struct box *box;
 	struct node *node;
@@ -186,8 +187,8 @@ static bool may_overlap(const struct search *s, uint32_t a, uint32_t b)
 
 static void add_depth(struct search *s, struct item *a, struct item *b)
 {
-	if ((a->fixed && b->fixed) || !ob_passport_collides(&s->passport[a->id], &s->passport[b->id]) ||
-	    may_overlap(s, a->id, b->id))
+	if (a->id == b->id || (a->fixed && b->fixed) ||
+	    !ob_passport_collides(&s->passport[a->id], &s->passport[b->id]) || may_overlap(s, a->id, b->id))
 		return;
 	a->overlaps++;
 	b->overlaps++;
@@ -212,28 +213,50 @@ static bool boxes_overlap(const double *a, const double *b)
 	return true;
 }
 
+// Number of solids that an object consists of: a compound's are its parts.
+static uint32_t solids_of(const ob_snapshot *s, uint32_t id)
+{
+	const uint32_t parts = ob_snapshot_parts(s, id);
+	return parts ? parts : 1;
+}
+
+// Returns solid k of so many. Not for absent objects.
+static ob_solid solid_of(const ob_snapshot *s, uint32_t id, uint32_t k)
+{
+	const ob_passport *p = &s->passport[id];
+	const ob_pose pose = ob_snapshot_state(s, id).pose;
+	const ob_hull *hull = ob_snapshot_part(s, id, ob_snapshot_parts(s, id) ? k + 1 : 0);
+	return (ob_solid){ p->shape, p->size, pose.p, ob_quat_matrix(pose.q), hull };
+}
+
+static void find_box(const ob_solid *solid, ob_pose pose, double bounds[6])
+{
+	if (solid->hull)
+		ob_hull_bounds(solid->hull, pose, bounds);
+	else
+		ob_shape_bounds(solid->shape, solid->size, pose, bounds);
+}
+
 // Fills item[] with solids: those of finite size, each with a box, from the front, and planes from the back.
-static void collect_solids(const ob_snapshot *s, struct item *item, struct box *box, uint32_t *solids, uint32_t *planes)
+static void collect_solids(const ob_snapshot *s, struct search *x, uint32_t *solids, uint32_t *planes)
 {
 	*solids = *planes = 0;
 	for (uint32_t id = 0; id < s->count; id++) {
 		const ob_passport *p = &s->passport[id];
 		if (!(p->flags & OB_OBJECT_PRESENT) || p->shape == OB_SHAPE_NONE)
 			continue;
-		ob_pose pose = ob_snapshot_state(s, id).pose;
-		bool plane = ob_shape_is(p->shape, OB_UNBOUNDED);
-		struct item *i = plane ? &item[s->count - ++*planes] : &item[(*solids)++];
-		i->id = id;
-		i->overlaps = 0;
-		i->fixed = p->flags & OB_OBJECT_STATIC || !(p->mass > 0);
-		i->solid = (ob_solid){ p->shape, p->size, pose.p, ob_quat_matrix(pose.q), ob_snapshot_hull(s, id) };
-		if (plane)
-			continue;
-		box[*solids - 1].item = *solids - 1;
-		if (i->solid.hull)
-			ob_hull_bounds(i->solid.hull, pose, box[*solids - 1].bounds);
-		else
-			ob_shape_bounds(p->shape, p->size, pose, box[*solids - 1].bounds);
+		const bool plane = ob_shape_is(p->shape, OB_UNBOUNDED);
+		for (uint32_t k = 0; k < solids_of(s, id); k++) {
+			struct item *i = plane ? &x->item[x->items - ++*planes] : &x->item[(*solids)++];
+			i->id = id;
+			i->overlaps = 0;
+			i->fixed = p->flags & OB_OBJECT_STATIC || !(p->mass > 0);
+			i->solid = solid_of(s, id, k);
+			if (plane)
+				continue;
+			x->box[*solids - 1].item = *solids - 1;
+			find_box(&i->solid, ob_snapshot_state(s, id).pose, x->box[*solids - 1].bounds);
+		}
 	}
 }
 
@@ -365,7 +388,7 @@ static bool give_up(const struct search *s, const ob_snapshot *of, ob_error *e)
 	s->out->max_m = s->out->mean_m = NAN;
 	if (s->effort.stopped)
 		return ob_fail(e, "interrupted");
-	for (uint32_t i = 0; i < of->count; i++)
+	for (uint32_t i = 0; i < s->items; i++)
 		most = s->item[i].overlaps > most->overlaps ? &s->item[i] : most;
 	return ob_fail(
 		e,
@@ -381,19 +404,21 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 	if (!s->count)
 		return true;
 	struct search x = { .passport = s->passport, .out = out, .effort = { .stop = stop, .context = context } };
-	x.item = calloc(s->count, sizeof *x.item);
-	x.box = malloc(s->count * sizeof *x.box);
-	x.node = malloc(2 * (size_t)s->count * sizeof *x.node);
+	for (uint32_t id = 0; id < s->count; id++)
+		x.items += solids_of(s, id);
+	x.item = calloc(x.items, sizeof *x.item);
+	x.box = malloc(x.items * sizeof *x.box);
+	x.node = malloc(2 * (size_t)x.items * sizeof *x.node);
 	bool fine = x.item && x.box && x.node && list_joined(&x, s);
 	if (!fine) {
 		out->max_m = out->mean_m = NAN;
 		ob_fail(e, "no memory to measure the penetration of %u objects", s->count);
 	} else {
 		uint32_t solids, planes;
-		collect_solids(s, x.item, x.box, &solids, &planes);
+		collect_solids(s, &x, &solids, &planes);
 		for (uint32_t k = 0; k < planes; k++)
 			for (uint32_t i = 0; i < solids && !is_over(&x.effort); i++)
-				add_depth(&x, &x.item[s->count - 1 - k], &x.item[i]);
+				add_depth(&x, &x.item[x.items - 1 - k], &x.item[i]);
 		x.node[0] = (struct node){ .count = solids };
 		x.nodes = 1;
 		if (solids) {
@@ -418,11 +443,17 @@ void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out)
 
 // ---- separation
 
-static ob_solid solid_of(const ob_snapshot *s, uint32_t id)
+// Distance (m) of two objects, and the work of finding it; 0 if they overlap.
+static double gap_between(const ob_snapshot *s, uint32_t a, uint32_t b, uint64_t *work)
 {
-	const ob_passport *p = &s->passport[id];
-	ob_state state = ob_snapshot_state(s, id);
-	return (ob_solid){ p->shape, p->size, state.pose.p, ob_quat_matrix(state.pose.q), ob_snapshot_hull(s, id) };
+	double gap = INFINITY;
+	for (uint32_t i = 0; i < solids_of(s, a); i++)
+		for (uint32_t j = 0; j < solids_of(s, b); j++) {
+			const ob_solid one = solid_of(s, a, i), other = solid_of(s, b, j);
+			*work += work_of(&one, &other);
+			gap = fmin(gap, fmax(0, -ob_depth(&one, &other)));
+		}
+	return gap;
 }
 
 // Impulse (N s) of all points of the contact at *i, which are consecutive; moves *i behind them.
@@ -444,13 +475,11 @@ void ob_measure_separation(const ob_snapshot *s, ob_separation *out, bool (*stop
 		const ob_contact_point *c = &s->contact[i];
 		if (!(contact_impulse(s, &i) > 0) || c->a >= s->count || c->b >= s->count)
 			continue;
-		ob_solid a = solid_of(s, c->a), b = solid_of(s, c->b);
-		effort.work += work_of(&a, &b);
 		if (is_over(&effort)) {
 			*out = (ob_separation){ NAN, NAN, 0 };
 			return;
 		}
-		double gap = fmax(0, -ob_depth(&a, &b));
+		const double gap = gap_between(s, c->a, c->b, &effort.work);
 		out->pairs++;
 		sum += gap;
 		out->max_m = fmax(out->max_m, gap);

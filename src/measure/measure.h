@@ -38,6 +38,9 @@ bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from);
 void ob_snapshot_finish(ob_snapshot *s);
 // NULL: not a hull.
 const ob_hull *ob_snapshot_hull(const ob_snapshot *s, uint32_t id);
+// Number of a compound's parts, and one of them, from 1; part 0: as ob_snapshot_hull. 0: not a compound.
+uint32_t ob_snapshot_parts(const ob_snapshot *s, uint32_t id);
+const ob_hull *ob_snapshot_part(const ob_snapshot *s, uint32_t id, uint32_t part);
 // State of a present object at the snapshot's time: its motion may be older (asleep, static, in flight).
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id);
 

@@ -71,20 +71,31 @@ static bool expect_hulls(ob_snapshot *s, uint64_t created, uint32_t hulls)
 	return true;
 }
 
-static bool take_hull(ob_snapshot *s, const ob_universe *u, const ob_passport *p, ob_error *e)
+static bool take_hull_of(ob_snapshot *s, const ob_universe *u, const ob_passport *p, uint32_t hull, ob_error *e)
 {
-	if (!ob_shape_is(p->shape, OB_HULLED) || (p->hull < s->hulls && s->hull[p->hull]))
+	if (hull < s->hulls && s->hull[hull])
 		return true;
 	// it may have come since the number of hulls was read
-	ob_hull *h = expect_hulls(s, s->created, p->hull + 1u) ? malloc(sizeof *h) : NULL;
+	ob_hull *h = expect_hulls(s, s->created, hull + 1) ? malloc(sizeof *h) : NULL;
 	if (!h)
 		return ob_fail(e, "no memory for the hull of object %u", p->id);
-	if (!ob_universe_get_hull(u, p->hull, h)) {
+	if (!ob_universe_get_hull(u, hull, h)) {
 		free(h);
 		return ob_fail(e, "object %u (%.*s) has a hull that makes no sense", p->id, OB_NAME_MAX, p->name);
 	}
-	s->hull[p->hull] = h;
+	s->hull[hull] = h;
 	return true;
+}
+
+// Takes the object's hull, and those of a compound's parts, unless they are known.
+static bool take_hulls(ob_snapshot *s, const ob_universe *u, const ob_passport *p, ob_error *e)
+{
+	if (!ob_shape_is(p->shape, OB_HULLED))
+		return true;
+	bool fine = take_hull_of(s, u, p, p->hull, e);
+	for (uint32_t i = 1; fine && i <= s->hull[p->hull]->parts; i++)
+		fine = take_hull_of(s, u, p, p->hull + i, e);
+	return fine;
 }
 
 // An object that vanishes between two reads is absent; one that stays without a state is broken.
@@ -98,7 +109,7 @@ static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_er
 	if (!ob_universe_get_passport(u, id, p) || !(p->flags & OB_OBJECT_PRESENT))
 		return true;
 	if (ob_universe_get_motion(u, id, &s->motion[id]))
-		return take_hull(s, u, p, e);
+		return take_hulls(s, u, p, e);
 	bool there = ob_universe_get_passport(u, id, &again) && again.generation == p->generation;
 	if (there)
 		return ob_fail(e, "object %u (%.*s) has published no state that makes sense", id, OB_NAME_MAX, p->name);
@@ -213,6 +224,21 @@ const ob_hull *ob_snapshot_hull(const ob_snapshot *s, uint32_t id)
 {
 	const ob_passport *p = &s->passport[id];
 	return ob_shape_is(p->shape, OB_HULLED) && p->hull < s->hulls ? s->hull[p->hull] : NULL;
+}
+
+uint32_t ob_snapshot_parts(const ob_snapshot *s, uint32_t id)
+{
+	const ob_hull *h = ob_snapshot_hull(s, id);
+	const uint32_t first = s->passport[id].hull + 1u;
+	for (uint32_t i = 0; h && i < h->parts; i++)
+		if (first + i >= s->hulls || !s->hull[first + i])
+			return 0;
+	return h ? h->parts : 0;
+}
+
+const ob_hull *ob_snapshot_part(const ob_snapshot *s, uint32_t id, uint32_t part)
+{
+	return part ? s->hull[s->passport[id].hull + part] : ob_snapshot_hull(s, id);
 }
 
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id)

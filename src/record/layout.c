@@ -80,6 +80,8 @@ static const ob_record_member hull_members[] = {
 	HULL(corners, OB_RECORD_U32),
 	HULL(faces, OB_RECORD_U32),
 	HULL(edges, OB_RECORD_U32),
+	HULL(parts, OB_RECORD_U16),
+	HULL(is_part, OB_RECORD_U16),
 	HULL(radius, OB_RECORD_F64),
 	HULL(inner, OB_RECORD_F64),
 	HULL(thickness, OB_RECORD_F64),

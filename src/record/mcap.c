@@ -215,7 +215,7 @@ static void print_round(text *t, const ob_outline *o, const float c[4])
 
 static void print_hull(text *t, const ob_hull *h, const float c[4])
 {
-	print(t, "\"cubes\":[],\"spheres\":[],\"cylinders\":[],\"triangles\":[{");
+	print(t, "{");
 	print_pose(t, 0);
 	print(t, ",\"points\":[");
 	for (uint32_t i = 0; i < h->corners; i++)
@@ -228,16 +228,21 @@ static void print_hull(text *t, const ob_hull *h, const float c[4])
 			print(t, "%s%u,%u,%u", first ? "" : ",", h->loop[h->first[f]], h->loop[k - 1], h->loop[k]);
 	print(t, "],\"colors\":[]");
 	print_colour(t, c);
-	print(t, "}]");
+	print(t, "}");
 }
 
 static void print_body(text *t, const ob_snapshot *s, uint32_t id)
 {
 	const ob_passport *p = &s->passport[id];
 	ob_outline o;
-	const ob_hull *hull = ob_snapshot_hull(s, id);
-	if (hull) {
-		print_hull(t, hull, p->colour);
+	if (ob_snapshot_hull(s, id)) {
+		const uint32_t parts = ob_snapshot_parts(s, id);
+		print(t, "\"cubes\":[],\"spheres\":[],\"cylinders\":[],\"triangles\":[");
+		for (uint32_t i = parts > 0; i <= parts; i++) {
+			print(t, i > 1 ? "," : "");
+			print_hull(t, ob_snapshot_part(s, id, i), p->colour);
+		}
+		print(t, "]");
 	} else if (ob_shape_outline(p->shape, p->size, &o)) {
 		if (o.rim == 0 && o.ball == 0)
 			print_cube(t, o.half, 0, p->colour);

@@ -428,6 +428,18 @@ static uint32_t known_hulls(const ob_snapshot *s)
 	return known;
 }
 
+// Makes the triangles of a hull, of a compound those of its parts; vertex NULL: none. Returns the number of vertices.
+static uint32_t mesh_of(const ob_snapshot *s, uint32_t hull, ob_vertex *vertex)
+{
+	const ob_hull *h = s->hull[hull];
+	uint32_t n = 0;
+	if (!h || !h->parts)
+		return h ? ob_mesh_of_hull(h, vertex) : 0;
+	for (uint32_t i = hull + 1; i <= hull + h->parts && i < s->hulls; i++)
+		n += s->hull[i] ? ob_mesh_of_hull(s->hull[i], vertex ? vertex + n : NULL) : 0;
+	return n;
+}
+
 bool ob_passes_take_hulls(ob_passes *p, const ob_snapshot *s)
 {
 	const uint32_t known = known_hulls(s);
@@ -439,15 +451,14 @@ bool ob_passes_take_hulls(ob_passes *p, const ob_snapshot *s)
 	p->hull_first = first;
 	for (uint32_t i = 0; i < s->hulls; i++) {
 		first[i] = vertices;
-		vertices += s->hull[i] ? ob_mesh_of_hull(s->hull[i], NULL) : 0;
+		vertices += mesh_of(s, i, NULL);
 	}
 	first[s->hulls] = vertices;
 	ob_vertex *vertex = malloc((vertices + 1) * sizeof *vertex);
 	if (!vertex)
 		return false;
 	for (uint32_t i = 0; i < s->hulls; i++)
-		if (s->hull[i])
-			ob_mesh_of_hull(s->hull[i], vertex + first[i]);
+		mesh_of(s, i, vertex + first[i]);
 	glBindBuffer(GL_ARRAY_BUFFER, p->hull_vertices);
 	glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(vertices * sizeof *vertex), vertex, GL_STATIC_DRAW);
 	free(vertex);

@@ -102,6 +102,7 @@ int ob_scene_call_record(lua_State *L);
 int ob_scene_call_sky(lua_State *L);
 int ob_scene_call_sun(lua_State *L);
 int ob_scene_call_ground(lua_State *L);
+int ob_scene_call_compound(lua_State *L);
 int ob_scene_call_material(lua_State *L);
 int ob_scene_call_camera(lua_State *L);
 int ob_scene_call_param(lua_State *L);
@@ -115,6 +116,12 @@ int ob_scene_call_random_integer(lua_State *L); // math.random
 ob_quat ob_scene_turn_to(ob_vec3 n);
 // Adds an object of this shape from the table at the bottom of the stack.
 void ob_scene_add(lua_State *L, ob_shape shape);
+// Finds or adds the hull of these points; objects with the same points and moments share it. inertia: m^2, principal
+// moments per kilogram; NAN: a homogeneous body's. It stays where it is until the next hull is added.
+const ob_hull *ob_builder_hull(lua_State *L, ob_builder *b, const ob_points *p, ob_vec3 inertia);
+// The same for a compound of the list of parts at the top of the stack; their hulls follow it. density: kg/m^3, their
+// mean; NAN: they have none.
+const ob_hull *ob_builder_compound(lua_State *L, ob_builder *b, ob_vec3 inertia, double *density);
 
 // Sets the tolerance if it is a share of the thinnest object's thickness; a scene in which nothing moves keeps the
 // default. false and e: it would be out of its limits.

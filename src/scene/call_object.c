@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
 #include "base/spelling.h"
 #include "hull/hull.h"
 #include "scene/builder.h"
@@ -131,7 +130,7 @@ typedef struct body {
 	ob_points points;
 	const ob_hull *hull; // in the scene; NULL: another shape
 	float colour[4];
-	bool fixed, grid, path, varying_force, avatar, inputs, outputs, parameters;
+	bool fixed, grid, path, varying_force, avatar, inputs, outputs, parameters, parts;
 	bool own_colour, own_surface; // set by the object or its material
 	uint32_t group, hits; // hits: bit g, group g
 	bool sensor;
@@ -471,57 +470,6 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	return o;
 }
 
-// Hash of what a hull is made of. inertia: m^2, principal moments per kilogram; NAN: a homogeneous body's.
-static uint64_t hash_points(const ob_points *p, ob_vec3 inertia)
-{
-	const uint64_t hash = ob_hash_on(OB_HASH_BEGIN, p->at, p->count * sizeof *p->at);
-	return isnan(inertia.x) ? hash : ob_hash_on(hash, &inertia, sizeof inertia);
-}
-
-static void grow_hulls(lua_State *L, ob_builder *b)
-{
-	ob_scene *s = b->scene;
-	const uint32_t room = b->hulls_room ? 2 * b->hulls_room : 8;
-	ob_hull *hull = realloc(s->hull, room * sizeof *hull);
-	if (hull)
-		s->hull = hull;
-	ob_hull_corners *corners = realloc(s->hull_corners, room * sizeof *corners);
-	if (corners)
-		s->hull_corners = corners;
-	uint64_t *points = realloc(b->hull_points, room * sizeof *points);
-	if (points)
-		b->hull_points = points;
-	if (!hull || !corners || !points)
-		ob_sandbox_fail(L, "hull: no memory left on this machine");
-	b->hulls_room = room;
-}
-
-// Finds or adds the hull of these points; objects with the same points and moments share it.
-static const ob_hull *find_hull(lua_State *L, ob_builder *b, const body *d)
-{
-	ob_scene *s = b->scene;
-	const ob_points *p = &d->points;
-	const ob_vec3 inertia = ob_scale(d->inertia, 1 / d->mass);
-	const uint64_t hash = hash_points(p, inertia);
-	ob_error e;
-	for (uint32_t i = 0; i < s->hulls; i++)
-		if (b->hull_points[i] == hash)
-			return &s->hull[i];
-	if (s->hulls == OB_SCENE_HULLS_MAX)
-		ob_sandbox_fail(L, "hull.points: expected at most %d different hulls in a scene", OB_SCENE_HULLS_MAX);
-	if (s->hulls == b->hulls_room)
-		grow_hulls(L, b);
-	if (!ob_hull_build(p->at, p->count, &s->hull[s->hulls], &e))
-		ob_sandbox_fail(L, "hull.points: %s", e.text);
-	ob_hull_find_corners(&s->hull[s->hulls], p->at, p->count, &s->hull_corners[s->hulls]);
-	if (!isnan(inertia.x) && b->options->joining) // hulls are handed over as their corners
-		ob_sandbox_fail(L, "hull.inertia: expected none: only hulls of the scene have it");
-	if (!isnan(inertia.x) && !ob_hull_set_inertia(&s->hull[s->hulls], inertia, &e))
-		ob_sandbox_fail(L, "hull.%s", e.text);
-	b->hull_points[s->hulls] = hash;
-	return &s->hull[s->hulls++];
-}
-
 ob_quat ob_scene_turn_to(ob_vec3 n)
 {
 	if (n.z < -1 + 1e-12)
@@ -574,10 +522,31 @@ void ob_scene_add(lua_State *L, ob_shape shape)
 	d.state = (ob_flat){ state_bytes, 0, sizeof state_bytes };
 	read_shape(L, shape, &d);
 	if (ob_shape_is(shape, OB_HULLED))
-		d.hull = find_hull(L, ob_sandbox_user(L), &d);
+		d.hull = ob_builder_hull(L, ob_sandbox_user(L), &d.points, ob_scale(d.inertia, 1 / d.mass));
 	if (ob_shape_is(shape, OB_UNBOUNDED))
 		d.q = ob_scene_turn_to(d.normal);
 	add(L, ob_shape_name(shape), shape, size_of(shape, &d), &d);
+}
+
+// compound { parts = { { size = {...}, at = {...} }, { points = {...} } }, ... }
+int ob_scene_call_compound(lua_State *L)
+{
+	static const ob_field fields[] = { F(parts, .kind = OB_FIELD_TABLE, .required = true), PLACE, MOVING, SURFACE,
+					   LOOKS };
+	unsigned char state_bytes[STATE_BYTES];
+	body d = nothing;
+	double density;
+	d.state = (ob_flat){ state_bytes, 0, sizeof state_bytes };
+	ob_fields_read(L, 1, "compound", fields, sizeof fields / sizeof *fields, &d);
+	lua_getfield(L, 1, "parts");
+	d.hull = ob_builder_compound(L, ob_sandbox_user(L), ob_scale(d.inertia, 1 / d.mass), &density);
+	lua_pop(L, 1);
+	if (!isnan(density) && !isnan(d.density))
+		ob_sandbox_fail(L, "compound.density: expected none where its parts have one");
+	if (isnan(d.mass) && !isnan(density))
+		d.density = density;
+	add(L, "compound", OB_SHAPE_HULL, ob_hull_size(d.hull), &d);
+	return 0;
 }
 
 int ob_scene_call_ground(lua_State *L)

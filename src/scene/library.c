@@ -517,7 +517,6 @@ static const char *const foreign[][2] = {
 	  "obsim has no shapes of meshes: hull { points = ... } collides, and an object's field mesh is drawn" },
 	{ "heightfield", "obsim has no height fields: ground is flat, and static boxes and hulls make relief" },
 	{ "terrain", "obsim has no terrain: ground is flat, and static boxes and hulls make relief" },
-	{ "compound", "obsim has no compound shapes" },
 	{ "light", "obsim has no lights: sun { ... } says where light comes from" },
 };
 

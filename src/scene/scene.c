@@ -69,6 +69,7 @@ static bool offer_calls(ob_sandbox *s, ob_error *e)
 		{ NULL, "sky", ob_scene_call_sky },
 		{ NULL, "sun", ob_scene_call_sun },
 		{ NULL, "ground", ob_scene_call_ground },
+		{ NULL, "compound", ob_scene_call_compound },
 		{ NULL, "material", ob_scene_call_material },
 		{ NULL, "camera", ob_scene_call_camera },
 		{ NULL, "script", ob_scene_call_script },

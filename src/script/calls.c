@@ -232,12 +232,28 @@ static int call_turned(lua_State *L)
 	return push_vector(L, ob_rotate(&m, v));
 }
 
-// Solid of an object at the present time.
-static ob_solid solid_of(const ob_script_runner *r, uint32_t id)
+// Solid of an object at the present time, or of a compound's part, from 1.
+static ob_solid solid_of(const ob_script_runner *r, uint32_t id, uint32_t part)
 {
 	const ob_passport *p = ob_passport_of(r->u, id);
 	const ob_state s = ob_published_at(ob_newest_motion(r->u, id), p, now_of(r));
-	return (ob_solid){ p->shape, p->size, s.pose.p, ob_quat_matrix(s.pose.q), ob_hull_of(r->u, p) };
+	return (ob_solid){ p->shape, p->size, s.pose.p, ob_quat_matrix(s.pose.q), ob_part_of(r->u, p, part) };
+}
+
+// True if the two overlap, compounds by any of their parts. L is charged for it.
+static bool overlap(lua_State *L, const ob_script_runner *r, uint32_t a, uint32_t b)
+{
+	enum { CLOSED_FORM = 16, SEARCH = 3000 }; // instructions of a depth
+	const uint32_t of_a = ob_parts_of(r->u, ob_passport_of(r->u, a)),
+		       of_b = ob_parts_of(r->u, ob_passport_of(r->u, b));
+	for (uint32_t i = of_a > 0; i <= of_a; i++)
+		for (uint32_t j = of_b > 0; j <= of_b; j++) {
+			const ob_solid one = solid_of(r, a, i), other = solid_of(r, b, j);
+			ob_sandbox_spend(L, ob_depth_needs_search(one.shape, other.shape) ? SEARCH : CLOSED_FORM);
+			if (ob_depth(&one, &other) > 0)
+				return true;
+		}
+	return false;
 }
 
 static bool boxes_overlap(const float *a, const float *b)
@@ -248,11 +264,7 @@ static bool boxes_overlap(const float *a, const float *b)
 // o:inside(): the objects in a sensor, in the order of their ids.
 static int call_inside(lua_State *L)
 {
-	enum {
-		AT_ONCE = 64,
-		CLOSED_FORM = 16,
-		SEARCH = 3000
-	}; // looked at between two charges; instructions of a depth
+	enum { AT_ONCE = 64 }; // looked at between two charges
 	const ob_script_runner *r = runner_of(L);
 	const ob_flat_object *o = object_at(L, 1, "inside");
 	const ob_passport *sensor = passport_of(r, o);
@@ -261,7 +273,6 @@ static int call_inside(lua_State *L)
 		return 0;
 	if (!(sensor->flags & OB_OBJECT_SENSOR))
 		ob_sandbox_fail(L, "inside: expected a sensor, as in sphere { radius = 1, sensor = true }");
-	const ob_solid solid = solid_of(r, o->id);
 	const float *box = r->data->bounds[o->id];
 	lua_newtable(L);
 	lua_Integer n = 0;
@@ -271,9 +282,7 @@ static int call_inside(lua_State *L)
 		if (r->data->schedule[id].state == OB_SCHEDULE_ABSENT || !boxes_overlap(box, r->data->bounds[id]) ||
 		    !ob_sensor_finds(sensor, ob_passport_of(r->u, id)))
 			continue;
-		const ob_solid other = solid_of(r, id);
-		ob_sandbox_spend(L, ob_depth_needs_search(solid.shape, other.shape) ? SEARCH : CLOSED_FORM);
-		if (!(ob_depth(&solid, &other) > 0))
+		if (!overlap(L, r, o->id, id))
 			continue;
 		push_object(L, r, id);
 		lua_rawseti(L, -2, ++n);

@@ -239,13 +239,15 @@ static void put_motion(ob_message *out, const known *k, double time, uint32_t *b
 
 // ---- objects
 
-static void put_hull(ob_message *out, const ob_feed_source *source, uint32_t number)
+// Returns the number of its parts.
+static uint32_t put_hull(ob_message *out, const ob_feed_source *source, uint32_t number)
 {
 	ob_hull h;
 	if (!source->hull(source->of, number, &h)) // corrupted by a faulty simulator
-		h.corners = h.faces = 0;
+		h.corners = h.faces = h.parts = 0;
 	ob_message_put_u8(out, h.corners);
 	ob_message_put_u8(out, h.faces);
+	ob_message_put_u8(out, h.parts);
 	ob_message_put(out, &(uint16_t){ (uint16_t)number }, 2);
 	for (uint32_t i = 0; i < h.corners; i++)
 		put_vec3(out, h.corner[i]);
@@ -253,6 +255,7 @@ static void put_hull(ob_message *out, const ob_feed_source *source, uint32_t num
 		ob_message_put_u8(out, h.first[f + 1] - h.first[f]);
 		ob_message_put(out, h.loop + h.first[f], h.first[f + 1] - h.first[f]);
 	}
+	return h.parts;
 }
 
 static void put_object(ob_message *out, const ob_feed_source *source, const known *k)
@@ -274,7 +277,8 @@ static void put_object(ob_message *out, const ob_feed_source *source, const know
 	for (int i = 0; i < 3; i++)
 		ob_message_put_f32(out, p->colour[i]);
 	if (ob_shape_is(p->shape, OB_HULLED))
-		put_hull(out, source, p->hull);
+		for (uint32_t i = 1, parts = put_hull(out, source, p->hull); i <= parts; i++)
+			put_hull(out, source, p->hull + i);
 	if (p->mesh)
 		ob_message_put_u8(out, p->mesh);
 	ob_message_put(out, p->name, name);

@@ -16,8 +16,9 @@
 //                     mesh's colours, 16: with the mesh's surface); u8 bytes of the name;
 //                     u8 surface: roughness, of 15, and 16 times metal, of 15
 //                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB);
-//                     hulls: u8 corners, u8 faces, u16 number, f32 p[3] of each corner (body's frame), and of each
-//                     face u8 corners, then u8 of each, counterclockwise;
+//                     hulls: u8 corners, u8 faces, u8 parts, u16 number, f32 p[3] of each corner (body's
+//                     frame), and of each face u8 corners, then u8 of each, counterclockwise; of a compound
+//                     then so many parts, each as a hull;
 //                     objects with a mesh: u8 its number, from 1; the name (UTF-8)
 //        motion       id less the previous one, in groups of 7 bits, low first, bit 7 on all but the last;
 //                     u8 kind, and 4: wide, 8: accelerated, 16: begun; f32 p[3]; i16 q[4] (w x y z, of 32767);

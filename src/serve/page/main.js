@@ -104,10 +104,10 @@ function groundHeight() {
 // ---- picking
 
 // Hit of a ray with a hull: the ray, in its frame, against the planes of all faces.
-function hitHull(b, from, ray) {
+function hitHull(hull, from, ray) {
 	let enter = -Infinity, leave = Infinity, normal = null;
-	for (const face of b.hull.faces) {
-		const [p, u, v] = face.slice(0, 3).map((k, i) => b.hull.corners[k].map((x, j) => (i ? x - b.hull.corners[face[0]][j] : x)));
+	for (const face of hull.faces) {
+		const [p, u, v] = face.slice(0, 3).map((k, i) => hull.corners[k].map((x, j) => (i ? x - hull.corners[face[0]][j] : x)));
 		const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
 		const rate = n[0] * ray[0] + n[1] * ray[1] + n[2] * ray[2];
 		const height = n[0] * (from[0] - p[0]) + n[1] * (from[1] - p[1]) + n[2] * (from[2] - p[2]), s = -height / rate;
@@ -121,7 +121,14 @@ function hitHull(b, from, ray) {
 	if (!normal || !(enter <= leave) || enter <= 0)
 		return null;
 	const l = Math.hypot(...normal);
-	return { s: enter, normal: turned(b.q, normal.map((x) => x / l)) };
+	return { s: enter, normal: normal.map((x) => x / l) };
+}
+
+// First hit with the body's hull, or with any of a compound's parts.
+function hitHulls(b, from, ray) {
+	const hits = (b.hull.parts.length ? b.hull.parts : [b.hull]).map((hull) => hitHull(hull, from, ray)).filter((at) => at);
+	const first = hits.sort((x, y) => x.s - y.s)[0];
+	return first ? { s: first.s, normal: turned(b.q, first.normal) } : null;
 }
 
 // m along the ray to the body's surface, and its normal there; null: no hit. Capsules and cylinders as their boxes.
@@ -132,7 +139,7 @@ function hit(b, from, ray) {
 		return d[2] > 0 && s > 0 ? { s, normal: turned(b.q, [0, 0, 1]) } : null;
 	}
 	if (isHulled(b.shape))
-		return hitHull(b, d, r);
+		return hitHulls(b, d, r);
 	const o = outlineOf(b.shape, b.size);
 	if (o.ball && !o.half[2]) {
 		const half = d[0] * r[0] + d[1] * r[1] + d[2] * r[2], c = half * half - (d[0] ** 2 + d[1] ** 2 + d[2] ** 2 - o.ball ** 2);

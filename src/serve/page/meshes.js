@@ -89,8 +89,12 @@ export function buildMeshes() {
 	return { vertices: new Float32Array(b.vertices), indices: new Uint16Array(b.indices), meshes: b.meshes };
 }
 
-// The faces of a hull as triangles, a corner and a normal a vertex, in metres.
+// The faces of a hull, or of a compound's parts, as triangles, a corner and a normal a vertex, in metres.
 export function hullVertices(hull) {
+	return new Float32Array((hull.parts.length ? hull.parts : [hull]).flatMap(triangles));
+}
+
+function triangles(hull) {
 	const out = [];
 	for (const face of hull.faces) {
 		const [a, b, c] = face.slice(0, 3).map((k) => hull.corners[k]);
@@ -100,5 +104,5 @@ export function hullVertices(hull) {
 			for (const corner of [face[0], face[k], face[k + 1]])
 				out.push(...hull.corners[corner], ...n.map((x) => x / l));
 	}
-	return new Float32Array(out);
+	return out;
 }

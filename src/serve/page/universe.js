@@ -231,11 +231,12 @@ export class Universe extends EventTarget {
 
 // { number, corners: [[x, y, z]], faces: [[index]] }, in the body's frame, faces counterclockwise from outside.
 function hearHull(r) {
-	const corners = r.u8(), faces = r.u8(), number = r.u16();
+	const corners = r.u8(), faces = r.u8(), parts = r.u8(), number = r.u16();
 	return {
 		number,
 		corners: Array.from({ length: corners }, () => r.vec3()),
 		faces: Array.from({ length: faces }, () => Array.from({ length: r.u8() }, () => r.u8())),
+		parts: Array.from({ length: parts }, () => hearHull(r)), // of a compound
 	};
 }
 
