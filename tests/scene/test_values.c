@@ -118,6 +118,38 @@ static void check_inertia(void)
 	ob_scene_free(s);
 }
 
+// A compound: a hull, followed by those of its parts; equal ones are made once, and mass follows densities.
+static void check_compounds(void)
+{
+	ob_scene *s =
+		load_good("local two = { { size = { 2, 2, 2 }, at = { -1, 0, 0 }, density = 1 },\n"
+			  "\t{ points = { { 0, -1, -1 }, { 2, -1, -1 }, { 0, 1, -1 }, { 2, 1, -1 }, { 0, -1, 1 },\n"
+			  "\t\t{ 2, -1, 1 }, { 0, 1, 1 }, { 2, 1, 1 } }, density = 3 } }\n"
+			  "compound { parts = two, at = { 5, 0, 0 } }\n"
+			  "compound { parts = two, at = { 15, 0, 0 }, mass = 2, name = 'twin' }\n"
+			  "compound { parts = { { size = { 1, 1, 1 }, at = { 0, 0, .2 } } }, at = { 0, 0, 3 },\n"
+			  "\tmass = 2, inertia = { 1, 2, 2.5 } }");
+	CHECK(s);
+	if (!s)
+		return;
+	const ob_object_def *o = s->object;
+	const ob_hull *h = &s->hull[o[0].passport.hull];
+	CHECK(s->objects == 3 && s->hulls == 5 && o[0].passport.hull == o[1].passport.hull);
+	CHECK(h->parts == 2 && h[1].is_part && h[2].is_part && !h->is_part && h[3].parts == 1);
+	CHECK(strcmp(o[0].passport.name, "compound#0") == 0 && o[0].passport.shape == OB_SHAPE_HULL);
+	CHECK_NEAR(h->volume, 16, 1e-12);
+	CHECK_NEAR(o[0].passport.mass, 8 * 1 + 8 * 3, 1e-12);
+	CHECK(o[1].passport.mass == 2);
+	CHECK_NEAR(o[0].state.pose.p.x, 5.5, 1e-12);
+	CHECK_NEAR(h[1].centre.x, -1.5, 1e-12);
+	CHECK_NEAR(h[2].centre.x, .5, 1e-12);
+	CHECK_NEAR(h->inertia.x, 2. / 3, 1e-12);
+	CHECK_NEAR(h->inertia.y, 2. / 3 + .25 * 2.25 + .75 * .25, 1e-12);
+	check_vec(o[2].passport.inertia, 1, 2, 2.5);
+	check_vec(o[2].state.pose.p, 0, 0, 3);
+	ob_scene_free(s);
+}
+
 static void check_free(void)
 {
 	ob_scene *s = load_good("scene { sync = 'free', update_rate = 500, max_lag = .01 }\nground {}");
@@ -276,6 +308,7 @@ int main(void)
 	check_joints();
 	check_groups();
 	check_inertia();
+	check_compounds();
 	check_free();
 	check_exactness();
 	check_share();

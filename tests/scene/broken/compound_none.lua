@@ -1,0 +1,2 @@
+-- expect: compound.parts
+compound { at = { 0, 0, 1 } }
