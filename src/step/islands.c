@@ -239,8 +239,9 @@ static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 
 // ---- ballistic advance
 
-// True for a body near planes only, or two that are no compounds near each other and planes, with no resting contact, and no late contact in
-// this step: a ballistic advance may suffice. A contact rests if it carried a load, or if the body has been slow.
+// True for a body near planes only, or two that are no compounds near each other and planes, with no resting contact, and
+// no late contact in this step: a ballistic advance may suffice. A contact rests if it carried a load, or if the body has
+// been slow.
 static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 {
 	const ob_step_data *data = s->data;
