@@ -592,7 +592,7 @@ bool ob_hull_build_compound(const ob_hull_part *part, uint32_t parts, ob_vec3 in
 		all += p->points;
 	}
 	*failed = 0;
-	ob_vec3 *point = malloc(all * sizeof *point), *at = point;
+	ob_vec3 *point = calloc(all, sizeof *point), *at = point;
 	if (!point)
 		return ob_fail(e, "no memory");
 	for (uint32_t i = 0; i < parts; at += part[i++].points)
