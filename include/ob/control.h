@@ -89,11 +89,14 @@ bool ob_controller_set_surface_velocities(ob_controller *c, const ob_change *cha
 // Motor of a joint: a change's id is that of the joint's first object, its values are the joint's number, as in <ob/joint.h>,
 // and the new target (m/s, rad/s, or m, rad).
 bool ob_controller_set_motors(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+// Removes joints: a change's id is that of the joint's first object, its value the joint's number.
+bool ob_controller_unjoin(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 // Kills the worker processes that simulate these objects (value unused): a fault, after which the run goes on to the same
 // bits. Refused where simulators are threads.
 bool ob_controller_kill(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 bool ob_controller_remove(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
-// Creates objects with the syntax of scenes: "box { size = { 1, 1, 1 }, at = { 0, 0, 5 } }". Writes at most max ids, which
+// Creates objects and joints with the syntax of scenes: "box { size = { 1, 1, 1 }, at = { 0, 0, 5 } }". Joints hold objects that
+// exist before the call, as they are now. Writes at most max ids, which
 // ascend, and their number, which may exceed it.
 bool ob_controller_create(ob_controller *c, const char *text, uint32_t *ids, size_t max, size_t *n, ob_error *e);
 // Sends a message of some words to an object's script: numbers, true, false, or text.

@@ -88,8 +88,8 @@ typedef struct ob_joint_load {
 
 // Name of a kind, as scenes have it ("hinge"). NULL: no such kind.
 const char *ob_joint_kind_name(uint32_t kind);
-// Number of joints that the universe has had; and one of them. false: none has this number, or its numbers are
-// implausible, or one of its objects does not exist any more.
+// One past the highest number of a joint; and one joint. false: none has this number, or its numbers are implausible, or one of
+// its objects does not exist any more. A joint that is added takes the number of one that has been removed.
 uint32_t ob_universe_joints(const ob_universe *u);
 bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passport *out);
 // Value and rate of its free axis (m, rad; m/s, rad/s), at the present time of the universe. false: it has no such joint now,

@@ -194,14 +194,15 @@ class Joint:
 
     def _passport(self):
         p = self._universe._joint(self._number)
-        if not p:
-            raise Error(f'joint {self._number} has ended')
+        if not p or p.name.decode() != self.name: # another joint may have its number by now
+            raise Error(f'joint {self._number} ({self.name}) has ended')
         return p
 
     def _read(self):
         value, rate = ctypes.c_double(), ctypes.c_double()
+        self._passport()
         if not _native.library().ob_universe_get_joint_value(self._universe._u, self._number, ctypes.byref(value), ctypes.byref(rate)):
-            raise Error(f'joint {self._number} has ended, or has no axis')
+            raise Error(f'joint {self._number} ({self.name}) has broken, or has no axis')
         return value.value, rate.value
 
     @property
@@ -214,8 +215,9 @@ class Joint:
 
     def _load(self):
         load = _native.JointLoad()
+        self._passport()
         if not _native.library().ob_universe_get_joint_load(self._universe._u, self._number, ctypes.byref(load)):
-            raise Error(f'joint {self._number} has ended')
+            raise Error(f'joint {self._number} ({self.name}) has ended')
         return load
 
     force = property(lambda self: _vector(self._load().force), doc='On its first object (N), world frame, mean over the last step.')
@@ -231,6 +233,9 @@ class Joint:
     @target.setter
     def target(self, target):
         self._universe.set_motors([self], [target])
+
+    def remove(self):
+        self._universe.unjoin([self])
 
 
 def _vector(v):
@@ -540,6 +545,10 @@ class Run(Universe):
     def set_surface_velocities(self, ids, velocity):
         """Velocities of the surfaces of static and kinematic objects, as of belts (m/s, body frame)."""
         self._change('ob_controller_set_surface_velocities', ids, (velocity, 3))
+
+    def unjoin(self, joints):
+        """Removes joints."""
+        self._change('ob_controller_unjoin', [j._passport().object[0] for j in joints], ([[j._number] for j in joints], 1))
 
     def set_motors(self, joints, target):
         """Targets of the motors of joints: rates that they hold, or values that they pull to."""

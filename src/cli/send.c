@@ -10,6 +10,7 @@
 #include "base/spelling.h"
 #include "cli/command.h"
 #include "host/ask.h"
+#include "host/joining.h"
 #include "host/pull.h"
 #include "shape/shape.h"
 #include "table/table.h"
@@ -50,7 +51,7 @@ static bool find_object(sending *s, const char *text, ob_error *e)
 static bool create(sending *s, ob_error *e)
 {
 	const char *text = s->word[0];
-	const ob_scene_options options = { .joining = true };
+	const ob_scene_options options = { .joining = true, .find = ob_joined_find, .with = s->u };
 	ob_scene *scene = ob_scene_load_text("obsim send", text, strlen(text), &options, e);
 	bool fine = scene;
 	for (uint32_t i = 0; fine && i < scene->objects; i++) {
@@ -65,8 +66,48 @@ static bool create(sending *s, ob_error *e)
 				       "create: expected neither path nor varying_force: a scene's objects have them");
 		fine = fine && ob_ask(s->u, &s->request, e);
 	}
+	for (uint32_t i = 0; fine && i < scene->joints; i++) {
+		ob_joint_request_make(&s->request, &scene->joint[i]);
+		fine = ob_ask(s->u, &s->request, e);
+	}
 	ob_scene_free(scene);
 	return fine;
+}
+
+// Finds a joint that has not broken by its name.
+static bool find_joint(sending *s, const char *name, ob_error *e)
+{
+	ob_spelling near = ob_spelling_start(name);
+	ob_joint_passport j;
+	for (uint32_t i = 0; i < ob_universe_joints(s->u); i++) {
+		if (!ob_universe_get_joint(s->u, i, &j) || j.flags & OB_JOINT_BROKEN)
+			continue;
+		if (strcmp(j.name, name) == 0) {
+			s->request.joint = i;
+			s->request.id = j.object[0], s->request.generation = j.generation[0];
+			return true;
+		}
+		ob_spelling_offer(&near, j.name);
+	}
+	return near.best ? ob_fail(e, "universe \"%s\" has no joint \"%s\": did you mean \"%s\"?", s->universe, name,
+				   near.best)
+			 : ob_fail(e, "universe \"%s\" has no joint \"%s\"", s->universe, name);
+}
+
+static bool unjoin(sending *s, ob_error *e)
+{
+	s->request.kind = OB_REQUEST_UNJOIN;
+	return find_joint(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+}
+
+static bool motor(sending *s, ob_error *e)
+{
+	char *end;
+	s->request.kind = OB_REQUEST_MOTOR;
+	s->request.motor = strtod(s->word[1], &end);
+	if (!*s->word[1] || *end)
+		return ob_fail(e, "motor: expected a number, got \"%s\"", s->word[1]);
+	return find_joint(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
 }
 
 // A request with an object alone.
@@ -233,6 +274,8 @@ static const struct verb {
 	{ "place", "place OBJECT X Y Z", 4, 0, place },
 	{ "velocity", "velocity OBJECT X Y Z", 4, 0, velocity },
 	{ "friction", "friction OBJECT NUMBER", 2, 0, friction },
+	{ "motor", "motor JOINT TARGET", 2, 0, motor },
+	{ "unjoin", "unjoin JOINT", 1, 0, unjoin },
 	{ "move", "move OBJECT WORKER", 2, 0, move },
 	{ "kill", "kill OBJECT", 1, 0, kill_simulator },
 	{ "keep", "keep", 0, 0, keep },

@@ -126,7 +126,7 @@ static bool list_all_links(ob_cluster *c, ob_universe *u, bool late)
 		const ob_pair_key *k = &data->pair[pair_at(&c->linked, i)];
 		note_link(c, u, k->a, k->b);
 	}
-	for (uint32_t i = 0; !late && i < data->joints; i++)
+	for (uint32_t i = 0; !late && i < ob_joints_end(data); i++)
 		if (ob_joint_is_across(u, &data->joint[i]))
 			note_link(c, u, data->joint[i].object[0], data->joint[i].object[1]);
 	return !c->links.lost;

@@ -201,6 +201,11 @@ bool ob_controller_set_motors(ob_controller *c, const ob_change *change, size_t 
 	return change_all(c, OB_CONTROL_MOTOR, change, n, e);
 }
 
+bool ob_controller_unjoin(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
+{
+	return change_all(c, OB_CONTROL_UNJOIN, change, n, e);
+}
+
 bool ob_controller_kill(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
 {
 	return change_all(c, OB_CONTROL_KILL, change, n, e);

@@ -43,7 +43,8 @@ typedef enum ob_control_command {
 	OB_CONTROL_SAVE, // payload: path of a checkpoint file, ended by 0
 	OB_CONTROL_SUBSCRIBE, // number: 1 = to contacts that begin and end, 0 = no longer
 	OB_CONTROL_EVENTS, // the answer has some of them, oldest first, and in number how many were lost
-	OB_CONTROL_MOTOR, // payload: count changes
+	OB_CONTROL_MOTOR, // payload: count changes; likewise the next
+	OB_CONTROL_UNJOIN,
 	OB_CONTROL_COMMANDS
 } ob_control_command;
 

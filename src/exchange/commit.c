@@ -249,7 +249,7 @@ static const char *commit_joint(ob_committer *c, ob_universe *u, const ob_mail_r
 {
 	const ob_found_joint *r = from->data;
 	const ob_step_data *data = ob_universe_step_data(u);
-	if (from->bytes != sizeof *r || r->joint >= data->joints)
+	if (from->bytes != sizeof *r || r->joint >= ob_joints_end(data))
 		return "has found a joint that does not exist";
 	const ob_joint_passport *j = &data->joint[r->joint];
 	bool given = false;
@@ -318,7 +318,7 @@ static bool are_sound_posts(const ob_script_cell *c)
 	while (at + sizeof(ob_script_post) <= c->outbox_bytes) {
 		const ob_script_post *post = (const ob_script_post *)(const void *)(c->outbox + at);
 		at += (uint32_t)sizeof *post;
-		if (post->kind > OB_SCRIPT_MOTOR || post->bytes % 8 || post->used > post->bytes ||
+		if (post->kind > OB_SCRIPT_UNJOIN || post->bytes % 8 || post->used > post->bytes ||
 		    post->bytes > c->outbox_bytes - at)
 			return false;
 		at += post->bytes;

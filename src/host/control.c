@@ -15,6 +15,7 @@
 #include "control/packet.h"
 #include "host/contact_events.h"
 #include "host/host_state.h"
+#include "host/joining.h"
 #include "host/pace.h"
 #include "shape/shape.h"
 
@@ -124,7 +125,7 @@ static const ob_request_kind changes[OB_CONTROL_COMMANDS] = {
 	[OB_CONTROL_PUSH] = OB_REQUEST_PUSH,       [OB_CONTROL_DRAG] = OB_REQUEST_DRAG,
 	[OB_CONTROL_RELEASE] = OB_REQUEST_RELEASE, [OB_CONTROL_FRICTION] = OB_REQUEST_FRICTION,
 	[OB_CONTROL_KILL] = OB_REQUEST_KILL,       [OB_CONTROL_SURFACE] = OB_REQUEST_SURFACE,
-	[OB_CONTROL_MOTOR] = OB_REQUEST_MOTOR,
+	[OB_CONTROL_MOTOR] = OB_REQUEST_MOTOR,     [OB_CONTROL_UNJOIN] = OB_REQUEST_UNJOIN,
 };
 
 static void read_change(const ob_change *change, ob_request *r)
@@ -186,7 +187,7 @@ static void list_created(ob_control *c, const ob_host *h)
 static bool create(ob_control *c, ob_host *h, ob_error *e)
 {
 	const ob_control_packet *p = &c->packet;
-	const ob_scene_options options = { .joining = true };
+	const ob_scene_options options = { .joining = true, .find = ob_joined_find, .with = h->u };
 	ob_scene *scene = ob_scene_load_text("create", (const char *)p->payload, p->bytes, &options, e);
 	bool fine = scene;
 	c->origin++;
@@ -200,6 +201,11 @@ static bool create(ob_control *c, ob_host *h, ob_error *e)
 				       "create: expected neither born, dies, path nor varying_force: a scene's objects "
 				       "have them");
 		fine = fine && ob_host_ask(h, &r, e);
+	}
+	for (uint32_t i = 0; fine && i < scene->joints; i++) {
+		ob_request r;
+		ob_joint_request_make(&r, &scene->joint[i]);
+		fine = ob_host_ask(h, &r, e);
 	}
 	ob_scene_free(scene);
 	flush(h);

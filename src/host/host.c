@@ -137,6 +137,15 @@ static uint32_t pool_workers(const ob_host_config *c, uint32_t capacity)
 	return most * ranks;
 }
 
+// Room for as many joints more as for objects.
+static uint32_t most_joints(const ob_scene *scene, const ob_host_config *c, uint32_t capacity)
+{
+	if (c->run.monolith || c->free)
+		return scene->joints;
+	const uint32_t most = scene->joints + capacity - scene->objects, saved = c->from ? c->from->universe.joints : 0;
+	return most > saved ? most : saved;
+}
+
 static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c, const ob_spawn *spawn, ob_error *e)
 {
 	bool one_per_object = c->workers == 0 && !c->run.monolith;
@@ -161,7 +170,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.checked = c->check,
 		.harden = c->harden,
 		.run = c->run,
-		.joints = scene->joints,
+		.joints = most_joints(scene, c, capacity),
 	};
 	setup.run.one_per_object = one_per_object;
 	setup.run.freezes = ob_on_death_freezes_failed(c->on_death);

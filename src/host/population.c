@@ -10,6 +10,7 @@
 #include "exchange/results.h"
 #include "free/free.h"
 #include "host/journal.h"
+#include "host/joining.h"
 #include "host/rcu_tsan.h"
 #include "scene/object_limits.h"
 #include "scene/random.h"
@@ -244,6 +245,7 @@ static void remove_object(ob_population *p, uint32_t id)
 	end_plan(p, id);
 	ob_pulls_drop(&p->pulls, id);
 	ob_sim_remove(p->u, id);
+	ob_joints_remove_of(p->u, id);
 	p->created -= s->created;
 	s->created = false;
 	p->first_free = id < p->first_free ? id : p->first_free;
@@ -351,6 +353,15 @@ static void create_for_script(ob_population *p, uint32_t cell, const ob_script_p
 	p->created++;
 }
 
+// Adds or removes a joint for a script. An invalid one stops it.
+static void join_for_script(ob_population *p, uint32_t cell, const ob_script_post *post)
+{
+	ob_error e;
+	if (!(ob_universe_step_data(p->u)->script_turn[cell].flags & OB_SCRIPT_STOPPED) &&
+	    !ob_joint_post_carry_out(p->u, post, &e))
+		stop_script(p, cell, post->line, e.text);
+}
+
 static void carry_out_scripts(ob_population *p)
 {
 	const ob_step_data *data = ob_universe_step_data(p->u);
@@ -371,6 +382,8 @@ static void carry_out_scripts(ob_population *p)
 				break;
 			if (post->kind == OB_SCRIPT_CREATE)
 				create_for_script(p, cell, post);
+			else if (post->kind == OB_SCRIPT_JOIN || post->kind == OB_SCRIPT_UNJOIN)
+				join_for_script(p, cell, post);
 			else if (post->kind == OB_SCRIPT_REMOVE && post->object < capacity &&
 				 p->slots[post->object].generation == post->generation)
 				remove_object(p, post->object);
@@ -409,19 +422,6 @@ static ob_state complete_state(const ob_state *now, const ob_state *asked)
 	return s;
 }
 
-static bool check_motor(const ob_universe *u, const ob_request *r, ob_error *e)
-{
-	const ob_step_data *data = ob_universe_step_data(u);
-	if (r->joint >= data->joints || data->joint[r->joint].object[0] != r->id)
-		return ob_fail(e, "object %u has no joint %u", r->id, r->joint);
-	if (!ob_joint_holds(u, &data->joint[r->joint]))
-		return ob_fail(e, "joint %u has ended with one of its objects", r->joint);
-	if (data->joint[r->joint].axis.motor == OB_MOTOR_NONE)
-		return ob_fail(e, "joint %u (%s) has no motor", r->joint, data->joint[r->joint].name);
-	return fabs(r->motor) <= OB_JOINT_MOST ||
-	       ob_fail(e, "the target of a motor must be a number of at most %g, is %g", OB_JOINT_MOST, r->motor);
-}
-
 bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_error *e)
 {
 	static const ob_state legal = { .pose.q.w = 1 };
@@ -430,7 +430,7 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 	const ob_state state = complete_state(&legal, &r->state);
 	const bool pushes = r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_KICK;
 	if (!pushes && !is_pull(r) && r->kind != OB_REQUEST_STATE && r->kind != OB_REQUEST_FRICTION &&
-	    r->kind != OB_REQUEST_SURFACE && r->kind != OB_REQUEST_MOTOR)
+	    r->kind != OB_REQUEST_SURFACE && !ob_is_joint_request(r))
 		return true;
 	if (r->kind != OB_REQUEST_FORCE && ob_universe_settings(p->u)->monolith)
 		return ob_fail(e, "the one ODE world keeps its bodies to itself: take object simulators");
@@ -438,8 +438,8 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 		return ob_free_settings_of(p->u)
 			       ? ob_fail(e, "in a free run nothing is pulled in each step: use --sync lockstep")
 			       : ob_pull_check(&pull, pass, e);
-	if (r->kind == OB_REQUEST_MOTOR)
-		return check_motor(p->u, r, e);
+	if (ob_is_joint_request(r))
+		return ob_joint_request_check(p->u, r, e);
 	if (r->kind == OB_REQUEST_SURFACE)
 		return ob_surface_velocity_check(pass, r->surface_velocity, e);
 	if (r->kind == OB_REQUEST_FRICTION)
@@ -473,10 +473,6 @@ static void set_motion(ob_population *p, const ob_request *r)
 	const ob_pull pull = pull_of(r);
 	const ob_state now = ob_state_now(p->u, r->id, ob_newest_motion(p->u, r->id), ob_step_count(p->u)),
 		       state = complete_state(&now, &r->state);
-	if (r->kind == OB_REQUEST_MOTOR) {
-		ob_universe_step_data(p->u)->joint[r->joint].axis.target = r->motor;
-		return;
-	}
 	if (is_pull(r)) {
 		if (!ob_pulls_set(&p->pulls, &pull))
 			ob_log_warn("object %u is not pulled: too many pulls act, or there is no memory", r->id);
@@ -507,6 +503,8 @@ static void change_on_request(ob_population *p, const ob_request *r)
 		memcpy(pass.colour, r->colour, sizeof pass.colour);
 		pass.flags &= ~(uint32_t)OB_OBJECT_MESH_COLOUR;
 		ob_write_passport(p->u, r->id, &pass);
+	} else if (ob_is_joint_request(r)) {
+		ob_joint_request_carry_out(p->u, r);
 	} else {
 		set_motion(p, r);
 	}

@@ -20,6 +20,8 @@ typedef enum ob_request_kind {
 	OB_REQUEST_DRAG, // a spring from a point of its body to a target
 	OB_REQUEST_RELEASE, // ends what the same origin does by these three to the object; id UINT32_MAX: to all objects
 	OB_REQUEST_AVATAR, // adds an object of the scene's template for the origin, at state's place
+	OB_REQUEST_JOIN, // adds the joint in values (ob_joint_passport); its first object is the request's
+	OB_REQUEST_UNJOIN, // removes a joint whose first object it is
 	OB_REQUEST_AT_ONCE, // the first that is no change of the universe's course, so that no log has it
 	OB_REQUEST_MOVE = OB_REQUEST_AT_ONCE, // its simulator moves to a worker: with several ranks, too (table/home.h)
 	OB_REQUEST_KILL, // the worker that simulates it is killed
@@ -45,7 +47,7 @@ typedef struct ob_request {
 	ob_vec3 surface_velocity; // m/s, body frame
 	uint32_t joint; // number of a joint
 	double motor; // target: m/s, rad/s, or m, rad
-	uint32_t bytes; // of the message
+	uint32_t bytes; // of the message, or the joint
 	unsigned char values[512]; // flat (scene/flat.h)
 } ob_request;
 

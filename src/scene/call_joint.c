@@ -95,54 +95,59 @@ static _Noreturn void fail_name(lua_State *L, const ob_scene *s, const char *kin
 	ob_sandbox_fail(L, "%s: expected the name of an object declared before, got \"%s\"", kind, name);
 }
 
-// Returns the object of this name, of those declared so far; the last ones are joined most often.
-static uint32_t find_object(lua_State *L, const ob_scene *s, const char *kind, const char *name)
+// Finds the object of this name, of those declared so far; the last ones are joined most often.
+static void find_object(lua_State *L, const ob_scene *s, const char *kind, const char *name, ob_joined *to)
 {
 	enum { NAMES_PER_INSTRUCTION = 4 };
-	for (uint32_t i = s->objects; i-- > 0;)
-		if (strcmp(s->object[i].passport.name, name) == 0) {
-			ob_sandbox_spend(L, (s->objects - i) / NAMES_PER_INSTRUCTION);
-			return i;
-		}
-	fail_name(L, s, kind, name);
+	uint32_t i = s->objects;
+	while (i > 0 && strcmp(s->object[i - 1].passport.name, name) != 0)
+		i--;
+	if (i-- == 0)
+		fail_name(L, s, kind, name);
+	const ob_object_def *o = &s->object[i];
+	ob_sandbox_spend(L, (s->objects - i) / NAMES_PER_INSTRUCTION);
+	if (o->born > 0)
+		ob_sandbox_fail(L, "%s: expected objects that are there from the start, \"%s\" is born at %.10g", kind,
+				name, o->born);
+	*to = (ob_joined){ i, 1, !(o->passport.flags & OB_OBJECT_PRESCRIBED), o->state.pose };
 }
 
-static uint32_t read_object(lua_State *L, const ob_scene *s, const char *kind, int place)
+static void read_object(lua_State *L, const ob_builder *b, const char *kind, int place, ob_joined *to)
 {
+	const ob_scene_options *o = b->options;
 	const int type = lua_rawgeti(L, 1, place);
+	*to = (ob_joined){ .id = OB_JOINT_WORLD, .generation = 1, .pose.q = ob_quat_identity() };
 	if (type == LUA_TNIL && place == 2) {
 		lua_pop(L, 1);
-		return OB_JOINT_WORLD;
+		return;
 	}
 	if (type != LUA_TSTRING)
 		ob_sandbox_fail(L, "%s: expected names of one or two objects, as in %s { \"door\", \"frame\", ... }",
 				kind, kind);
-	const uint32_t id = find_object(L, s, kind, lua_tostring(L, -1));
+	const char *name = lua_tostring(L, -1);
+	if (!o->find)
+		find_object(L, b->scene, kind, name, to);
+	else if (!o->find(o->with, name, to))
+		ob_sandbox_fail(L, "%s: expected the name of an object, got \"%s\"", kind, name);
 	lua_pop(L, 1);
-	if (s->object[id].born > 0)
-		ob_sandbox_fail(L, "%s: expected objects that are there from the start, \"%s\" is born at %.10g", kind,
-				s->object[id].passport.name, s->object[id].born);
-	return id;
-}
-
-static bool is_moved(const ob_scene *s, uint32_t id)
-{
-	return id != OB_JOINT_WORLD && !(s->object[id].passport.flags & OB_OBJECT_PRESCRIBED);
 }
 
 // Reads the two names, and replaces the table by a copy without them.
-static void read_objects(lua_State *L, const ob_scene *s, const char *kind, ob_joint_passport *j)
+static void read_objects(lua_State *L, const ob_builder *b, const char *kind, ob_joined end[2], ob_joint_passport *j)
 {
 	if (!lua_istable(L, 1))
 		ob_sandbox_fail(L, "%s: expected a table, as in %s { \"door\", \"frame\", ... }", kind, kind);
-	j->object[0] = read_object(L, s, kind, 1);
-	j->object[1] = read_object(L, s, kind, 2);
+	for (int side = 0; side < 2; side++) {
+		read_object(L, b, kind, 1 + side, &end[side]);
+		j->object[side] = end[side].id, j->generation[side] = end[side].generation;
+	}
 	if (j->kind == OB_JOINT_APART && j->object[1] == OB_JOINT_WORLD)
 		ob_sandbox_fail(L, "%s: expected names of two objects", kind);
-	if (j->object[0] == j->object[1])
-		ob_sandbox_fail(L, "%s: expected two different objects, got \"%s\" twice", kind,
-				s->object[j->object[0]].passport.name);
-	if (!is_moved(s, j->object[0]) && !is_moved(s, j->object[1]))
+	if (j->object[0] == j->object[1]) {
+		lua_rawgeti(L, 1, 1);
+		ob_sandbox_fail(L, "%s: expected two different objects, got \"%s\" twice", kind, lua_tostring(L, -1));
+	}
+	if (!end[0].moved && !end[1].moved)
 		ob_sandbox_fail(L, "%s: expected an object that is neither static nor kinematic", kind);
 	lua_newtable(L);
 	for (lua_pushnil(L); lua_next(L, 1);) {
@@ -158,20 +163,14 @@ static void read_objects(lua_State *L, const ob_scene *s, const char *kind, ob_j
 
 // ---- frames
 
-static ob_vec3 centre_of(const ob_scene *s, uint32_t id, ob_vec3 of_world)
+// Frame in that of the object, as it is.
+static ob_pose in_object(const ob_joined *o, ob_pose frame)
 {
-	return id == OB_JOINT_WORLD ? of_world : s->object[id].state.pose.p;
-}
-
-// Frame in that of the object, as it begins.
-static ob_pose in_object(const ob_scene *s, uint32_t id, ob_pose frame)
-{
-	if (id == OB_JOINT_WORLD)
-		return frame;
-	const ob_pose *at = &s->object[id].state.pose;
-	const ob_quat q = ob_quat_normalize(at->q);
+	const ob_quat q = ob_quat_normalize(o->pose.q);
 	const ob_mat3 r = ob_quat_matrix(q);
-	return (ob_pose){ ob_rotate_back(&r, ob_sub(frame.p, at->p)),
+	if (o->id == OB_JOINT_WORLD)
+		return frame;
+	return (ob_pose){ ob_rotate_back(&r, ob_sub(frame.p, o->pose.p)),
 			  ob_quat_normalize(ob_quat_mul((ob_quat){ q.w, -q.x, -q.y, -q.z }, frame.q)) };
 }
 
@@ -190,9 +189,9 @@ static ob_quat cross_frame(lua_State *L, ob_vec3 x, ob_vec3 y)
 	return ob_quat_normalize(ob_quat_mul(q, (ob_quat){ w, 0, 0, turn }));
 }
 
-static void set_frames(lua_State *L, const ob_scene *s, const joint *d, ob_joint_passport *j)
+static void set_frames(lua_State *L, const ob_joined end[2], const joint *d, ob_joint_passport *j)
 {
-	const ob_vec3 first = centre_of(s, j->object[0], ob_v3(0, 0, 0)), second = centre_of(s, j->object[1], first);
+	const ob_vec3 first = end[0].pose.p, second = end[1].id == OB_JOINT_WORLD ? first : end[1].pose.p;
 	ob_pose frame[2] = { { first, ob_quat_identity() }, { second, ob_quat_identity() } };
 	if (j->kind == OB_JOINT_DISTANCE) {
 		frame[0].p = isnan(d->from.x) ? first : d->from;
@@ -212,7 +211,7 @@ static void set_frames(lua_State *L, const ob_scene *s, const joint *d, ob_joint
 		frame[1] = frame[0];
 	}
 	for (int side = 0; side < 2; side++)
-		j->frame[side] = in_object(s, j->object[side], frame[side]);
+		j->frame[side] = in_object(&end[side], frame[side]);
 }
 
 // ---- the axis
@@ -281,9 +280,14 @@ static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_pa
 				   "friction or a motor let the distance change");
 }
 
-static void set_name(lua_State *L, const ob_scene *s, const char *kind, const char *name, ob_joint_passport *j)
+static void set_name(lua_State *L, const ob_builder *b, const char *kind, const char *name, ob_joint_passport *j)
 {
 	enum { NAMES_PER_INSTRUCTION = 4 };
+	const ob_scene *s = b->scene;
+	if (!name && b->options->find) {
+		snprintf(j->name, sizeof j->name, "%s#", kind); // the host appends its number
+		return;
+	}
 	if (!name) {
 		snprintf(j->name, sizeof j->name, "%s#%u", kind, s->joints);
 		return;
@@ -315,22 +319,21 @@ static void add(lua_State *L, ob_builder *b, const char *kind, const ob_joint_pa
 int ob_scene_call_joint(lua_State *L)
 {
 	ob_builder *b = ob_sandbox_user(L);
-	ob_joint_passport j = { .generation = { 1, 1 }, .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
+	ob_joint_passport j = { .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
+	ob_joined end[2];
 	const ob_vec3 none = { NAN, NAN, NAN };
 	joint d = {
 		none, none, none, none, none, NAN, NULL, false, false, false, { .low = NAN, .high = NAN, .rest = NAN }
 	};
 	const char *kind = ob_joint_kind_name(j.kind);
-	if (b->options->joining)
-		ob_sandbox_fail(L, "%s: joints cannot be added to a universe that runs", kind);
 	lua_settop(L, 1);
-	read_objects(L, b->scene, kind, &j);
+	read_objects(L, b, kind, end, &j);
 	ob_fields_read(L, 1, kind, calls[j.kind].field, calls[j.kind].fields, &d);
 	j.flags = d.collide ? OB_JOINT_COLLIDES : 0;
-	set_frames(L, b->scene, &d, &j);
+	set_frames(L, end, &d, &j);
 	set_axis(L, kind, &d, &j);
 	set_strength(L, kind, &d, &j);
-	set_name(L, b->scene, kind, d.name, &j);
+	set_name(L, b, kind, d.name, &j);
 	add(L, b, kind, &j);
 	return 0;
 }

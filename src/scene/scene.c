@@ -123,7 +123,7 @@ static bool build(ob_builder *b, const char *path, ob_error *e)
 	ob_scene *s = b->scene;
 	if (!run(b, path, s->text, s->text_size, e) || !ob_builder_check_defines(b, path, e))
 		return false;
-	if (b->scene->objects == 0)
+	if (s->objects == 0 && s->joints == 0)
 		return ob_fail(e, "%s:1: expected at least one object (box, sphere, ground ...)", path);
 	return ob_builder_resolve_tolerance(b, path, e) && ob_builder_place_cameras(b, path, e) &&
 	       ob_builder_check_controls(b, path, e);

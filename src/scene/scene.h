@@ -110,12 +110,22 @@ typedef struct ob_scene {
 	size_t text_size;
 } ob_scene;
 
+// An object of a universe that runs, which a joint may hold.
+typedef struct ob_joined {
+	uint32_t id, generation;
+	bool moved; // by forces
+	ob_pose pose; // now
+} ob_joined;
+
 typedef struct ob_scene_options {
 	const char *const *defines; // "name=value" of -D
 	uint32_t define_count;
 	bool has_seed;
 	uint64_t seed; // replaces the scene's
 	bool joining; // its objects are for a running universe: their meshes are named (look), not read
+	// Finds an object of that by its name, for joints; with: of the caller's. false: there is none. NULL: no joints there.
+	bool (*find)(void *with, const char *name, ob_joined *out);
+	void *with;
 } ob_scene_options;
 
 // Reads, runs and checks a scene file; o may be NULL. NULL and e on error, in one line: "file:line: where.field:

@@ -518,27 +518,33 @@ static int call_find(lua_State *L)
 	return 0;
 }
 
-// Number of the joint of this name, which holds.
-static uint32_t find_joint(lua_State *L, const ob_script_runner *r, const char *call)
+// Number of the joint of this name, which holds. UINT32_MAX: it has ended, or there is none: warns of that if the call acts.
+static uint32_t find_joint(lua_State *L, const ob_script_runner *r, const char *call, bool acts)
 {
 	enum { FIND_AT_ONCE = 64 };
 	const char *name = lua_type(L, 1) == LUA_TSTRING ? lua_tostring(L, 1) : NULL;
 	if (!name)
 		ob_sandbox_fail(L, "%s: expected the name of a joint", call);
-	for (uint32_t i = 0; i < r->data->joints; i++) {
+	bool ended = false;
+	for (uint32_t i = 0; i < ob_joints_end(r->data); i++) {
 		if (i % FIND_AT_ONCE == 0)
 			ob_sandbox_spend(L, FIND_AT_ONCE / 2);
-		if (strncmp(r->data->joint[i].name, name, OB_NAME_MAX) == 0)
-			return ob_joint_holds(r->u, &r->data->joint[i]) ? i : UINT32_MAX;
+		if (strncmp(r->data->joint[i].name, name, OB_NAME_MAX) != 0)
+			continue;
+		if (ob_joint_holds(r->u, &r->data->joint[i]))
+			return i;
+		ended = true;
 	}
-	ob_sandbox_fail(L, "%s: expected the name of a joint, got \"%s\"", call, name);
+	if (acts && !ended)
+		ob_script_warn(L, "%s has no effect: there is no joint \"%s\"", call, name);
+	return UINT32_MAX;
 }
 
 // Returns value and rate of a joint's axis, and the force along it; nothing if the joint has ended, or has none.
 static int call_joint(lua_State *L)
 {
 	const ob_script_runner *r = runner_of(L);
-	const uint32_t joint = find_joint(L, r, "joint");
+	const uint32_t joint = find_joint(L, r, "joint", false);
 	ob_state states[2] = { { .pose.q = ob_quat_identity() }, { .pose.q = ob_quat_identity() } };
 	double value, rate;
 	ob_sandbox_spend(L, 24);
@@ -561,7 +567,7 @@ static int call_joint(lua_State *L)
 static int call_joint_load(lua_State *L)
 {
 	const ob_script_runner *r = runner_of(L);
-	const uint32_t joint = find_joint(L, r, "joint_load");
+	const uint32_t joint = find_joint(L, r, "joint_load", false);
 	if (joint == UINT32_MAX)
 		return 0;
 	const ob_joint_load load = ob_joint_load_now(r->u, joint);
@@ -571,22 +577,67 @@ static int call_joint_load(lua_State *L)
 	return 6;
 }
 
+// Appends the contents of a post to the outbox.
+static void post(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, const ob_joint_passport *j,
+		 const void *contents, uint32_t size)
+{
+	ob_script_post *p = begin_post(L, r, kind, j->object[0], j->generation[0]);
+	ob_flat f = rest_of(r->cell);
+	if (f.room < size)
+		ob_sandbox_fail(L, "expected at most %d bytes of requests in a step", OB_SCRIPT_OUTBOX_BYTES);
+	memcpy(f.bytes, contents, size);
+	f.size = size;
+	end_post(r, p, &f);
+}
+
 static int call_motor(lua_State *L)
 {
 	const ob_script_runner *r = runner_of(L);
-	ob_script_motor m = { .joint = find_joint(L, r, "motor"), .target = number_at(L, 2, "motor", OB_JOINT_MOST) };
+	ob_script_motor m = { .joint = find_joint(L, r, "motor", true),
+			      .target = number_at(L, 2, "motor", OB_JOINT_MOST) };
 	if (m.joint == UINT32_MAX)
 		return 0;
 	const ob_joint_passport *j = &r->data->joint[m.joint];
 	if (j->axis.motor == OB_MOTOR_NONE)
 		ob_sandbox_fail(L, "motor: joint \"%s\" has none", j->name);
-	ob_script_post *post = begin_post(L, r, OB_SCRIPT_MOTOR, j->object[0], j->generation[0]);
-	ob_flat f = rest_of(r->cell);
-	if (f.room < sizeof m)
-		ob_sandbox_fail(L, "motor: expected at most %d bytes of requests in a step", OB_SCRIPT_OUTBOX_BYTES);
-	memcpy(f.bytes, &m, sizeof m);
-	f.size = sizeof m;
-	end_post(r, post, &f);
+	post(L, r, OB_SCRIPT_MOTOR, j, &m, sizeof m);
+	return 0;
+}
+
+bool ob_script_find_joined(void *runner, const char *name, ob_joined *to)
+{
+	const ob_script_runner *r = runner;
+	for (uint32_t id = 0; id < ob_universe_ids(r->u); id++) {
+		const ob_passport *p = ob_passport_of(r->u, id);
+		if (r->data->schedule[id].state == OB_SCHEDULE_ABSENT || strncmp(p->name, name, OB_NAME_MAX) != 0)
+			continue;
+		*to = (ob_joined){ id, p->generation, !(p->flags & OB_OBJECT_PRESCRIBED),
+				   ob_published_at(ob_newest_motion(r->u, id), p, now_of(r)).pose };
+		return true;
+	}
+	return false;
+}
+
+// Joins objects, at first in the runner's scene. Upvalue 1 is the kind of joint.
+static int call_join(lua_State *L)
+{
+	enum { NAMES_PER_INSTRUCTION = 4 };
+	ob_script_runner *r = runner_of(L);
+	lua_settop(L, 1);
+	ob_script_thaw(L, 1);
+	r->scene.joints = 0;
+	ob_sandbox_spend(L, 500 + ob_universe_ids(r->u) / NAMES_PER_INSTRUCTION);
+	ob_scene_call_joint(L);
+	post(L, r, OB_SCRIPT_JOIN, &r->scene.joint[0], &r->scene.joint[0], sizeof r->scene.joint[0]);
+	return 0;
+}
+
+static int call_unjoin(lua_State *L)
+{
+	const ob_script_runner *r = runner_of(L);
+	const uint32_t joint = find_joint(L, r, "unjoin", true);
+	if (joint != UINT32_MAX)
+		post(L, r, OB_SCRIPT_UNJOIN, &r->data->joint[joint], &joint, sizeof joint);
 	return 0;
 }
 
@@ -791,6 +842,7 @@ int ob_script_calls_open(lua_State *L)
 		{ "find", call_find },
 		{ "near", call_near },
 		{ "joint", call_joint },
+		{ "unjoin", call_unjoin },
 		{ "joint_load", call_joint_load },
 		{ "motor", call_motor },
 		{ "ray", call_ray },
@@ -810,6 +862,11 @@ int ob_script_calls_open(lua_State *L)
 		lua_pushinteger(L, shape);
 		lua_pushcclosure(L, call_create, 1);
 		lua_setfield(L, -2, ob_shape_name((ob_shape)shape));
+	}
+	for (uint32_t kind = 0; kind < OB_JOINT_KINDS; kind++) {
+		lua_pushinteger(L, kind);
+		lua_pushcclosure(L, call_join, 1);
+		lua_setfield(L, -2, ob_joint_kind_name(kind));
 	}
 	lua_getfield(L, -1, "pairs");
 	lua_pushcclosure(L, call_pairs, 1);

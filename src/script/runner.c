@@ -392,12 +392,12 @@ ob_script_runner *ob_script_runner_create(ob_universe *u)
 		free(r);
 		return NULL;
 	}
-	static const ob_scene_options joining = { .joining = true };
 	r->u = u;
 	r->data = data;
 	r->settings = ob_universe_settings(u);
 	r->builder.scene = &r->scene;
-	r->builder.options = &joining;
+	r->joining = (ob_scene_options){ .joining = true, .find = ob_script_find_joined, .with = r };
+	r->builder.options = &r->joining;
 	r->scene.script = names;
 	const uint32_t scripts = data->script_text->scripts;
 	r->scene.scripts = scripts < OB_SCRIPTS_MAX ? scripts : OB_SCRIPTS_MAX;
@@ -416,6 +416,7 @@ void ob_script_runner_destroy(ob_script_runner *r)
 		close_interpreter(&r->interpreter[i]), ob_fmu_close(r->fmu[i]);
 	free(r->scene.script);
 	free(r->scene.object);
+	free(r->scene.joint);
 	free(r->scene.hull);
 	free(r->scene.hull_corners);
 	free(r->builder.hull_points);

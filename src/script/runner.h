@@ -39,6 +39,7 @@ typedef struct ob_interpreter {
 
 struct ob_script_runner {
 	ob_builder builder; // first: the functions that scripts share with scenes find it in the runner's place
+	ob_scene_options joining; // the builder's
 	ob_scene scene; // for objects that a script creates
 	ob_universe *u;
 	const ob_step_data *data;
@@ -68,6 +69,8 @@ uint64_t ob_script_run_foreign(ob_script_runner *r, ob_script_turn *t, ob_script
 // Notes, as "name:line: text", a call without effect; the first is kept.
 void ob_script_warn(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+// Finds an object of the universe, as it is now, for a joint (ob_scene_options.find).
+bool ob_script_find_joined(void *runner, const char *name, ob_joined *to);
 // Adds all functions for scripts to a sandbox: globals, and methods of objects. A lua_CFunction without arguments,
 // after ob_library_open. Pushes nothing; sets self.
 int ob_script_calls_open(lua_State *L);

@@ -106,7 +106,7 @@ static void read_joints(ob_sim *s, uint32_t id)
 static uint32_t count_joints(const ob_sim *s, const ob_island *is)
 {
 	uint32_t n = 0;
-	for (uint32_t i = 0; s->data->joints && i < is->members; i++) {
+	for (uint32_t i = 0; ob_joints_end(s->data) && i < is->members; i++) {
 		const uint32_t id = s->data->member[is->first_member + i];
 		for (uint32_t j = ob_joint_first(s->data, id); j; j = ob_joint_next(s->data, j, id))
 			n++;
@@ -141,7 +141,7 @@ static const ob_island_input *read_island(ob_sim *s, const ob_island *is)
 	}
 	for (uint32_t i = 0; i < is->pairs; i++)
 		read_pair(s, &x->pair[i], s->data->island_pair[is->first_pair + i]);
-	for (uint32_t i = 0; s->data->joints && i < is->members; i++)
+	for (uint32_t i = 0; ob_joints_end(s->data) && i < is->members; i++)
 		read_joints(s, x->object[i].id);
 	x->island = is;
 	return &x->in;

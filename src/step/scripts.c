@@ -190,7 +190,7 @@ static void set_motor(ob_step_data *data, const ob_script_post *post)
 	if (post->used < sizeof m)
 		return;
 	memcpy(&m, post + 1, sizeof m);
-	if (m.joint < data->joints && isfinite(m.target))
+	if (m.joint < ob_joints_end(data) && isfinite(m.target))
 		data->joint[m.joint].axis.target = m.target;
 }
 

@@ -1,34 +1,134 @@
-// Joints of a universe: passports, and the list of each object; and the pairs that may touch. Written by the host before
-// the run; then constant. The solver of a joint's island writes its state in each step.
+// Joints of a universe: passports, and the list of each object; and the pairs that may touch. Written by the host, before the
+// run and in pauses. The solver of a joint's island writes its state in each step.
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "motion/joint_value.h"
 #include "table/layout.h"
 
-// Links from the last to the first, so that each list ascends.
+// ---- numbers and lists
+
+// Place that holds the first, or next, joint of the object behind all those of a lower number.
+static uint32_t *place_of(ob_step_data *data, uint32_t id, uint32_t joint)
+{
+	uint32_t *at = &data->first_joint[id];
+	while (*at && *at - 1 < joint && *at <= data->joints_max)
+		at = &data->next_joint[*at - 1][data->joint[*at - 1].object[0] != id];
+	return at;
+}
+
+static void link_joint(ob_step_data *data, uint32_t joint, bool in)
+{
+	for (int side = 0; side < 2; side++) {
+		const uint32_t id = data->joint[joint].object[side];
+		if (id >= data->objects_max)
+			continue;
+		uint32_t *at = place_of(data, id, joint);
+		if (in) {
+			data->next_joint[joint][side] = *at;
+			*at = 1 + joint;
+		} else if (*at == 1 + joint) {
+			*at = data->next_joint[joint][side];
+		}
+	}
+}
+
+// ---- passports
+
+// Readers in other threads and programs may read a passport while the host writes it. As in a slot (slot.h) each word is
+// released, so a reader that has acquired a new one finds that "writes" has changed.
+static void write_passport(ob_step_data *data, uint32_t joint, const ob_joint_passport *p)
+{
+	ob_joint_counts *count = data->joint_counts;
+	ob_word *to = (ob_word *)(void *)&data->joint[joint];
+	const ob_word *from = (const ob_word *)(const void *)p;
+	const uint32_t writes = count->writes | 1; // a host that was killed has left it odd
+	__atomic_store_n(&count->writes, writes, __ATOMIC_RELEASE);
+	for (size_t i = 0; i < sizeof *p / sizeof *to; i++)
+		__atomic_store_n(to + i, from[i], __ATOMIC_RELEASE);
+	__atomic_store_n(&count->writes, writes + 1, __ATOMIC_RELEASE);
+}
+
+static bool read_passport(const ob_step_data *data, uint32_t joint, ob_joint_passport *out)
+{
+	const ob_joint_counts *count = data->joint_counts;
+	const ob_word *from = (const ob_word *)(const void *)&data->joint[joint];
+	ob_word *to = (ob_word *)(void *)out;
+	for (int i = 0; i < OB_RING_TRIES; i++) {
+		const uint32_t writes = __atomic_load_n(&count->writes, __ATOMIC_ACQUIRE);
+		for (size_t k = 0; k < sizeof *out / sizeof *to; k++)
+			to[k] = __atomic_load_n(from + k, __ATOMIC_ACQUIRE);
+		if (writes % 2 == 0 && __atomic_load_n(&count->writes, __ATOMIC_RELAXED) == writes)
+			return true;
+	}
+	return false;
+}
+
+static void set_end(ob_step_data *data, uint32_t end)
+{
+	__atomic_store_n(&data->joint_counts->used, end, __ATOMIC_RELEASE);
+}
+
+static_assert(sizeof(ob_joint_passport) == 304, "passport of a joint");
+
+// Links from the last to the first, so that each one is linked at once.
 void ob_joints_write(ob_universe *u, const ob_joint_passport *joint, uint32_t joints)
 {
 	ob_step_data *data = &u->step_data;
-	if (!joints)
+	if (!data->joints_max)
 		return;
-	memcpy(data->joint, joint, joints * sizeof *joint);
+	memset(data->first_joint, 0, data->objects_max * sizeof *data->first_joint);
+	for (uint32_t i = 0; i < joints; i++)
+		write_passport(data, i, &joint[i]);
+	set_end(data, joints);
 	for (uint32_t i = joints; i-- > 0;)
-		for (int side = 0; side < 2; side++) {
-			const uint32_t id = joint[i].object[side];
-			data->next_joint[i][side] = 0;
-			if (id >= data->objects_max)
-				continue;
-			data->next_joint[i][side] = data->first_joint[id];
-			data->first_joint[id] = 1 + i;
-		}
+		if (!ob_joint_is_free(data, i))
+			link_joint(data, i, true);
+}
+
+uint32_t ob_joint_add(ob_universe *u, const ob_joint_passport *joint)
+{
+	ob_step_data *data = &u->step_data;
+	const uint32_t end = ob_joints_end(data);
+	uint32_t i = 0;
+	while (i < end && !ob_joint_is_free(data, i))
+		i++;
+	if (i == data->joints_max)
+		return UINT32_MAX;
+	ob_joint_passport named = *joint;
+	const size_t n = strnlen(named.name, OB_NAME_MAX);
+	if (n > 0 && n < OB_NAME_MAX - 12 && named.name[n - 1] == '#')
+		snprintf(named.name + n, OB_NAME_MAX - n, "%u", i);
+	data->joint_state[i] = (ob_joint_state){ 0 };
+	write_passport(data, i, &named);
+	set_end(data, i < end ? end : i + 1);
+	link_joint(data, i, true);
+	return i;
+}
+
+void ob_joint_remove(ob_universe *u, uint32_t joint)
+{
+	ob_step_data *data = &u->step_data;
+	if (joint >= ob_joints_end(data) || ob_joint_is_free(data, joint))
+		return;
+	link_joint(data, joint, false);
+	write_passport(data, joint, &(ob_joint_passport){ 0 });
+	memset(&data->joint_state[joint], 0, sizeof *data->joint_state);
+}
+
+void ob_joints_remove_of(ob_universe *u, uint32_t id)
+{
+	uint32_t j;
+	while ((j = ob_joint_first(&u->step_data, id)))
+		ob_joint_remove(u, j - 1);
 }
 
 // A list ascends, so each walk ends, even after stray writes.
 uint32_t ob_joint_next(const ob_step_data *data, uint32_t joint, uint32_t id)
 {
 	const uint32_t next = data->next_joint[joint - 1][data->joint[joint - 1].object[0] != id];
-	return next > joint && next <= data->joints ? next : 0;
+	return next > joint && next <= data->joints_max ? next : 0;
 }
 
 // A joint that breaks in the running step holds until that is complete: its island may be solved again.
@@ -58,7 +158,7 @@ ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint)
 
 bool ob_joint_holds(const ob_universe *u, const ob_joint_passport *j)
 {
-	if (has_broken(u, (uint32_t)(j - u->step_data.joint)))
+	if (j->object[0] == j->object[1] || has_broken(u, (uint32_t)(j - u->step_data.joint)))
 		return false;
 	for (int side = 0; side < 2; side++) {
 		if (j->object[side] == OB_JOINT_WORLD)
@@ -90,12 +190,11 @@ bool ob_may_touch(const ob_universe *u, uint32_t a, uint32_t b)
 
 static bool axis_makes_sense(const ob_joint_axis *a)
 {
-	return a->low <= a->high && a->motor < OB_MOTORS && a->most >= 0 && isfinite(a->target);
-}
-
-uint32_t ob_universe_joints(const ob_universe *u)
-{
-	return u->step_data.joints;
+	const double sum =
+		a->restitution + a->stiffness + a->damping + a->friction + a->motor_stiffness + a->motor_damping;
+	return a->low <= a->high && a->motor < OB_MOTORS && a->most >= 0 && isfinite(a->target) && isfinite(a->rest) &&
+	       isfinite(sum) && a->restitution >= 0 && a->restitution <= 1 && a->stiffness >= 0 && a->damping >= 0 &&
+	       a->friction >= 0 && a->motor_stiffness >= 0 && a->motor_damping >= 0;
 }
 
 static bool pose_makes_sense(const ob_pose *p)
@@ -104,11 +203,22 @@ static bool pose_makes_sense(const ob_pose *p)
 	return isfinite(ob_norm2(p->p)) && n2 > .9 && n2 < 1.1;
 }
 
+bool ob_joint_makes_sense(const ob_joint_passport *j)
+{
+	return j->kind < OB_JOINT_KINDS && j->object[0] != j->object[1] && j->object[0] != OB_JOINT_WORLD &&
+	       axis_makes_sense(&j->axis) && pose_makes_sense(&j->frame[0]) && pose_makes_sense(&j->frame[1]) &&
+	       j->breaks_force > 0 && j->breaks_torque > 0 && isfinite(j->length) && memchr(j->name, 0, sizeof j->name);
+}
+
+uint32_t ob_universe_joints(const ob_universe *u)
+{
+	return ob_joints_end(&u->step_data);
+}
+
 bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passport *out)
 {
-	if (joint >= u->step_data.joints)
+	if (joint >= ob_joints_end(&u->step_data) || !read_passport(&u->step_data, joint, out))
 		return false;
-	*out = u->step_data.joint[joint];
 	out->flags = (out->flags & ~(uint32_t)OB_JOINT_BROKEN) | (has_broken(u, joint) ? OB_JOINT_BROKEN : 0);
 	for (int side = 0; side < 2; side++) {
 		ob_passport p;
@@ -117,9 +227,7 @@ bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passpo
 		if (!ob_universe_get_passport(u, out->object[side], &p) || p.generation != out->generation[side])
 			return false;
 	}
-	return out->kind < OB_JOINT_KINDS && axis_makes_sense(&out->axis) && out->breaks_force > 0 &&
-	       out->breaks_torque > 0 && pose_makes_sense(&out->frame[0]) && pose_makes_sense(&out->frame[1]) &&
-	       isfinite(out->length) && memchr(out->name, 0, sizeof out->name);
+	return ob_joint_makes_sense(out);
 }
 
 bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *value, double *rate)

@@ -49,6 +49,7 @@ typedef struct area_rule {
 		PER_FREE_GROUP,
 		PER_VERSION,
 		PER_LEDGER,
+		PER_JOINTED_UNIVERSE,
 		PER_JOINT,
 		PER_JOINED_OBJECT,
 	} per;
@@ -105,6 +106,7 @@ static const area_rule rules[OB_AREAS] = {
 	[OB_AREA_SCRIPT_TURN] = { ELEMENT(script_turn), PER_SCRIPT_CELL, 1, 0 },
 	[OB_AREA_SCRIPT_CELL] = { ELEMENT(script_cell), PER_SCRIPT_CELL, 1, 0 },
 	[OB_AREA_SCRIPT_DUE] = { ELEMENT(script_due), PER_SCRIPT_CELL, 1, 0 },
+	[OB_AREA_JOINT_COUNTS] = { ELEMENT(joint_counts), PER_JOINTED_UNIVERSE, 1, 0 },
 	[OB_AREA_JOINT] = { ELEMENT(joint), PER_JOINT, 1, 0 },
 	[OB_AREA_JOINT_STATE] = { ELEMENT(joint_state), PER_JOINT, 1, 0 },
 	[OB_AREA_NEXT_JOINT] = { ELEMENT(next_joint), PER_JOINT, 1, 0 },
@@ -155,6 +157,7 @@ static uint64_t area_bytes(const ob_layout_sizes *s, ob_area area)
 		[PER_FREE_GROUP] = free ? ((uint64_t)s->capacity + OB_FREE_GROUP - 1) / OB_FREE_GROUP : 0,
 		[PER_VERSION] = (uint64_t)s->capacity * s->history,
 		[PER_LEDGER] = (uint64_t)s->capacity * s->ledgers,
+		[PER_JOINTED_UNIVERSE] = s->joints > 0,
 		[PER_JOINT] = s->joints,
 		[PER_JOINED_OBJECT] = s->joints > 0 ? s->capacity : 0,
 	};
@@ -307,7 +310,8 @@ static void bind_step_data(ob_universe *u)
 	};
 	ob_step_data *data = &u->step_data;
 	if (u->header.sizes.joints) {
-		data->joints = u->header.sizes.joints;
+		data->joints_max = u->header.sizes.joints;
+		data->joint_counts = (void *)(base + area[OB_AREA_JOINT_COUNTS]);
 		data->joint = (void *)(base + area[OB_AREA_JOINT]);
 		data->joint_state = (void *)(base + area[OB_AREA_JOINT_STATE]);
 		data->next_joint = (void *)(base + area[OB_AREA_NEXT_JOINT]);

@@ -15,7 +15,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 39, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
+enum { OB_LAYOUT_VERSION = 40, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,
@@ -66,7 +66,8 @@ typedef enum ob_area {
 	OB_AREA_SCRIPT_TURN, // [script_cells]
 	OB_AREA_SCRIPT_CELL, // [script_cells]
 	OB_AREA_SCRIPT_DUE, // [script_cells]
-	OB_AREA_JOINT, // these four empty unless the scene has joints
+	OB_AREA_JOINT_COUNTS, // these five empty unless the universe has room for joints
+	OB_AREA_JOINT, // [joints]
 	OB_AREA_JOINT_STATE, // [joints]
 	OB_AREA_NEXT_JOINT, // [joints]
 	OB_AREA_FIRST_JOINT, // [capacity]

@@ -26,7 +26,7 @@ void ob_universe_count_saved(const ob_universe *u, ob_saved_universe *out)
 		.checked = data->count->checked,
 		.ids = ob_universe_ids(u),
 		.planes = data->count->planes,
-		.joints = data->joints,
+		.joints = ob_joints_end(data),
 	};
 	if (data->script_cells) {
 		out->script_cells = data->script_counts->cells;
@@ -103,7 +103,7 @@ static void save_joints(const ob_universe *u, ob_saved_universe *out)
 {
 	const ob_step_data *data = &u->step_data;
 	for (uint32_t i = 0; i < out->joints; i++)
-		out->joint[i] = (ob_saved_joint){ data->joint[i].axis.target, data->joint_state[i] };
+		out->joint[i] = (ob_saved_joint){ data->joint[i], data->joint_state[i] };
 }
 
 void ob_universe_save(const ob_universe *u, ob_saved_universe *out)
@@ -276,10 +276,14 @@ static bool check_scripts(const ob_saved_universe *s, ob_error *e)
 	return sense ? true : ob_fail(e, "what its scripts keep makes no sense");
 }
 
-static bool joint_makes_sense(const ob_saved_joint *j, uint64_t step)
+static bool joint_makes_sense(const ob_saved_joint *j, uint32_t ids, uint64_t step)
 {
 	const ob_joint_state *s = &j->state;
-	bool sense = isfinite(j->target) && s->broke <= step && !s->zero;
+	const uint32_t *id = j->passport.object;
+	const bool free = id[0] == id[1];
+	bool sense = (free || (id[0] < ids && (id[1] < ids || id[1] == OB_JOINT_WORLD) &&
+			       ob_joint_makes_sense(&j->passport))) &&
+		     s->broke <= step && !s->zero;
 	for (int i = 0; i < 2; i++)
 		sense = sense && s->stamp[i] <= step &&
 			all_finite((const double *)&s->version[i], sizeof s->version[i] / sizeof(double));
@@ -289,8 +293,8 @@ static bool joint_makes_sense(const ob_saved_joint *j, uint64_t step)
 static bool check_joints(const ob_saved_universe *s, ob_error *e)
 {
 	for (uint32_t i = 0; i < s->joints; i++)
-		if (!joint_makes_sense(&s->joint[i], s->step))
-			return ob_fail(e, "the state of joint %u makes no sense", i);
+		if (!joint_makes_sense(&s->joint[i], s->ids, s->step))
+			return ob_fail(e, "joint %u makes no sense", i);
 	return true;
 }
 
@@ -370,13 +374,24 @@ static bool scripts_are_the_same(const ob_universe *u, const ob_saved_universe *
 	       (!s->script_bytes || memcmp(s->script_text, u->step_data.script_text, s->script_bytes) == 0);
 }
 
+static void load_joints(ob_universe *u, const ob_saved_universe *s)
+{
+	ob_step_data *data = &u->step_data;
+	ob_joints_write(u, NULL, 0);
+	for (uint32_t i = 0; i < s->joints; i++) {
+		data->joint[i] = s->joint[i].passport;
+		data->joint_state[i] = s->joint[i].state;
+	}
+	ob_joints_write(u, data->joint, s->joints);
+}
+
 bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 {
 	if (!scripts_are_the_same(u, s))
 		return ob_fail(e, "its scripts are not those of the saved run: a file beside the scene has changed");
 	ob_step_data *data = &u->step_data;
-	if (s->joints != data->joints)
-		return ob_fail(e, "its scene has %u joints, the saved run %u", data->joints, s->joints);
+	if (s->joints > data->joints_max)
+		return ob_fail(e, "this run has room for %u joints, the saved one has %u", data->joints_max, s->joints);
 	if (s->pairs > data->pairs_max || s->ids > data->objects_max)
 		return ob_fail(
 			e, "this run has room for %u objects and %u pairs of neighbours, the saved one has %u and %u",
@@ -391,10 +406,7 @@ bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 	memcpy(data->pair, s->pair, s->pairs * sizeof *s->pair);
 	for (uint32_t i = 0; i < s->records; i++)
 		load_record(u, i, &s->record[i]);
-	for (uint32_t i = 0; i < s->joints; i++) {
-		data->joint[i].axis.target = s->joint[i].target;
-		data->joint_state[i] = s->joint[i].state;
-	}
+	load_joints(u, s);
 	data->count->planes = s->planes;
 	data->count->pairs = s->pairs;
 	data->count->records_used = s->records;

@@ -31,7 +31,7 @@ typedef struct ob_saved_record {
 
 // State of a joint.
 typedef struct ob_saved_joint {
-	double target; // of its motor
+	ob_joint_passport passport;
 	ob_joint_state state;
 } ob_saved_joint;
 
@@ -53,7 +53,7 @@ typedef struct ob_saved_universe {
 	ob_script_cell *script_cell;
 	uint32_t script_bytes; // size of the texts, with their directory; must be the same when resumed
 	char *script_text;
-	uint32_t joints; // length of the next one; must be the same when resumed
+	uint32_t joints; // length of the next one
 	ob_saved_joint *joint;
 } ob_saved_universe;
 

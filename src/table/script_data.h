@@ -72,12 +72,14 @@ typedef struct ob_script_cell {
 
 // Record of an outbox, one after the other; in an inbox, the same with the sender in place of the addressee. Contents:
 // the values of a message; nothing; an ob_object_def, the state of its script, and the corners of a hull; an
-// ob_script_motor.
+// ob_script_motor; an ob_joint_passport; the number of a joint.
 typedef enum ob_script_post_kind {
 	OB_SCRIPT_MESSAGE,
 	OB_SCRIPT_REMOVE,
 	OB_SCRIPT_CREATE,
-	OB_SCRIPT_MOTOR
+	OB_SCRIPT_MOTOR,
+	OB_SCRIPT_JOIN,
+	OB_SCRIPT_UNJOIN
 } ob_script_post_kind;
 
 typedef struct ob_script_post {

@@ -156,7 +156,6 @@ typedef struct ob_index_cell {
 
 enum { OB_STEP_BLAME_MAX = 200 }; // bytes of a blame's text
 
-// The areas, as pointers into this process's mapping (made once per process by the table module).
 // State of a joint that changes by steps. A step writes the version that the step before has not written.
 typedef struct ob_joint_state {
 	uint32_t broke; // number of complete steps when it had broken, so from then on it holds nothing; 0: it holds
@@ -168,6 +167,12 @@ typedef struct ob_joint_state {
 	} version[2];
 } ob_joint_state;
 
+typedef struct ob_joint_counts {
+	uint32_t used; // one past the highest number of a joint
+	uint32_t writes; // twice the passports written; odd: one is being written, so readers try again
+} ob_joint_counts;
+
+// The areas, as pointers into this process's mapping (made once per process by the table module).
 typedef struct ob_step_data {
 	uint32_t objects_max, pairs_max, buckets, neighbours_max;
 	struct ob_step_counts {
@@ -246,11 +251,12 @@ typedef struct ob_step_data {
 	uint32_t *script_due; // [script_cells]: those that run before this step, ascending
 	const ob_script_directory *script_text;
 	uint32_t script_cells;
-	// 0 and NULL unless the scene has joints (joint.c).
-	uint32_t joints;
-	ob_joint_passport *joint; // [joints]
-	ob_joint_state *joint_state; // [joints]
-	uint32_t (*next_joint)[2]; // [joints]: 1 + the next one of either object; 0 ends
+	// 0 and NULL unless the universe has room for joints (joint.c).
+	uint32_t joints_max;
+	ob_joint_counts *joint_counts;
+	ob_joint_passport *joint; // [joints_max]; both objects the same: no joint has this number
+	ob_joint_state *joint_state; // [joints_max]
+	uint32_t (*next_joint)[2]; // [joints_max]: 1 + the next one of either object; 0 ends
 	uint32_t *first_joint; // [object]: 1 + the first of its joints, ascending; 0: it has none
 } ob_step_data;
 
@@ -296,6 +302,18 @@ static inline bool ob_is_pair_change(const ob_step_data *data, uint32_t id, uint
 		return change != id && change < ids;
 	return pair < ob_pairs_end(data) && data->pair[pair].a != data->pair[pair].b &&
 	       (data->pair[pair].a == id || data->pair[pair].b == id);
+}
+
+// End of the used part of joint[]: within its capacity, even if overwritten.
+static inline uint32_t ob_joints_end(const ob_step_data *data)
+{
+	const uint32_t n = data->joints_max ? __atomic_load_n(&data->joint_counts->used, __ATOMIC_RELAXED) : 0;
+	return n < data->joints_max ? n : data->joints_max;
+}
+
+static inline bool ob_joint_is_free(const ob_step_data *data, uint32_t joint)
+{
+	return data->joint[joint].object[0] == data->joint[joint].object[1];
 }
 
 static inline uint32_t ob_checks_count(const ob_step_data *data)

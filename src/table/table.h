@@ -57,7 +57,7 @@ typedef struct ob_universe_setup {
 	uint32_t history; // versions of each motion that a free run keeps, at least 2; 0: the run is in lockstep
 	uint32_t ledgers; // same of each object's mail; 0: no ledger
 	const struct ob_free_settings *free; // of a free run
-	uint32_t joints; // of the scene
+	uint32_t joints; // at the same time
 } ob_universe_setup;
 
 // Creates the shared segment /dev/shm/obsim.<name>, zeroed, state STARTING. Removes stale segments, without an owner
@@ -92,12 +92,19 @@ void ob_script_stop(ob_universe *u, uint32_t id);
 bool ob_script_deliver(ob_universe *u, uint32_t id, const void *values, uint32_t bytes);
 // Writes the scene's joints, in any order of their objects, which may be absent yet. Call from the host, before the run.
 void ob_joints_write(ob_universe *u, const ob_joint_passport *joint, uint32_t joints);
+// Adds a joint with the lowest free number, which it returns; UINT32_MAX: there is no room. A name that ends with '#' gets
+// the number. Removes one; all joints of an object. Call from the host, paused.
+uint32_t ob_joint_add(ob_universe *u, const ob_joint_passport *joint);
+void ob_joint_remove(ob_universe *u, uint32_t joint);
+void ob_joints_remove_of(ob_universe *u, uint32_t id);
+// True if all numbers of a joint from outside are plausible; objects aside.
+bool ob_joint_makes_sense(const ob_joint_passport *joint);
 // Iterates over an object's joints: for (uint32_t j = ob_joint_first(data, id); j; j = ob_joint_next(data, j, id)), of
 // joint j - 1.
 static inline uint32_t ob_joint_first(const ob_step_data *data, uint32_t id)
 {
-	const uint32_t first = data->joints ? data->first_joint[id] : 0;
-	return first <= data->joints ? first : 0;
+	const uint32_t first = ob_joints_end(data) ? data->first_joint[id] : 0;
+	return first <= data->joints_max ? first : 0;
 }
 uint32_t ob_joint_next(const ob_step_data *data, uint32_t joint, uint32_t id);
 // True if a joint of the universe (ob_step_data.joint) holds: its objects exist as those that it was made for, and it has not

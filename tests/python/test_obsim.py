@@ -504,5 +504,35 @@ hinge { "pole", "cart", name = "foot", at = { 0, 0, 1.05 }, axis = { 0, 1, 0 } }
             self.says('joint 1 (foot) has no motor', lambda: setattr(u.joints['foot'], 'target', 1))
             self.says('must be a number', lambda: setattr(u.joints['rail'], 'target', numpy.nan))
 
+    def test_joints_come_and_go(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        scene = self.write(folder, 'bobs.lua', """scene { duration = 10 }
+            sphere { name = "a", radius = .1, at = { 0, 0, 3 }, mass = 2 }
+            sphere { name = "b", radius = .1, at = { 1, 0, 3 }, mass = 1 }""")
+        with obsim.run(scene) as u, obsim.run(scene, options={'isolation': 'process', 'harden': True}) as other:
+            for v in u, other:
+                self.assertEqual(v.joints, {})
+                start = v.snapshot()
+                v.create('fixed { "a", name = "hook", breaks_at = { force = 40 } } ball { "b", "a", at = { 1, 0, 3 } }')
+                self.assertEqual(sorted(v.joints), ['ball#1', 'hook'])
+                v.step(2)
+                self.assertAlmostEqual(v.joints['hook'].force[2], 3 * 9.81, 6)
+                self.assertFalse(v.joints['hook'].broken)
+                v.joints['ball#1'].remove()
+                self.assertEqual(list(v.joints), ['hook'])
+                v.step(10)
+                self.assertAlmostEqual(v.joints['hook'].force[2], 2 * 9.81, 6)
+                v.restore(start)
+                self.assertEqual(v.joints, {})
+                v.create('ball { "b", "a", name = "rope", at = { 0, 0, 3 }, breaks_at = { force = 1e-3 } } fixed { "a", name = "hook" }')
+                v.step(3)
+                self.assertTrue(v.joints['rope'].broken)
+                v['a'].remove()
+                self.assertEqual(v.joints, {})
+                v.step(3)
+            self.assertTrue((u.position == other.position).all())
+            self.says('expected the name of an object, got "c"', lambda: u.create('fixed { "c" }'))
+
 
 unittest.main()

@@ -106,6 +106,56 @@ sphere { name = "bob", radius = .1, at = { 1, 3, 2 }, mass = 2, script = telling
 hinge { "bob", name = "rope", at = { 0, 3, 2 }, axis = { 0, 1, 0 }, breaks_at = { force = 40 }, friction = .1 }
 """
 
+# Joints that scripts add and remove: to a crane that swings, to the ground, to objects that scripts create and remove.
+GRABS = """scene { title = "Grabs", duration = 2, room = 8 }
+ground {}
+box { name = "crane", size = { .5, .5, .1 }, kind = "kinematic", at = { 0, 0, 3 },
+	path = { kind = "sine", amplitude = { 1, 0, 0 }, frequency = .5 } }
+sphere { name = "weight", radius = .2, at = { 0, 0, 2.4 }, mass = 5, script = [[
+	function on_start() self:wake(.1) end
+	function on_wake()
+		local t = time()
+		if t < .2 then
+			local x, y, z = find("crane"):position()
+			hinge { "weight", "crane", name = "hook", at = { x, y, z }, axis = { 0, 1, 0 }, low = -.4, high = .4,
+				restitution = .5, breaks_at = { force = 1e6 } }
+			self:wake(.6)
+		elseif t < .75 then
+			local angle, rate, torque = joint("hook")
+			local x, y, z = joint_load("hook")
+			print("@hook", angle, rate, torque, x, y, z)
+			unjoin("hook")
+			sphere { name = "child", radius = .1, at = { 0, 2, 3 }, mass = 1 }
+			self:wake(.1)
+		elseif t < 1.2 then
+			if joint("hook") then print("@wrong") end
+			fixed { "weight", "child", name = "hook" }
+			distance { "child", name = "rope", stiffness = 50, damping = 2, to = { 0, 2, 4 } }
+			self:wake(.5)
+		else
+			print("@rope", joint("rope"))
+			find("child"):remove()
+		end
+	end
+]] }
+for i = 1, 3 do
+	box { name = "crate" .. i, size = { .3, .3, .3 }, at = { 2, 0, .31 * i - .16 }, mass = 2 }
+end
+hinge { "crate3", at = { 2, .15, .92 }, axis = { 1, 0, 0 }, friction = 1 }
+sphere { name = "glue", radius = .1, at = { 4, 0, .1 }, mass = 1, script = [[
+	function on_start() self:wake(.5) end
+	function on_wake()
+		if time() < .6 then
+			slider { "crate1", "crate2", name = "glue", axis = { 1, 0, 0 }, low = 0, motor = { rate = .5, most = 40 } }
+			self:wake(.8)
+		else
+			print("@slid", joint("glue"))
+			motor("glue", -.5)
+		end
+	end
+]] }
+"""
+
 
 def kept(folder, text):
 	path = os.path.join(folder, "scene.lua")
@@ -132,7 +182,7 @@ class Joints(unittest.TestCase):
 			self.assertEqual(len({state(*scene, *way)[0] for way in WAYS}), 1, scene)
 
 	def test_mechanisms(self):
-		for text in (MECHANISMS, DRIVES, CRANK, BREAKS):
+		for text in (MECHANISMS, DRIVES, CRANK, BREAKS, GRABS):
 			with tempfile.TemporaryDirectory() as folder:
 				path = kept(folder, text)
 				self.assertEqual(len({state(path, *way)[0] for way in WAYS}), 1)
@@ -165,17 +215,28 @@ class Joints(unittest.TestCase):
 		self.assertAlmostEqual(at["link2"][2], 2.8, delta=.05)
 		self.assertLess(at["link3"][2], .3)
 
-	# A joint that has broken stays broken, whenever the run is saved, and whoever dies.
-	def test_breaks_again(self):
+	def test_grabs(self):
 		with tempfile.TemporaryDirectory() as folder:
-			path, saved = kept(folder, BREAKS), os.path.join(folder, "kept.ck")
-			bits = state(path)[0]
-			for duration in (1 / 60, .2, .8):
-				state(path, "--duration", duration, "--checkpoint", saved)
-				self.assertEqual(state("--resume", saved, "--duration", 1.5)[0], bits)
-			killed, words = state(path, "--isolation", "process", "--workers", 2, "--fault", "kill:p=.01,seed=3")
-			self.assertRegex(words, r"deaths +[1-9]")
-			self.assertEqual(killed, bits)
+			done = program.call("run", kept(folder, GRABS), "--measure", "end")
+		self.assertEqual(done.returncode, 0, done.stderr)
+		found = {name: [float(x) for x in rest.split()] for name, rest in re.findall(r"@(\w+)(.*)", done.stderr)}
+		self.assertEqual(set(found), {"hook", "rope", "slid"}, done.stderr)
+		self.assertLess(abs(found["hook"][0]), .4 + 1e-9)
+		self.assertGreater(found["hook"][5], 10) # it bears the weight
+		self.assertAlmostEqual(found["slid"][0], .4, delta=.05)
+
+	# What joints have become stays so, whenever the run is saved, and whoever dies.
+	def test_again(self):
+		for text, durations in ((BREAKS, (1 / 60, .2, .8)), (GRABS, (.3, 1, 1.9))):
+			with tempfile.TemporaryDirectory() as folder:
+				path, saved = kept(folder, text), os.path.join(folder, "kept.ck")
+				bits = state(path)[0]
+				for duration in durations:
+					state(path, "--duration", duration, "--checkpoint", saved)
+					self.assertEqual(state("--resume", saved, "--duration", 1.5 if text == BREAKS else 2)[0], bits)
+				killed, words = state(path, "--isolation", "process", "--workers", 2, "--fault", "kill:p=.01,seed=3")
+				self.assertRegex(words, r"deaths +[1-9]")
+				self.assertEqual(killed, bits)
 
 	def test_script(self):
 		with tempfile.TemporaryDirectory() as folder:

@@ -90,6 +90,17 @@ class Send(program.Case):
 			self.addCleanup(s.close)
 			s.connect("\0obsim." + self.name) # blocks while too many wait for accept
 
+	def test_joints(self):
+		joined = "slider { 'listener', name = 'rail', axis = { 0, 1, 0 }, motor = { rate = 0 } }"
+		self.send(self.name, "unjoin", "rail", code=1, saying='has no joint "rail"')
+		self.send(self.name, "create", joined.replace("listener", "lisener"), code=1, saying='expected the name of an object, got "lisener"')
+		self.send(self.name, "create", joined)
+		self.assertTrue(program.wait_until(lambda: program.call("send", self.name, "motor", "rail", ".5").returncode == 0))
+		self.send(self.name, "motor", "rial", "1", code=1, saying='has no joint "rial": did you mean "rail"')
+		self.send(self.name, "motor", "rail", "fast", code=1, saying='expected a number, got "fast"')
+		self.send(self.name, "unjoin", "rail")
+		self.assertTrue(program.wait_until(lambda: program.call("send", self.name, "unjoin", "rail").returncode == 1))
+
 	def test_silent(self):
 		"""Silent callers delay no request: all of them are still connected when another is answered."""
 		self.call_silently(18)

@@ -13,7 +13,9 @@ static ob_scene *load(const char *name, const char *define, uint64_t seed)
 {
 	char path[1024];
 	ob_error e = { "" };
-	ob_scene_options o = { &define, define ? 1 : 0, seed > 0, seed, false };
+	const ob_scene_options o = {
+		.defines = &define, .define_count = define ? 1 : 0, .has_seed = seed > 0, .seed = seed
+	};
 	snprintf(path, sizeof path, "%s/%s.lua", folder, name);
 	ob_scene *s = ob_scene_load(path, &o, &e);
 	CHECK(s);
