@@ -70,6 +70,7 @@ static ob_motion motion_from(const ob_motion *m, const ob_state *state, double t
 void ob_free_enter_objects(ob_universe *u)
 {
 	const double now = (double)ob_step_count(u) * ob_universe_settings(u)->step_length;
+	bool woken = false;
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		ob_passport p;
 		ob_motion m;
@@ -81,6 +82,9 @@ void ob_free_enter_objects(ob_universe *u)
 		if (kind == known && (kind == OB_FREE_ABSENT || generation == p.generation) &&
 		    !(p.flags & OB_OBJECT_KINEMATIC))
 			continue;
+		if (!woken)
+			ob_free_wake(u);
+		woken = true;
 		if (kind == OB_FREE_SIMULATED) {
 			if (!ob_universe_get_motion(u, id, &m))
 				continue;

@@ -97,7 +97,10 @@ static void add(ob_free_sim *s, ob_free_scratch *x, uint32_t id, ob_free_kind ki
 	n->passport_version = ob_universe_get_passport_version(x->u, id);
 	ob_universe_get_passport(x->u, id, &n->passport);
 	n->hull = ob_hull_of(x->u, &n->passport);
-	s->neighbours -= !ob_passport_collides(&s->passport, &n->passport);
+	if (!ob_passport_collides(&s->passport, &n->passport))
+		s->neighbours--;
+	else if (kind == OB_FREE_SIMULATED)
+		ob_free_call(x->u, id);
 }
 
 static bool is_there(const ob_free_neighbour *n, const ob_universe *u)
@@ -166,6 +169,21 @@ static void replay(ob_free_sim *s, ob_free_scratch *x)
 	sort(s);
 }
 
+// Looks at the boxes of a group that have changed since the last look, or at all.
+static void look_at(ob_free_sim *s, ob_free_scratch *x, uint32_t group, uint32_t moved, bool all)
+{
+	const uint32_t first = group * OB_FREE_GROUP, ids = ob_universe_ids(x->u);
+	uint32_t id[OB_FREE_CHANGES], n = 0;
+	all |= moved - s->group[group] > OB_FREE_CHANGES;
+	for (uint32_t k = s->group[group]; !all && k != moved; k++)
+		all = (id[n++] = ob_free_changed(x->u, group, k)) == OB_NO_OBJECT;
+	s->group[group] = moved;
+	if (all)
+		add_near(s, x, first, first + OB_FREE_GROUP < ids ? first + OB_FREE_GROUP : ids);
+	for (uint32_t i = 0; !all && i < n; i++)
+		add_near(s, x, id[i], id[i] + 1);
+}
+
 void ob_free_neighbours_update(ob_free_sim *s, ob_free_scratch *x, double h)
 {
 	const bool all = renew_bounds(s, x, h);
@@ -176,12 +194,11 @@ void ob_free_neighbours_update(ob_free_sim *s, ob_free_scratch *x, double h)
 		return;
 	}
 	for (uint32_t g = 0; g < groups; g++) {
-		const uint32_t moved = ob_free_group(x->u, g), first = g * OB_FREE_GROUP;
+		const uint32_t moved = ob_free_moved(x->u, g);
 		if (!all && moved == s->group[g])
 			continue;
-		s->group[g] = moved;
 		any = true;
-		add_near(s, x, first, first + OB_FREE_GROUP < ids ? first + OB_FREE_GROUP : ids);
+		look_at(s, x, g, moved, all);
 	}
 	if (!any)
 		return;

@@ -10,7 +10,14 @@
 #include "free/view.h"
 #include "motion/flight.h"
 
-bool ob_free_sim_begin(ob_free_sim *s, const ob_universe *u, uint32_t id)
+// Sleeps until the host ends the sleep.
+static void sleep_in_flight(const ob_universe *u, uint32_t id)
+{
+	while (!ob_gate_stopped(u) && ob_free_sleep(u, id))
+		;
+}
+
+bool ob_free_sim_begin(ob_free_sim *s, ob_universe *u, uint32_t id)
 {
 	ob_motion next;
 	uint32_t *group = s->group ? s->group : malloc(ob_free_groups(u) * sizeof *group);
@@ -18,6 +25,8 @@ bool ob_free_sim_begin(ob_free_sim *s, const ob_universe *u, uint32_t id)
 	const uint32_t max = s->neighbours_max;
 	if (!group)
 		return false;
+	ob_free_call(u, id); // its predecessor may have slept
+	sleep_in_flight(u, id);
 	*s = (ob_free_sim){
 		.id = id, .group = group, .neighbour = neighbour, .neighbours_max = max, .blocker = OB_NO_OBJECT
 	};
@@ -91,6 +100,55 @@ static bool flies_on(const ob_free_sim *s, const ob_free_scratch *x, double next
 	return flies;
 }
 
+// Own time, s, until which the object flies as published, if nothing near changes. It claims half of the time in which
+// a gap to another can close, as a bound of the lag does.
+static double flies_until(const ob_free_sim *s, const ob_free_scratch *x)
+{
+	double until = s->covered;
+	for (uint32_t i = 0; i < s->neighbours; i++) {
+		const ob_free_neighbour *n = &s->neighbour[i];
+		const bool moves = n->kind == OB_FREE_SIMULATED;
+		const double most = s->time + ob_min(x->free->max_lag, (n->apart - s->time) / 2);
+		until = ob_min(until, moves ? most : n->apart);
+	}
+	return until;
+}
+
+// True if boxes may have changed since the simulator looked.
+static bool has_changes(const ob_free_sim *s, const ob_free_scratch *x)
+{
+	const uint32_t groups = (ob_universe_ids(x->u) + OB_FREE_GROUP - 1) / OB_FREE_GROUP;
+	for (uint32_t g = 0; g < groups; g++)
+		if (ob_free_moved(x->u, g) != s->group[g])
+			return true;
+	return false;
+}
+
+void ob_free_sim_sleep(ob_free_sim *s, ob_free_scratch *x, double until)
+{
+	const double holds = ob_free_lead(x->free, x->boundary) > 0 && !x->schedule && s->flies && s->bounded
+				     ? flies_until(s, x)
+				     : 0;
+	if (!(holds > until) || !flies_on(s, x, holds) || has_changes(s, x))
+		return;
+	ob_free_fall_asleep(x->u, s->id, holds);
+	if (!flies_on(s, x, holds) || has_changes(s, x))
+		ob_free_call(x->u, s->id);
+	sleep_in_flight(x->u, s->id);
+	s->time = s->base = ob_free_time(x->u, s->id);
+	s->since_base = 0;
+	s->counts.updates += (uint64_t)rint((s->time - until) * s->rate); // as of any flight
+	ob_free_put_counts(x->u, s->id, &s->counts);
+}
+
+// Has those near woken that sleep: the object goes on in another way.
+static void call_neighbours(const ob_free_sim *s, const ob_free_scratch *x)
+{
+	for (uint32_t i = 0; i < s->neighbours; i++)
+		if (s->neighbour[i].kind == OB_FREE_SIMULATED)
+			ob_free_call(x->u, s->neighbour[i].id);
+}
+
 // Publishes the state at the simulator's time, up to which it has flown.
 static void end_flight(ob_free_sim *s, ob_free_scratch *x)
 {
@@ -145,6 +203,7 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 	ob_free_schedule_put(x->schedule, x->u, s->id, &m, ledger, s->anew);
 	s->anew = false;
 	ob_free_publish(x->u, s->id, &m, ledger);
+	call_neighbours(s, x);
 	advance_time(s, next);
 	ob_free_put_counts(x->u, s->id, &s->counts);
 	return true;

@@ -65,7 +65,7 @@ typedef struct ob_free_sim {
 	bool bounded; // they are
 	double covered; // s, own time until which they hold a flight that goes on
 	bool flies; // it touches nothing and has no mail: until something near changes, the newest version holds
-	uint32_t *group; // [ob_free_groups] counters at the last look
+	uint32_t *group; // [ob_free_groups] counters of changes at the last look
 	ob_free_neighbour *neighbour;
 	uint32_t neighbours, neighbours_max;
 	uint32_t blocker; // neighbour that is too far behind; OB_NO_OBJECT = none
@@ -112,10 +112,13 @@ static inline uint32_t ob_free_groups(const ob_universe *u)
 }
 
 // Begins a simulator, or begins it anew, at the newest version of its object.
-bool ob_free_sim_begin(ob_free_sim *s, const ob_universe *u, uint32_t id);
+bool ob_free_sim_begin(ob_free_sim *s, ob_universe *u, uint32_t id);
 void ob_free_sim_finish(ob_free_sim *s);
 // End of the next step, s, if it were made now.
 double ob_free_sim_next(const ob_free_sim *s, const ob_free_scratch *x);
+// Puts the simulator to sleep if its object's flight holds beyond the time `until` (s) that it has reached. Returns when
+// the host has woken it, or the run stops.
+void ob_free_sim_sleep(ob_free_sim *s, ob_free_scratch *x, double until);
 // Moves the object through its next step and publishes it. false: it diverged, and steps no more.
 bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x);
 

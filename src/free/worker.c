@@ -13,6 +13,7 @@
 typedef struct worker {
 	ob_universe *u;
 	uint32_t worker, sims;
+	uint32_t *id; // [sims] their objects
 	ob_free_sim *sim;
 	ob_free_scratch scratch;
 	uint32_t until; // as of the last look
@@ -32,12 +33,11 @@ uint32_t ob_free_worker_of(const ob_universe *u, uint32_t id)
 // faults are counted by updates, so that a successor does not fail at the same place for ever.
 static bool adopt(worker *w)
 {
-	uint32_t n = 0, generation;
+	uint32_t generation;
 	const bool first = w->fault_chances == 0;
-	for (uint32_t id = 0; id < ob_universe_capacity(w->u); id++) {
-		if (ob_free_worker_of(w->u, id) != w->worker)
-			continue;
-		ob_free_sim *s = &w->sim[n++];
+	for (uint32_t i = 0; i < w->sims; i++) {
+		const uint32_t id = w->id[i];
+		ob_free_sim *s = &w->sim[i];
 		const bool present = ob_free_kind_of(w->u, id, &generation) == OB_FREE_SIMULATED;
 		if ((present != s->present || (present && generation != s->generation)) &&
 		    !ob_free_sim_begin(s, w->u, id))
@@ -50,10 +50,15 @@ static bool adopt(worker *w)
 static bool begin(worker *w, ob_universe *u, uint32_t number)
 {
 	*w = (worker){ .u = u, .worker = number };
-	for (uint32_t id = 0; id < ob_universe_capacity(u); id++)
+	const uint32_t capacity = ob_universe_capacity(u);
+	for (uint32_t id = 0; id < capacity; id++)
 		w->sims += ob_free_worker_of(u, id) == number;
 	w->sim = calloc(w->sims + 1, sizeof *w->sim);
-	return w->sim && ob_free_scratch_begin(&w->scratch, u);
+	w->id = calloc(w->sims + 1, sizeof *w->id);
+	for (uint32_t id = 0, n = 0; w->id && id < capacity; id++)
+		if (ob_free_worker_of(u, id) == number)
+			w->id[n++] = id;
+	return w->sim && w->id && ob_free_scratch_begin(&w->scratch, u);
 }
 
 static void finish(worker *w)
@@ -61,6 +66,7 @@ static void finish(worker *w)
 	for (uint32_t i = 0; w->sim && i < w->sims; i++)
 		ob_free_sim_finish(&w->sim[i]);
 	free(w->sim);
+	free(w->id);
 	ob_free_schedule_close(w->scratch.schedule);
 	ob_free_scratch_finish(&w->scratch);
 }
@@ -110,6 +116,8 @@ static void work(worker *w)
 		blocked->counts.wait_ns += ob_free_wait_for(w->u, blocked->id, blocked->blocker, blocked->needed);
 		ob_free_put_counts(w->u, blocked->id, &blocked->counts);
 	} else if (!s) {
+		if (w->sims == 1 && w->sim->present)
+			ob_free_sim_sleep(w->sim, &w->scratch, w->until * w->scratch.boundary);
 		ob_free_wait_for_host(w->u, w->until);
 	} else if (!wait_for_clock(w, s) && ob_free_lag_allows(s, &w->scratch)) {
 		ob_worker_set_object(w->u, w->worker, s->id);

@@ -17,10 +17,10 @@ static void extend(ob_host *h)
 {
 	const uint64_t events = ob_population_next_step(h->population),
 		       ahead = ob_step_count(h->u) + ob_free_window(h->u);
+	const uint32_t now = ob_free_until(h->u);
 	uint64_t until = ahead < events ? ahead : events;
 	until = until < h->free_end ? until : h->free_end;
-	if (!h->free_hold && until > ob_free_until(h->u))
-		ob_free_run_until(h->u, until);
+	ob_free_run_until(h->u, h->free_hold || until < now ? now : until);
 }
 
 void ob_host_free_resume(ob_host *h)

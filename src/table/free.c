@@ -7,7 +7,8 @@
 #include "table/futex.h"
 #include "table/layout.h"
 
-enum { NEIGHBOUR_WAIT_MS = 20, HOST_WAIT_MS = 50 };
+enum { NEIGHBOUR_WAIT_MS = 100, HOST_WAIT_MS = 200 };
+static const uint64_t nobody = UINT64_MAX; // waits
 
 const ob_free_settings *ob_free_settings_of(const ob_universe *u)
 {
@@ -52,7 +53,7 @@ static void get_words(void *to, const void *from, size_t bytes)
 
 uint64_t ob_free_version(const ob_universe *u, uint32_t id)
 {
-	return __atomic_load_n(&cell_of(u, id)->version, __ATOMIC_ACQUIRE);
+	return __atomic_load_n(&cell_of(u, id)->version, __ATOMIC_SEQ_CST);
 }
 
 // True if a place of a ring was not written meanwhile: see the proof in free.h.
@@ -102,16 +103,30 @@ uint64_t ob_free_read(const ob_universe *u, uint32_t id, double t, ob_motion *ou
 	return 0;
 }
 
+// Bits of a time that is not negative: they are ordered as times are.
+static uint64_t bits_of(double t)
+{
+	uint64_t bits;
+	memcpy(&bits, &t, sizeof bits);
+	return bits;
+}
+
+static double time_of(uint64_t bits)
+{
+	double t;
+	memcpy(&t, &bits, sizeof t);
+	return t;
+}
+
 void ob_free_advance(ob_universe *u, uint32_t id, double t)
 {
 	ob_free_cell *c = cell_of(u, id);
-	uint64_t time;
-	memcpy(&time, &t, sizeof time);
+	const uint64_t time = bits_of(t);
 	// In one order with the waiter's store of `awaited` and its load of `time`: one of the two sees the other's.
 	__atomic_store_n(&c->time, time, __ATOMIC_SEQ_CST);
-	if (__atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST)) {
-		__atomic_store_n(&c->awaited, 0, __ATOMIC_RELAXED);
-		__atomic_fetch_add(&c->moved, 1, __ATOMIC_RELEASE);
+	if (__atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST) <= time) {
+		__atomic_store_n(&c->awaited, nobody, __ATOMIC_SEQ_CST);
+		__atomic_fetch_add(&c->moved, 1, __ATOMIC_SEQ_CST);
 		ob_futex_wake(&c->moved, ~0u);
 	}
 }
@@ -124,16 +139,23 @@ void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_l
 	if (ledger)
 		put_words(ledger_place(u, id, next), ledger,
 			  offsetof(ob_ledger, account) + ledger->head.accounts * sizeof *ledger->account);
-	__atomic_store_n(&c->version, next, __ATOMIC_RELEASE);
+	__atomic_store_n(&c->version, next, __ATOMIC_SEQ_CST);
 	ob_free_advance(u, id, m->t0);
 }
 
 double ob_free_time(const ob_universe *u, uint32_t id)
 {
-	const uint64_t bits = __atomic_load_n(&cell_of(u, id)->time, __ATOMIC_SEQ_CST);
-	double t;
-	memcpy(&t, &bits, sizeof t);
-	return t;
+	const ob_free_cell *c = cell_of(u, id);
+	for (;;) {
+		const uint64_t time = __atomic_load_n(&c->time, __ATOMIC_SEQ_CST),
+			       holds = __atomic_load_n(&c->holds, __ATOMIC_SEQ_CST);
+		if (!holds)
+			return time_of(time);
+		const double until =
+			__atomic_load_n(&u->free.control->until, __ATOMIC_SEQ_CST) * u->header.run.step_length;
+		if (__atomic_load_n(&c->holds, __ATOMIC_SEQ_CST) == holds)
+			return until < time_of(holds) ? until : time_of(holds);
+	}
 }
 
 double ob_free_rate(const ob_universe *u, uint32_t id)
@@ -202,17 +224,31 @@ bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_led
 
 // ---- bounds
 
+static void note_change(ob_universe *u, uint32_t id)
+{
+	ob_free_group *g = &u->free.group[id / OB_FREE_GROUP];
+	const uint32_t number = __atomic_fetch_add(&g->moved, 1, __ATOMIC_SEQ_CST);
+	__atomic_store_n(&g->change[number % OB_FREE_CHANGES], (uint64_t)(number + 1) << 32 | id, __ATOMIC_RELEASE);
+}
+
 void ob_free_publish_bounds(ob_universe *u, uint32_t id, const float box[6])
 {
 	ob_word words[3];
 	memcpy(words, box, sizeof words);
 	put_words(u->step_data.bounds[id], words, sizeof words);
-	__atomic_fetch_add(&u->free.group[id / OB_FREE_GROUP], 1, __ATOMIC_RELEASE);
+	note_change(u, id);
 }
 
-uint32_t ob_free_group(const ob_universe *u, uint32_t group)
+uint32_t ob_free_moved(const ob_universe *u, uint32_t group)
 {
-	return __atomic_load_n(&u->free.group[group], __ATOMIC_ACQUIRE);
+	return __atomic_load_n(&u->free.group[group].moved, __ATOMIC_SEQ_CST);
+}
+
+uint32_t ob_free_changed(const ob_universe *u, uint32_t group, uint32_t number)
+{
+	const uint64_t change =
+		__atomic_load_n(&u->free.group[group].change[number % OB_FREE_CHANGES], __ATOMIC_ACQUIRE);
+	return change >> 32 == number + 1 ? (uint32_t)change : OB_NO_OBJECT;
 }
 
 void ob_free_read_bounds(const ob_universe *u, uint32_t id, float box[6])
@@ -243,11 +279,14 @@ void ob_free_get_counts(const ob_universe *u, uint32_t id, ob_free_counts *out)
 uint64_t ob_free_wait_for(ob_universe *u, uint32_t id, uint32_t neighbour, double time)
 {
 	ob_free_cell *c = cell_of(u, neighbour);
-	const uint64_t began = ob_clock_ns();
+	const uint64_t began = ob_clock_ns(), needed = bits_of(time);
 	__atomic_store_n(&cell_of(u, id)->blocker, 1 + neighbour, __ATOMIC_RELAXED);
-	__atomic_store_n(&c->awaited, 1, __ATOMIC_SEQ_CST);
-	const uint32_t seen = __atomic_load_n(&c->moved, __ATOMIC_ACQUIRE);
-	if (ob_free_time(u, neighbour) < time && __atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST))
+	uint64_t least = __atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST);
+	while (needed < least &&
+	       !__atomic_compare_exchange_n(&c->awaited, &least, needed, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+		;
+	const uint32_t seen = __atomic_load_n(&c->moved, __ATOMIC_SEQ_CST);
+	if (ob_free_time(u, neighbour) < time && __atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST) <= needed)
 		ob_futex_wait_ms(&c->moved, seen, NEIGHBOUR_WAIT_MS);
 	__atomic_store_n(&cell_of(u, id)->blocker, 0, __ATOMIC_RELAXED);
 	return ob_clock_ns() - began;
@@ -265,17 +304,41 @@ void ob_free_wait_for_host(const ob_universe *u, uint32_t step)
 	ob_futex_wait_ms(&u->free.control->until, step, HOST_WAIT_MS);
 }
 
+void ob_free_fall_asleep(ob_universe *u, uint32_t id, double holds)
+{
+	__atomic_store_n(&cell_of(u, id)->holds, bits_of(holds), __ATOMIC_SEQ_CST);
+}
+
+bool ob_free_sleep(const ob_universe *u, uint32_t id)
+{
+	const ob_free_cell *c = cell_of(u, id);
+	const uint32_t seen = __atomic_load_n(&c->slept, __ATOMIC_ACQUIRE);
+	if (!__atomic_load_n(&c->holds, __ATOMIC_SEQ_CST))
+		return false;
+	ob_futex_wait_ms(&c->slept, seen, HOST_WAIT_MS);
+	return true;
+}
+
+void ob_free_call(ob_universe *u, uint32_t id)
+{
+	ob_free_cell *c = cell_of(u, id);
+	if (__atomic_load_n(&c->holds, __ATOMIC_SEQ_CST))
+		__atomic_store_n(&c->called, 1, __ATOMIC_RELEASE);
+}
+
 // ---- host
 
 void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t generation, const ob_motion *m)
 {
 	const ob_ledger none = { .head.step = INFINITY };
 	ob_free_cell *c = cell_of(u, id);
+	if (!ob_free_version(u, id))
+		__atomic_store_n(&c->awaited, nobody, __ATOMIC_RELAXED);
 	if (kind == OB_FREE_SIMULATED)
 		ob_free_publish(u, id, m, u->header.sizes.ledgers ? &none : NULL);
 	__atomic_store_n(&c->generation, generation, __ATOMIC_RELAXED);
 	__atomic_store_n(&c->kind, kind, __ATOMIC_RELEASE);
-	__atomic_fetch_add(&u->free.group[id / OB_FREE_GROUP], 1, __ATOMIC_RELEASE);
+	note_change(u, id);
 }
 
 void ob_free_set_rate(ob_universe *u, uint32_t id, double rate)
@@ -284,14 +347,52 @@ void ob_free_set_rate(ob_universe *u, uint32_t id, double rate)
 	__atomic_store(&cell_of(u, id)->update_rate, &f, __ATOMIC_RELAXED);
 }
 
+// Ends the sleep of a simulator at the time of `until`.
+static void end_sleep(ob_universe *u, uint32_t id)
+{
+	ob_free_cell *c = cell_of(u, id);
+	__atomic_store_n(&c->called, 0, __ATOMIC_RELAXED);
+	ob_free_advance(u, id, ob_free_time(u, id));
+	__atomic_store_n(&c->holds, 0, __ATOMIC_SEQ_CST);
+	__atomic_fetch_add(&c->slept, 1, __ATOMIC_RELEASE);
+	ob_futex_wake(&c->slept, ~0u);
+}
+
+// Ends sleeps that hold until less than a time, s; called: those that were called, too.
+static void end_sleeps(ob_universe *u, double before, bool called)
+{
+	for (uint32_t id = 0; id < u->header.sizes.capacity; id++) {
+		const ob_free_cell *c = cell_of(u, id);
+		const uint64_t holds = __atomic_load_n(&c->holds, __ATOMIC_SEQ_CST);
+		if (holds && (time_of(holds) < before || (called && __atomic_load_n(&c->called, __ATOMIC_ACQUIRE))))
+			end_sleep(u, id);
+	}
+}
+
+void ob_free_wake(ob_universe *u)
+{
+	end_sleeps(u, INFINITY, true);
+}
+
+void ob_free_stop(ob_universe *u)
+{
+	ob_futex_wake(&u->free.control->until, ~0u);
+	for (uint32_t id = 0; id < u->header.sizes.capacity; id++) {
+		ob_futex_wake(&cell_of(u, id)->moved, ~0u);
+		ob_futex_wake(&cell_of(u, id)->slept, ~0u);
+	}
+}
+
 void ob_free_run_until(ob_universe *u, uint64_t step)
 {
 	ob_free_control *c = u->free.control;
 	if (c->begun_ns == 0 && step > 0)
 		__atomic_store_n(&c->begun_ns, ob_clock_ns(), __ATOMIC_RELEASE);
-	if (__atomic_load_n(&c->until, __ATOMIC_RELAXED) == (uint32_t)step)
+	const bool moves = __atomic_load_n(&c->until, __ATOMIC_RELAXED) != (uint32_t)step;
+	end_sleeps(u, (double)step * u->header.run.step_length, moves);
+	if (!moves)
 		return;
-	__atomic_store_n(&c->until, (uint32_t)step, __ATOMIC_RELEASE);
+	__atomic_store_n(&c->until, (uint32_t)step, __ATOMIC_SEQ_CST);
 	ob_futex_wake(&c->until, ~0u);
 }
 

@@ -20,11 +20,19 @@
 // Mail: with a ledger, a version has a block of mail as well, in a ring of its own that the same word commits. So an
 // object's motion, the impulses that it has consumed and those that it has deposited change together, or not at all.
 //
-// Waiting: a simulator that is too far ahead of a neighbour sets the neighbour's `awaited`, and sleeps on its futex word.
-// The neighbour's next publication wakes it. The flag, not a count, so that a waiter's death leaves nothing behind.
+// Waiting: a simulator that is too far ahead of a neighbour lowers the neighbour's `awaited` to the time that it needs, and
+// sleeps on its futex word. The neighbour wakes all when it has reached that time. A time, not a count, so that a
+// waiter's death leaves one wake too many behind.
+//
+// Sleeping flights: a simulator whose newest version holds for long sets `holds`, and sleeps. Meanwhile the object's own
+// time is that of `until`, as if its simulator had gone so far at once. Whoever comes near, or changes near it, calls it.
+// Only the host ends such a sleep, before it moves `until`: of those that were called, and those that hold no longer. So own
+// times never fall back. Storing `holds` and looking once more, publishing and looking at `holds` are in one order: one
+// side sees the other's.
 //
 // Neighbours: bounds are published as three words of two numbers. A counter for 64 objects moves afterwards, so a reader
-// compares counters, and looks at the boxes of groups that have changed.
+// compares counters. The last changes of a group stand in a ring, each with its number; a reader that finds another
+// number looks at all boxes of the group.
 //
 // One writer per object at a time; readers in any thread or process.
 #ifndef OB_TABLE_FREE_H
@@ -37,7 +45,7 @@
 #include "settings/free.h"
 #include "table/table.h"
 
-enum { OB_LEDGER_ACCOUNTS = 32, OB_FREE_GROUP = 64 };
+enum { OB_LEDGER_ACCOUNTS = 32, OB_FREE_GROUP = 64, OB_FREE_CHANGES = 16 };
 
 // An account of an object with one partner. Of a pair the lower id deposits, the higher one consumes.
 typedef struct ob_account {
@@ -82,12 +90,22 @@ typedef struct ob_free_cell {
 	uint64_t time; // bits of a double: own time, s; beyond the newest version's while that holds
 	uint32_t kind; // ob_free_kind
 	uint32_t generation; // as in the passport
-	_Alignas(64) uint32_t moved; // futex word: publications that were awaited
-	uint32_t awaited; // 1 = a simulator sleeps on it, or is about to
+	_Alignas(64) uint32_t moved; // futex word: times that were awaited
 	uint32_t blocker; // 1 + the object that it waits for; 0 = none
+	uint64_t awaited; // bits of a double: least own time, s, for which a simulator waits; all ones: nobody does
+	uint64_t holds; // bits of a double: own time, s, until which it sleeps; 0: it does not
+	uint32_t called; // 1 = its sleep ends before anybody passes `until`
+	uint32_t slept; // futex word: sleeps that the host has ended
 	float update_rate; // Hz; 0: the run's
+	uint32_t zero;
 	ob_free_counts counts;
 } ob_free_cell;
+
+// 64 objects.
+typedef struct ob_free_group {
+	_Alignas(64) uint32_t moved; // changes of their boxes, arrivals, departures
+	uint64_t change[OB_FREE_CHANGES]; // (number of the change, from 1) << 32 | object
+} ob_free_group;
 
 typedef struct ob_free_control {
 	ob_free_settings settings;
@@ -96,7 +114,8 @@ typedef struct ob_free_control {
 	uint64_t begun_ns; // clock at which own time 0 was due; 0 = not yet
 } ob_free_control;
 
-static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 448, "free run");
+static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 448 && sizeof(ob_free_group) == 192,
+	      "free run");
 static_assert(sizeof(ob_account) == 160 && sizeof(ob_ledger) == 40 + OB_LEDGER_ACCOUNTS * 160, "mail");
 
 // NULL: the run is in lockstep.
@@ -111,13 +130,18 @@ uint32_t ob_free_depth(const ob_universe *u);
 void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t generation, const ob_motion *m);
 // Sets the rate (Hz) of an object's simulator, before the object is entered; 0: the run's.
 void ob_free_set_rate(ob_universe *u, uint32_t id, double rate);
-// Lets simulators run until so many steps are complete. The first call starts their clock.
+// Lets simulators run until so many steps are complete. The first call starts their clock. Wakes simulators that sleep, but
+// those whose flights hold until then: one that falls asleep meanwhile is woken by the next call.
 void ob_free_run_until(ob_universe *u, uint64_t step);
+// Wakes all that sleep in flight: something has changed.
+void ob_free_wake(ob_universe *u);
+// Wakes all that wait, so that they see that the run stops.
+void ob_free_stop(ob_universe *u);
 
 // ---- all
 
 ob_free_kind ob_free_kind_of(const ob_universe *u, uint32_t id, uint32_t *generation); // generation may be NULL
-double ob_free_time(const ob_universe *u, uint32_t id); // own time, s
+double ob_free_time(const ob_universe *u, uint32_t id); // own time, s; while its simulator sleeps, that of `until`
 uint64_t ob_free_version(const ob_universe *u, uint32_t id);
 double ob_free_rate(const ob_universe *u, uint32_t id); // Hz, of its simulator's steps
 // Copies the newest version that is not after t (s), or the oldest kept, and returns its number; 0: none. next, if not
@@ -144,11 +168,19 @@ void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_l
 void ob_free_advance(ob_universe *u, uint32_t id, double t);
 void ob_free_put_counts(ob_universe *u, uint32_t id, const ob_free_counts *c);
 void ob_free_publish_bounds(ob_universe *u, uint32_t id, const float box[6]);
-// Counter of a group of OB_FREE_GROUP objects; and a box.
-uint32_t ob_free_group(const ob_universe *u, uint32_t group);
+// Counter of changes in a group of OB_FREE_GROUP objects; and a box.
+uint32_t ob_free_moved(const ob_universe *u, uint32_t group);
 void ob_free_read_bounds(const ob_universe *u, uint32_t id, float box[6]);
-// Sleeps until the neighbour publishes, or some time has passed, unless the neighbour has reached `time`. id: the object
-// whose simulator waits. Returns the time slept, ns.
+// Object of a change, by its number (from 0: what the counter was before). OB_NO_OBJECT: it is not kept.
+uint32_t ob_free_changed(const ob_universe *u, uint32_t group, uint32_t number);
+// Begins to sleep in flight until own time `holds` (s). The simulator then looks once more whether it may.
+void ob_free_fall_asleep(ob_universe *u, uint32_t id, double holds);
+// Sleeps until the host ends the sleep, the run stops, or some time has passed. false: the simulator does not sleep.
+bool ob_free_sleep(const ob_universe *u, uint32_t id);
+// Has the simulator of an object woken before anybody passes `until`, if it sleeps in flight.
+void ob_free_call(ob_universe *u, uint32_t id);
+// Sleeps until the neighbour has reached `time`, or some time has passed. id: the object whose simulator waits. Returns
+// the time slept, ns.
 uint64_t ob_free_wait_for(ob_universe *u, uint32_t id, uint32_t neighbour, double time);
 // Sleeps until the host moves `until` away from this step, or some time has passed.
 void ob_free_wait_for_host(const ob_universe *u, uint32_t step);

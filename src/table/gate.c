@@ -231,4 +231,6 @@ void ob_gate_stop(ob_universe *u)
 		__atomic_fetch_add(&half->word, 1, __ATOMIC_SEQ_CST);
 		ob_futex_wake(&half->word, FUTEX_BITSET_MATCH_ANY);
 	}
+	if (ob_free_settings_of(u))
+		ob_free_stop(u);
 }

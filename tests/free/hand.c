@@ -10,20 +10,25 @@
 
 hand *hand_create(ob_free_settings f, ob_vec3 gravity)
 {
+	return hand_create_for(HAND_OBJECTS, f, gravity);
+}
+
+hand *hand_create_for(uint32_t objects, ob_free_settings f, ob_vec3 gravity)
+{
 	ob_error e;
 	hand *h = calloc(1, sizeof *h);
-	f.objects = HAND_OBJECTS;
+	f.objects = objects;
 	f.pace = INFINITY;
-	ob_universe_setup setup = { .capacity = HAND_OBJECTS, .workers = 1, .isolation = "thread", .free = &f };
+	ob_universe_setup setup = { .capacity = objects, .workers = 1, .isolation = "thread", .free = &f };
 	setup.run = ob_run_settings_default();
 	setup.run.gravity = gravity;
 	setup.run.tolerance = 0;
 	setup.run.substeps = 1;
 	f.rate_most = ob_max(f.rate_most, f.update_rate);
-	ob_free_plan_depths(&f, setup.run.step_length, HAND_OBJECTS, &setup.history, &setup.ledgers);
+	ob_free_plan_depths(&f, setup.run.step_length, objects, &setup.history, &setup.ledgers);
 	ob_ode_init();
 	h->u = ob_universe_create(&setup, &e);
-	if (!h->u || !ob_universe_reserve(h->u, HAND_OBJECTS, &e) || !ob_free_scratch_begin(&h->scratch, h->u)) {
+	if (!h->u || !ob_universe_reserve(h->u, objects, &e) || !ob_free_scratch_begin(&h->scratch, h->u)) {
 		fprintf(stderr, "%s\n", e.text);
 		exit(1);
 	}

@@ -6,17 +6,19 @@
 #include "free/lag.h"
 #include "free/view.h"
 
-enum { HAND_OBJECTS = 64 };
+enum { HAND_OBJECTS = 64, HAND_MOST = 128 };
 
 typedef struct hand {
 	ob_universe *u;
 	uint32_t objects;
-	ob_free_sim sim[HAND_OBJECTS];
+	ob_free_sim sim[HAND_MOST];
 	ob_free_scratch scratch;
 } hand;
 
 // A universe without objects. f->objects and the depths follow.
 hand *hand_create(ob_free_settings f, ob_vec3 gravity);
+// The same with room for so many objects; hand_create has room for HAND_OBJECTS.
+hand *hand_create_for(uint32_t objects, ob_free_settings f, ob_vec3 gravity);
 void hand_destroy(hand *h);
 // Adds an object; returns its id. mass 0: static.
 uint32_t hand_add(hand *h, ob_shape shape, ob_vec3 size, double mass, ob_vec3 at, ob_vec3 velocity, double restitution);

@@ -146,6 +146,70 @@ static void test_flight_costs_nothing(void)
 	hand_destroy(h);
 }
 
+// A simulator that sleeps is where all may be; one that was called, or holds no longer, is woken there, and not beyond.
+static void test_sleep(void)
+{
+	hand *h = hand_create(settings(60, INFINITY), down);
+	const uint32_t a = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(0, 0, 9), none, 0),
+		       b = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(5, 0, 9), none, 0);
+	uint64_t random = 1;
+	hand_until(h, 2);
+	CHECK(hand_run(h, &random, 0));
+	ob_free_fall_asleep(h->u, a, 9. / 60);
+	ob_free_fall_asleep(h->u, b, 5. / 60);
+	ob_free_run_until(h->u, 4);
+	CHECK_NEAR(ob_free_time(h->u, a), 4. / 60, 1e-12);
+	CHECK_NEAR(ob_free_time(h->u, b), 4. / 60, 1e-12);
+	CHECK(ob_free_complete(h->u, 4) == 4);
+	CHECK_NEAR(motion_of(h, a).p.z, 9 - .5 * 9.81 * 16 / 3600, 1e-12);
+	ob_free_call(h->u, a);
+	ob_free_run_until(h->u, 6);
+	CHECK_NEAR(ob_free_time(h->u, a), 4. / 60, 1e-12); // it was called
+	CHECK_NEAR(ob_free_time(h->u, b), 4. / 60, 1e-12); // it does not hold until 6
+	CHECK(!ob_free_sleep(h->u, a) && !ob_free_sleep(h->u, b));
+	ob_free_fall_asleep(h->u, b, 5. / 60); // while the host moved on
+	ob_free_run_until(h->u, 6);
+	CHECK(!ob_free_sleep(h->u, b));
+	CHECK_NEAR(ob_free_time(h->u, b), 5. / 60, 1e-12);
+	hand_destroy(h);
+}
+
+// One of a hundred stops for a second of the others' time: those that do not touch it keep their rate, those that do wait
+// for it, at the bound. Afterwards all come to the end.
+static void test_one_stopped(ob_coupling coupling)
+{
+	enum { OBJECTS = 100, STOPPED = 2, RATE = 200 };
+	const double lag = .02;
+	ob_free_settings f = settings(RATE, lag);
+	f.coupling = coupling;
+	hand *h = hand_create_for(OBJECTS + 1, f, down);
+	hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+	for (int i = 0; i < 3; i++) // a stack; its middle stops
+		hand_add(h, OB_SHAPE_BOX, ob_v3(.5, .5, .5), 1, ob_v3(0, 0, i + .5), none, 0);
+	while (h->objects <= OBJECTS) // those at the ground, and those in flight
+		hand_add(h, OB_SHAPE_SPHERE, ob_v3(.4, 0, 0), 1,
+			 ob_v3(3 + h->objects % 10, 3 + h->objects / 10, h->objects % 2 ? .4 : 8), none, 0);
+	hand_until(h, 60);
+	for (int round = 0; round < 4 * RATE; round++)
+		for (uint32_t id = 1; id <= OBJECTS; id++)
+			if (id != STOPPED)
+				hand_step(h, id);
+	for (uint32_t id = 1; id <= OBJECTS; id++) {
+		const ob_free_sim *s = &h->sim[id];
+		if (id == STOPPED)
+			CHECK(s->counts.updates == 0);
+		else if (id <= 3)
+			CHECK(s->blocker == STOPPED && s->time > 0 && s->time <= lag + 1. / RATE + 1e-9);
+		else
+			CHECK(s->counts.updates >= .99 * RATE && s->blocker == OB_NO_OBJECT);
+	}
+	uint64_t random = 1;
+	CHECK(hand_run(h, &random, 0));
+	CHECK(ob_free_complete(h->u, 60) == 60);
+	CHECK_NEAR(motion_of(h, 3).p.z, 2.5, coupling == OB_COUPLING_LEDGER ? 5e-3 : .05); // own responses sink
+	hand_destroy(h);
+}
+
 // A heavy ball falls on a light one on the ground: steps get shorter, or the light one would pass on its load too late.
 static void test_light_between_heavy(void)
 {
@@ -204,6 +268,9 @@ int main(int argc, char **argv)
 	test_no_deadlock(argc > 1 ? strtoull(argv[1], NULL, 10) : 100);
 	test_ground();
 	test_flight_costs_nothing();
+	test_sleep();
+	test_one_stopped(OB_COUPLING_LEDGER);
+	test_one_stopped(OB_COUPLING_OWN);
 	test_light_between_heavy();
 	test_rates();
 	return check_end();
