@@ -554,8 +554,7 @@ bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_erro
 			       "--colour-by %s: a record does not hold where simulators ran; simulator, island, "
 			       "rest and cost can be shown",
 			       a->value[OB_OPTION_COLOUR_BY]);
-	const char *lacks = r->frames.contacts ? "contacts" : r->frames.joints ? "joints" : NULL;
-	return !lacks || ob_fail(e, "--overlay %s: a record holds no %s", lacks, lacks);
+	return !r->frames.contacts || ob_fail(e, "--overlay contacts: a record holds no contacts");
 }
 
 ob_host_config ob_request_host(const ob_run_request *r)

@@ -171,7 +171,8 @@ static bool list_joined(struct search *s, const ob_snapshot *from)
 	s->joined = malloc((from->joints + 1) * sizeof *s->joined);
 	for (uint32_t i = 0; s->joined && i < from->joints; i++) {
 		const ob_joint_passport *j = &from->joint[i];
-		if (j->object[1] != OB_JOINT_WORLD && !(j->flags & OB_JOINT_COLLIDES))
+		if (ob_snapshot_has_joint(from, i) && j->object[1] != OB_JOINT_WORLD &&
+		    !(j->flags & (OB_JOINT_COLLIDES | OB_JOINT_BROKEN)))
 			s->joined[s->joined_count++] = joined_of(j->object[0], j->object[1]);
 	}
 	if (s->joined_count)

@@ -21,7 +21,7 @@ typedef struct ob_snapshot {
 	size_t contacts;
 	ob_contact_point *contact;
 	uint32_t joints;
-	ob_joint_passport *joint; // [joints], those that hold
+	ob_joint_passport *joint; // [joints], by number; 0 where there is none (ob_snapshot_has_joint); OB_JOINT_BROKEN
 	uint32_t joints_max;
 	uint32_t count_max;
 	size_t contacts_max;
@@ -41,6 +41,11 @@ const ob_hull *ob_snapshot_hull(const ob_snapshot *s, uint32_t id);
 // Number of a compound's parts, and one of them, from 1; part 0: as ob_snapshot_hull. 0: not a compound.
 uint32_t ob_snapshot_parts(const ob_snapshot *s, uint32_t id);
 const ob_hull *ob_snapshot_part(const ob_snapshot *s, uint32_t id, uint32_t part);
+// True if there is a joint of this number; it may have broken.
+static inline bool ob_snapshot_has_joint(const ob_snapshot *s, uint32_t joint)
+{
+	return joint < s->joints && s->joint[joint].object[0] != s->joint[joint].object[1];
+}
 // State of a present object at the snapshot's time: its motion may be older (asleep, static, in flight).
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id);
 

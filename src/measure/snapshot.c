@@ -146,9 +146,9 @@ static bool take_joints(ob_snapshot *s, const ob_universe *u, ob_error *e)
 	const uint32_t joints = ob_universe_joints(u);
 	if (!grow_joints(s, joints))
 		return ob_fail(e, "no memory for %u joints", joints);
-	for (uint32_t i = 0; i < joints; i++)
-		s->joints += ob_universe_get_joint(u, i, &s->joint[s->joints]) &&
-			     !(s->joint[s->joints].flags & OB_JOINT_BROKEN);
+	for (s->joints = 0; s->joints < joints; s->joints++)
+		if (!ob_universe_get_joint(u, s->joints, &s->joint[s->joints]))
+			memset(&s->joint[s->joints], 0, sizeof *s->joint);
 	return true;
 }
 
@@ -162,7 +162,6 @@ bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, 
 	s->time = info.time;
 	s->count = info.capacity;
 	s->contacts = 0;
-	s->joints = 0;
 	for (uint32_t id = 0; id < s->count; id++)
 		if (!take_object(s, u, id, e))
 			return false;

@@ -7,6 +7,7 @@
 // A new member of one of these structures may be needed to draw a record again: decide here.
 static_assert(sizeof(ob_passport) == 184 && sizeof(ob_motion) == 176, "members of /events and /motions");
 static_assert(sizeof(ob_hull) == 7008, "members of /hulls");
+static_assert(sizeof(ob_joint_passport) == 304, "members of /joints");
 static_assert(sizeof(ob_camera_def) == 200 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
 
 #define COUNT(a) ((int)(sizeof(a) / sizeof *(a)))
@@ -35,6 +36,37 @@ const ob_record_table ob_record_events = {
 	sizeof(ob_record_event),
 	COUNT(event_members),
 	event_members,
+};
+
+#define JOINT(name, type) \
+	{ \
+#name, type, offsetof(ob_record_joint, name), 0 \
+	}
+#define JOINT_PASSPORT(name, member, type, length) \
+	{ \
+		name, type, offsetof(ob_record_joint, passport.member), length \
+	}
+static const ob_record_member joint_members[] = {
+	JOINT(step, OB_RECORD_U64),
+	JOINT(time, OB_RECORD_F64),
+	JOINT(kind, OB_RECORD_U32),
+	JOINT(number, OB_RECORD_U32),
+	JOINT_PASSPORT("object", object, OB_RECORD_U32, 2),
+	JOINT_PASSPORT("generation", generation, OB_RECORD_U32, 2),
+	JOINT_PASSPORT("joint", kind, OB_RECORD_U32, 0),
+	JOINT_PASSPORT("flags", flags, OB_RECORD_U32, 0),
+	JOINT_PASSPORT("frame", frame, OB_RECORD_POSE, 2),
+	JOINT_PASSPORT("length", length, OB_RECORD_F64, 0),
+	JOINT_PASSPORT("name", name, OB_RECORD_NAME, 0),
+};
+const ob_record_table ob_record_joints = {
+	{ "joints", "SI", "frame: of each object's body, the world's for object 4294967295: place, attitude w x y z",
+	  "joints that come (kind 1), break (2) and go (3), in the order of steps; joint: from 0, ball, hinge, slider, "
+	  "fixed, universal, distance, apart; flags: 1 its objects collide, 2 something acts along its axis, 4 "
+	  "broken" },
+	sizeof(ob_record_joint),
+	COUNT(joint_members),
+	joint_members,
 };
 
 #define MOTION(name, type) \
@@ -220,6 +252,8 @@ static hid_t type_of(ob_record_type type)
 		return ob_hdf5_string_type(OB_NAME_MAX);
 	case OB_RECORD_EDGE:
 		return array_of(H5T_NATIVE_UINT8, sizeof(ob_hull_edge));
+	case OB_RECORD_POSE:
+		return array_of(H5T_NATIVE_DOUBLE, sizeof(ob_pose) / sizeof(double));
 	}
 	return H5I_INVALID_HID;
 }

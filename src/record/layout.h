@@ -5,6 +5,7 @@
 #define OB_RECORD_LAYOUT_H
 
 #include <ob/hull.h>
+#include <ob/joint.h>
 
 #include "record/hdf5_file.h"
 #include "scene/scene.h"
@@ -26,6 +27,15 @@ typedef struct ob_record_event {
 	ob_passport passport; // its passport from then on, or until then
 } ob_record_event;
 
+// A joint was added, has broken (OB_RECORD_CHANGED), or was removed.
+typedef struct ob_record_joint {
+	uint64_t step;
+	double time; // s
+	uint32_t kind; // ob_record_event_kind
+	uint32_t number;
+	ob_joint_passport passport; // what acts along its axis and its strength are 0
+} ob_record_joint;
+
 typedef enum ob_record_type {
 	OB_RECORD_U8,
 	OB_RECORD_U16,
@@ -41,6 +51,7 @@ typedef enum ob_record_type {
 	OB_RECORD_RGBA,
 	OB_RECORD_NAME, // char[OB_NAME_MAX], UTF-8, padded with zeros
 	OB_RECORD_EDGE, // ob_hull_edge
+	OB_RECORD_POSE, // ob_pose: p, then q, w x y z
 } ob_record_type;
 
 typedef struct ob_record_member {
@@ -71,6 +82,7 @@ typedef struct ob_record_hull {
 } ob_record_hull;
 
 extern const ob_record_table ob_record_events; // ob_record_event
+extern const ob_record_table ob_record_joints; // ob_record_joint
 extern const ob_record_table ob_record_motions; // ob_record_motion: only the members that determine the pose
 extern const ob_record_table ob_record_hulls; // ob_record_hull
 extern const ob_record_table ob_record_cameras; // ob_camera_def

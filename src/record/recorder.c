@@ -295,7 +295,7 @@ struct ob_recorder {
 	char *path;
 	hid_t file, set[COLUMNS]; // negative: missing
 	objects objects;
-	list events, motions, hulls;
+	list events, motions, hulls, joints;
 	preallocation allocated;
 	hsize_t chunk_ids, chunk_rows[COLUMNS]; // in a chunk of the columns
 	uint32_t written_count; // ids in the previous row, 0: there is none
@@ -309,6 +309,9 @@ struct ob_recorder {
 	ob_record_event *event; // [count * 2]
 	uint32_t known_hulls;
 	bool *knows_hull; // [known_hulls]: true if it is in the file
+	uint32_t known_joints;
+	ob_joint_passport *joint; // [known_joints]: as in the file now, by number; zeroed where unused
+	ob_record_joint *fresh_joint; // [known_joints * 2]
 };
 
 static hid_t column_type(int column)
@@ -483,7 +486,8 @@ static bool create_file(ob_recorder *r, const ob_record_facts *about)
 {
 	r->file = H5Fcreate(r->path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
 	if (r->file < 0 || !write_facts(r->file, about) || !create_objects(&r->objects, r->file, r->count) ||
-	    !create_list(&r->events, r->file) || !create_list(&r->motions, r->file) || !create_list(&r->hulls, r->file))
+	    !create_list(&r->events, r->file) || !create_list(&r->motions, r->file) ||
+	    !create_list(&r->hulls, r->file) || !create_list(&r->joints, r->file))
 		return false;
 	r->chunk_ids = r->count < IDS_AT_ONCE ? IDS_AT_ONCE : r->count;
 	for (int i = 0; i < COLUMNS; i++)
@@ -525,6 +529,7 @@ ob_recorder *ob_hdf5_recorder_create(const char *path, const ob_record_facts *ab
 	r->events = list_of(&ob_record_events);
 	r->motions = list_of(&ob_record_motions);
 	r->hulls = list_of(&ob_record_hulls);
+	r->joints = list_of(&ob_record_joints);
 	for (int i = 0; i < COLUMNS; i++)
 		r->set[i] = H5I_INVALID_HID;
 	uint32_t count = about->universe.capacity ? about->universe.capacity : 1;
@@ -615,6 +620,64 @@ static bool append_hulls(ob_recorder *r, const ob_snapshot *s)
 		r->knows_hull[i] = true;
 	}
 	return ok;
+}
+
+// Grows the arrays in memory to the snapshot's joints.
+static bool make_room_for_joints(ob_recorder *r, uint32_t joints)
+{
+	if (joints <= r->known_joints)
+		return true;
+	ob_joint_passport *joint = realloc(r->joint, joints * sizeof *joint);
+	r->joint = joint ? joint : r->joint;
+	ob_record_joint *fresh = realloc(r->fresh_joint, 2 * joints * sizeof *fresh);
+	r->fresh_joint = fresh ? fresh : r->fresh_joint;
+	if (!joint || !fresh)
+		return false;
+	memset(r->joint + r->known_joints, 0, (joints - r->known_joints) * sizeof *r->joint);
+	r->known_joints = joints;
+	return true;
+}
+
+// The recorded members of a joint's passport; all zero: there is none of this number.
+static ob_joint_passport recorded_joint(const ob_snapshot *s, uint32_t joint)
+{
+	ob_joint_passport p = { .kind = 0 };
+	if (!ob_snapshot_has_joint(s, joint))
+		return p;
+	p = s->joint[joint];
+	p.axis = (ob_joint_axis){ .low = 0 };
+	p.breaks_force = p.breaks_torque = 0;
+	return p;
+}
+
+static bool is_same_joint(const ob_joint_passport *a, ob_joint_passport b)
+{
+	b.flags = (b.flags & ~(uint32_t)OB_JOINT_BROKEN) | (a->flags & OB_JOINT_BROKEN);
+	return a->object[0] != a->object[1] && memcmp(a, &b, sizeof b) == 0;
+}
+
+static void note_joint(ob_recorder *r, const ob_snapshot *s, ob_record_event_kind kind, uint32_t number,
+		       const ob_joint_passport *p, hsize_t *joints)
+{
+	r->fresh_joint[(*joints)++] = (ob_record_joint){ s->step, s->time, kind, number, *p };
+}
+
+// Appends joints that have come, broken or gone.
+static bool append_joints(ob_recorder *r, const ob_snapshot *s)
+{
+	hsize_t joints = 0;
+	for (uint32_t i = 0; i < r->known_joints; i++) {
+		ob_joint_passport *known = &r->joint[i], now = recorded_joint(s, i);
+		if (memcmp(known, &now, sizeof now) == 0)
+			continue;
+		const bool same = is_same_joint(known, now);
+		if (!same && known->object[0] != known->object[1])
+			note_joint(r, s, OB_RECORD_REMOVED, i, known, &joints);
+		if (now.object[0] != now.object[1])
+			note_joint(r, s, same ? OB_RECORD_CHANGED : OB_RECORD_CREATED, i, &now, &joints);
+		*known = now;
+	}
+	return append_list(&r->joints, r->fresh_joint, joints);
 }
 
 // The recorded members of a motion.
@@ -726,7 +789,8 @@ static bool grow(ob_recorder *r, const ob_snapshot *s)
 	uint32_t count = s->count;
 	while (count > r->count && !is_present(s, count - 1))
 		count--;
-	return count <= r->count || (grow_objects(&r->objects, count) && make_room(r, count));
+	return make_room_for_joints(r, s->joints) &&
+	       (count <= r->count || (grow_objects(&r->objects, count) && make_room(r, count)));
 }
 
 static bool append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
@@ -738,10 +802,11 @@ static bool append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 		return ob_fail(e, "%s: a record has room for %d states: record { every = N } records fewer", r->path,
 			       OB_RECORD_STATES_MAX);
 	uint64_t more = row_bytes(r) + list_bytes(&r->events, 2 * r->count) + list_bytes(&r->motions, r->count) +
-			list_bytes(&r->hulls, count_new_hulls(r, s)) + INDEX_BYTES + r->count * sizeof(ob_passport);
+			list_bytes(&r->hulls, count_new_hulls(r, s)) + list_bytes(&r->joints, 2 * r->known_joints) +
+			INDEX_BYTES + r->count * sizeof(ob_passport);
 	if (H5Fget_eoa(r->file, &used) >= 0 && !preallocate(&r->allocated, r->path, used, more, e))
 		return false;
-	bool ok = append_hulls(r, s) && append_events(r, s) && append_motions(r, s);
+	bool ok = append_hulls(r, s) && append_events(r, s) && append_joints(r, s) && append_motions(r, s);
 	for (int i = 0; i < COLUMNS && ok; i++)
 		ok = append_row(r, i, row_of(r, i, s));
 	if (!ok || H5Fflush(r->file, H5F_SCOPE_GLOBAL) < 0)
@@ -779,6 +844,7 @@ bool ob_hdf5_recorder_close(ob_recorder *r, ob_error *e)
 	ok &= finish_list(&r->events);
 	ok &= finish_list(&r->motions);
 	ok &= finish_list(&r->hulls);
+	ok &= finish_list(&r->joints);
 	if (r->file >= 0)
 		ok &= H5Fclose(r->file) >= 0;
 	ok &= close_preallocation(&r->allocated, ob_hdf5_length(r->path));
@@ -792,6 +858,8 @@ bool ob_hdf5_recorder_close(ob_recorder *r, ob_error *e)
 	free(r->fresh);
 	free(r->event);
 	free(r->knows_hull);
+	free(r->joint);
+	free(r->fresh_joint);
 	free(r);
 	return ok;
 }

@@ -19,7 +19,13 @@
 #include "shape/shape.h"
 #include "table/layout.h"
 
-enum { OBJECTS_MAX = 1 << 20, CAMERAS_MAX = 1000, HULLS_MAX = UINT16_MAX + 1, EVERY_MAX = 1 << 30 };
+enum {
+	OBJECTS_MAX = 1 << 20,
+	JOINTS_MAX = 1 << 21,
+	CAMERAS_MAX = 1000,
+	HULLS_MAX = UINT16_MAX + 1,
+	EVERY_MAX = 1 << 30
+};
 enum { BYTES_AT_ONCE = 1 << 18 };
 // Limits of the first reading, whatever the size of the file: seconds of CPU for each of its advances, the first of
 // which opens the record, and bytes of memory. An advance ends with the first state after PAUSE seconds of CPU. The
@@ -52,9 +58,9 @@ struct ob_recording {
 	ob_recording_info info;
 	double *time; // [states]
 	uint64_t *step, *motions_until; // [states]
-	list events, motions;
+	list events, motions, joints; // joints: empty in a record older than they are
 	uint64_t state; // current state; UINT64_MAX: none yet
-	uint64_t event, motion; // first ones of a later state
+	uint64_t event, motion, joint; // first ones of a later state
 	ob_snapshot now;
 	uint64_t population;
 };
@@ -257,7 +263,9 @@ static bool open_states(ob_recording *r, ob_error *e)
 	r->step = r->time ? read_numbers(r, "step", H5T_INTEGER, H5T_NATIVE_UINT64, &i->states, e) : NULL;
 	r->motions_until =
 		r->step ? read_numbers(r, "motions_until", H5T_INTEGER, H5T_NATIVE_UINT64, &i->states, e) : NULL;
-	if (!r->motions_until || !open_list(r, &r->events, e) || !open_list(r, &r->motions, e))
+	bool jointed = false;
+	if (!r->motions_until || !open_list(r, &r->events, e) || !open_list(r, &r->motions, e) ||
+	    !find(r, r->joints.table->label.name, &jointed, e) || (jointed && !open_list(r, &r->joints, e)))
 		return false;
 	if (i->states == 0)
 		return ob_fail(e, "%s: this record is empty: its run ended before the first state", r->path);
@@ -590,6 +598,7 @@ static ob_recording *open_here(const char *path, int fd, uint64_t bytes, reader 
 	r->file_bytes = bytes;
 	r->events = (list){ .table = &ob_record_events, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
 	r->motions = (list){ .table = &ob_record_motions, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+	r->joints = (list){ .table = &ob_record_joints, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
 	r->state = UINT64_MAX;
 	if (open_file(r, fd, e))
 		return r;
@@ -759,6 +768,7 @@ void ob_hdf5_recording_close(ob_recording *r)
 	end_reader(&r->first);
 	close_list(&r->events);
 	close_list(&r->motions);
+	close_list(&r->joints);
 	if (r->file >= 0)
 		H5Fclose(r->file);
 	ob_snapshot_finish(&r->now);
@@ -838,6 +848,67 @@ static bool take_event(ob_recording *r, const ob_record_event *event, ob_error *
 	return true;
 }
 
+static bool make_room_for_joints(ob_snapshot *s, uint32_t joints)
+{
+	if (joints > s->joints_max) {
+		const uint32_t room = joints > 2 * s->joints_max ? joints : 2 * s->joints_max;
+		ob_joint_passport *grown = realloc(s->joint, room * sizeof *grown);
+		if (!grown)
+			return false;
+		s->joint = grown;
+		s->joints_max = room;
+	}
+	for (; s->joints < joints; s->joints++)
+		memset(&s->joint[s->joints], 0, sizeof *s->joint);
+	return true;
+}
+
+static bool joint_makes_sense(const ob_snapshot *s, ob_joint_passport *j)
+{
+	j->axis = (ob_joint_axis){ .low = 0 };
+	j->breaks_force = j->breaks_torque = INFINITY;
+	j->name[OB_NAME_MAX - 1] = 0;
+	ob_utf8_make_plain(j->name);
+	bool sense = ob_joint_makes_sense(j);
+	for (int side = 0; side < 2; side++)
+		sense = sense && finite3(j->frame[side].p) &&
+			(is_present(s, j->object[side]) || j->object[side] == OB_JOINT_WORLD);
+	return sense;
+}
+
+static bool take_joint(ob_recording *r, const ob_record_joint *event, ob_error *e)
+{
+	ob_snapshot *s = &r->now;
+	ob_record_joint now = *event;
+	if (now.step != r->step[r->state] || now.number >= JOINTS_MAX || now.kind < OB_RECORD_CREATED ||
+	    now.kind > OB_RECORD_REMOVED || ob_snapshot_has_joint(s, now.number) != (now.kind != OB_RECORD_CREATED))
+		return damaged(r, "its joints make no sense", e);
+	if (now.kind == OB_RECORD_REMOVED) {
+		memset(&s->joint[now.number], 0, sizeof *s->joint);
+		return true;
+	}
+	if (!joint_makes_sense(s, &now.passport))
+		return damaged(r, "a joint makes no sense", e);
+	if (!make_room_for_joints(s, now.number + 1))
+		return ob_fail(e, "%s: no memory for %u joints", r->path, now.number + 1);
+	s->joint[now.number] = now.passport;
+	return true;
+}
+
+static bool take_joints(ob_recording *r, ob_error *e)
+{
+	for (; r->joint < r->joints.total; r->joint++) {
+		const ob_record_joint *event = item_at(&r->joints, r->joint);
+		if (!event)
+			return damaged(r, "/joints cannot be read", e);
+		if (event->step > r->step[r->state])
+			break;
+		if (!take_joint(r, event, e))
+			return false;
+	}
+	return true;
+}
+
 static bool take_motion(ob_recording *r, const ob_record_motion *m, ob_error *e)
 {
 	const ob_motion *now = &m->motion;
@@ -886,6 +957,8 @@ bool ob_hdf5_recording_next(ob_recording *r, bool *ended, ob_error *e)
 			return false;
 	}
 	r->population += r->event > first;
+	if (!take_joints(r, e))
+		return false;
 	for (; r->motion < r->motions_until[r->state]; r->motion++) {
 		const ob_record_motion *m = item_at(&r->motions, r->motion);
 		if (!m)

@@ -536,7 +536,7 @@ bool ob_overlay_joints(ob_overlay *o, const ob_snapshot *s, const ob_view *v, in
 	for (uint32_t i = 0; i < s->joints; i++) {
 		const ob_joint_passport *j = &s->joint[i];
 		ob_vec3 centre[2], axis[2], end[2];
-		if (j->kind == OB_JOINT_APART)
+		if (!ob_snapshot_has_joint(s, i) || j->flags & OB_JOINT_BROKEN || j->kind == OB_JOINT_APART)
 			continue;
 		for (int side = 0; side < 2; side++)
 			end[side] = joint_end(s, j, side, v->eye, &centre[side], &axis[side]);

@@ -32,7 +32,7 @@ typedef struct ob_client {
 	bool behind; // its queue was cleared; it gets the whole state once the rest has been sent
 	double taken_at; // s: time of its last progress, or of an empty queue
 	bool simulators; // is sent who simulates each object
-	bool contacts; // it shows them
+	bool contacts, joints; // it shows them
 	bool energy; // likewise, in its plots
 	uint32_t avatar, generation; // its avatar's id and generation; UINT32_MAX: it has none
 	bool missing; // the roster does not have its avatar

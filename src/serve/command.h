@@ -17,7 +17,7 @@
 //      step      steps (1), while it is paused
 //      rate      rate (s a s); 0: as fast as possible
 //      set       name, value: the scene starts anew with this value of a parameter
-//      contacts  on;  energy: likewise
+//      contacts  on;  joints, energy: likewise
 //      anew      the whole state once more, as at the start of a connection
 //      inspect   id
 //
@@ -46,6 +46,7 @@ typedef enum ob_command_kind {
 	OB_DO_STEP,
 	OB_DO_RATE,
 	OB_DO_CONTACTS,
+	OB_DO_JOINTS,
 	OB_DO_INSPECT,
 	OB_DO_SIMULATORS,
 	OB_DO_ENERGY,
@@ -63,7 +64,7 @@ typedef struct ob_command {
 	uint32_t id; // inspect
 	uint32_t steps; // step
 	double rate; // rate; 0: as fast as possible
-	bool on; // contacts, simulators, energy
+	bool on; // contacts, joints, simulators, energy
 	char name[OB_NAME_MAX]; // set
 	double value; // set
 } ob_command;

@@ -12,7 +12,7 @@ static const double tolerated = 1. / 256; // of the radius
 static const double unseen = .25 / 60; // s: also the share of the motion of a moving object
 static const double v_unit = 1e-3, w_unit = 2e-3; // m/s, rad/s: units of 16-bit velocities
 
-enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24, SIMULATORS_AT = 4 }; // offsets of counts in messages
+enum { REMOVED_AT = 16, CREATED_AT = 20, MOTIONS_AT = 24, COUNT_AT = 4 }; // offsets of counts in messages
 
 // State of an object as sent to viewers
 typedef struct known {
@@ -77,6 +77,16 @@ static bool universe_hull(const void *of, uint32_t hull, ob_hull *out)
 	return ob_universe_get_hull(((const ob_feed *)of)->u, hull, out);
 }
 
+static uint32_t universe_joints(const void *of)
+{
+	return ob_universe_joints(((const ob_feed *)of)->u);
+}
+
+static bool universe_joint(const void *of, uint32_t joint, ob_joint_passport *out)
+{
+	return ob_universe_get_joint(((const ob_feed *)of)->u, joint, out);
+}
+
 static double universe_time(const void *of)
 {
 	ob_universe_info info;
@@ -102,6 +112,8 @@ ob_feed *ob_feed_create(const ob_universe *u, const ob_roster *r)
 							  .passport_version = universe_passport_version,
 							  .motion = universe_motion,
 							  .hull = universe_hull,
+							  .joints = universe_joints,
+							  .joint = universe_joint,
 							  .time = universe_time,
 							  .step_length = info.step_length,
 							  .unseen = unseen });
@@ -491,6 +503,20 @@ ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace)
 	return whole_or_none(out);
 }
 
+// Begins a message beside the motions, with a count to be set.
+static ob_message *begin_aside(const ob_feed *f, unsigned first_byte)
+{
+	ob_message *out = ob_message_new(false);
+	if (!out)
+		return NULL;
+	ob_message_put_u8(out, first_byte);
+	ob_message_put_u8(out, 0);
+	ob_message_put(out, &(uint16_t){ 0 }, 2);
+	ob_message_put_u32(out, 0);
+	ob_message_put_f64(out, f->time);
+	return out;
+}
+
 ob_message *ob_feed_contacts(ob_feed *f)
 {
 	size_t n = 0;
@@ -502,14 +528,10 @@ ob_message *ob_feed_contacts(ob_feed *f)
 		f->contact = grown;
 		f->contact_room = room;
 	}
-	ob_message *out = ob_message_new(false);
+	ob_message *out = begin_aside(f, OB_FEED_CONTACTS);
 	if (!out)
 		return NULL;
-	ob_message_put_u8(out, OB_FEED_CONTACTS);
-	ob_message_put_u8(out, 0);
-	ob_message_put(out, &(uint16_t){ 0 }, 2);
-	ob_message_put_u32(out, (uint32_t)n);
-	ob_message_put_f64(out, f->time);
+	ob_message_set_u32(out, COUNT_AT, (uint32_t)n);
 	for (size_t i = 0; i < n; i++) {
 		put_vec3(out, f->contact[i].position);
 		put_vec3(out, f->contact[i].normal);
@@ -521,14 +543,9 @@ ob_message *ob_feed_contacts(ob_feed *f)
 ob_message *ob_feed_simulators(ob_feed *f)
 {
 	uint32_t sent = 0, before = UINT32_MAX;
-	ob_message *out = ob_message_new(false);
+	ob_message *out = begin_aside(f, OB_FEED_SIMULATORS);
 	if (!out)
 		return NULL;
-	ob_message_put_u8(out, OB_FEED_SIMULATORS);
-	ob_message_put_u8(out, 0);
-	ob_message_put(out, &(uint16_t){ 0 }, 2);
-	ob_message_put_u32(out, 0);
-	ob_message_put_f64(out, f->time);
 	for (size_t i = 0; i < f->objects; i++) {
 		const known *k = &f->object[i];
 		uint32_t home;
@@ -544,7 +561,32 @@ ob_message *ob_feed_simulators(ob_feed *f)
 		before = k->id;
 		sent++;
 	}
-	ob_message_set_u32(out, SIMULATORS_AT, sent);
+	ob_message_set_u32(out, COUNT_AT, sent);
+	return whole_or_none(out);
+}
+
+ob_message *ob_feed_joints(ob_feed *f)
+{
+	const uint32_t joints = f->source.joints(f->source.of);
+	uint32_t sent = 0;
+	ob_message *out = begin_aside(f, OB_FEED_JOINTS);
+	for (uint32_t i = 0; out && i < joints; i++) {
+		ob_joint_passport j;
+		if (!f->source.joint(f->source.of, i, &j) || j.flags & OB_JOINT_BROKEN)
+			continue;
+		ob_message_put_u8(out, j.kind);
+		ob_message_put_u32(out, j.object[0]);
+		ob_message_put_u32(out, j.object[1]);
+		for (int side = 0; side < 2; side++) {
+			const ob_mat3 axes = ob_quat_matrix(j.frame[side].q);
+			put_vec3(out, j.frame[side].p);
+			put_vec3(out, ob_column(&axes, 2));
+		}
+		sent++;
+	}
+	if (!out)
+		return NULL;
+	ob_message_set_u32(out, COUNT_AT, sent);
 	return whole_or_none(out);
 }
 

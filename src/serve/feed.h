@@ -41,18 +41,29 @@
 //                     id less the previous one, 1 + home worker (0: unknown), island, substeps, each in groups of 7
 //                     bits, low first; u8 state: 0 touches, 1 flies, 2 in equilibrium, 3 asleep
 //
+//      u8  5          u8 0    u16 0    u32 joints that hold    f64 time; then for each:
+//                     u8 kind (ob_joint_kind); u32 object[2], the second UINT32_MAX: the world; of each object f32 p[3], z[3]:
+//                     place and axis of the joint's frame, in the object's (the world's)
+//
 // One thread at a time.
 #ifndef OB_SERVE_FEED_H
 #define OB_SERVE_FEED_H
 
 #include <ob/hull.h>
+#include <ob/joint.h>
 
 #include "host/pace.h"
 #include "host/roster.h"
 #include "mesh/mesh.h"
 #include "serve/message.h"
 
-enum { OB_FEED_MOTIONS = 1, OB_FEED_CONTACTS = 2, OB_FEED_MESH = 3, OB_FEED_SIMULATORS = 4 }; // first byte of a message
+enum {
+	OB_FEED_MOTIONS = 1,
+	OB_FEED_CONTACTS = 2,
+	OB_FEED_MESH = 3,
+	OB_FEED_SIMULATORS = 4,
+	OB_FEED_JOINTS = 5
+}; // first byte
 enum { OB_FEED_VOID = 1, OB_FEED_PAUSED = 2 }; // its flags
 enum { // an object's
 	OB_FEED_STATIC = 1,
@@ -83,6 +94,8 @@ typedef struct ob_feed_source {
 	uint64_t (*passport_version)(const void *of, uint32_t id); // changes with the object's look
 	bool (*motion)(const void *of, uint32_t id, ob_motion *out); // as ob_universe_get_motion
 	bool (*hull)(const void *of, uint32_t hull, ob_hull *out); // as ob_universe_get_hull
+	uint32_t (*joints)(const void *of); // as ob_universe_joints
+	bool (*joint)(const void *of, uint32_t joint, ob_joint_passport *out); // as ob_universe_get_joint
 	double (*time)(const void *of); // s, simulated
 	double step_length; // s
 	double unseen; // s: an object may deviate by its motion in this time, too, for that is invisible while it moves
@@ -105,6 +118,8 @@ bool ob_feed_take_frozen(ob_feed *f, size_t *at, uint32_t *id);
 ob_message *ob_feed_contacts(ob_feed *f);
 // Simulators of all objects, as of the last message of ob_feed_next. NULL: out of memory.
 ob_message *ob_feed_simulators(ob_feed *f);
+// All joints that hold. NULL: out of memory.
+ob_message *ob_feed_joints(ob_feed *f);
 // A mesh of the scene: content, which never changes. NULL: out of memory.
 ob_message *ob_feed_mesh(const ob_mesh *m, uint32_t number);
 

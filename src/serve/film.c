@@ -78,6 +78,18 @@ static bool recorded_hull(const void *of, uint32_t hull, ob_hull *out)
 	return h != NULL;
 }
 
+static uint32_t recorded_joints(const void *of)
+{
+	return ob_recording_state(of)->joints;
+}
+
+static bool recorded_joint(const void *of, uint32_t joint, ob_joint_passport *out)
+{
+	const ob_snapshot *s = ob_recording_state(of);
+	*out = s->joint[joint];
+	return ob_snapshot_has_joint(s, joint);
+}
+
 static double recorded_time(const void *of)
 {
 	return ob_recording_state(of)->time;
@@ -94,8 +106,10 @@ typedef struct film {
 	uint32_t ids;
 	size_t since; // bytes since the last whole state
 	size_t whole; // bytes of that state
-	ob_message *simulators; // last ones written; NULL: none since the last whole state
+	ob_message *simulators, *joints; // last ones written; NULL: none since the last whole state
 	double simulators_at; // s: when the next are due
+	bool *broke; // [numbers]: the joint had broken in the last state
+	uint32_t numbers;
 	double seconds, until; // CPU time that it may take; of the process, when it has
 } film;
 
@@ -105,10 +119,11 @@ static void put(ob_message *to, const ob_message *m)
 	ob_message_put(to, m->bytes, m->size);
 }
 
-static void note_event(film *f, double time, int came, uint32_t id, const ob_passport *p)
+// kind: 1 an object comes, -1 it goes; 0 a joint of it breaks.
+static void note_event(film *f, double time, int kind, uint32_t id, const char *name)
 {
-	ob_message_print(f->events, "%s[%.9g,%d,%u,", f->events->size ? "," : "", time, came, id);
-	ob_message_put_json(f->events, p->name);
+	ob_message_print(f->events, "%s[%.9g,%d,%u,", f->events->size ? "," : "", time, kind, id);
+	ob_message_put_json(f->events, name);
 	ob_message_print(f->events, "]");
 }
 
@@ -131,9 +146,9 @@ static bool note_population(film *f)
 		bool there = now->flags & OB_OBJECT_PRESENT, before = was->flags & OB_OBJECT_PRESENT;
 		bool same = there && before && now->generation == was->generation;
 		if (before && !same && s->time > begin)
-			note_event(f, s->time, -1, id, was);
+			note_event(f, s->time, -1, id, was->name);
 		if (there && !same && s->time > begin)
-			note_event(f, s->time, 1, id, now);
+			note_event(f, s->time, 1, id, now->name);
 		if (there && !same)
 			ob_message_print(f->objects, "%s[%u,%u,%.9g,%.9g,%.9g]", f->objects->size ? "," : "", id,
 					 now->generation, now->mass, now->friction, now->restitution);
@@ -142,25 +157,56 @@ static bool note_population(film *f)
 	return !f->objects->failed && !f->events->failed;
 }
 
-// Writes who simulates each object, if that has changed.
-static bool write_simulators(film *f)
+// Notes joints that break in this state, for the time bar.
+static bool note_breaks(film *f)
+{
+	const ob_snapshot *s = ob_recording_state(f->recording);
+	if (s->joints > f->numbers) {
+		bool *grown = realloc(f->broke, s->joints * sizeof *grown);
+		if (!grown)
+			return false;
+		memset(grown + f->numbers, 0, (s->joints - f->numbers) * sizeof *grown);
+		f->broke = grown;
+		f->numbers = s->joints;
+	}
+	for (uint32_t i = 0; i < s->joints; i++) {
+		const bool broke = ob_snapshot_has_joint(s, i) && s->joint[i].flags & OB_JOINT_BROKEN;
+		if (broke && !f->broke[i])
+			note_event(f, s->time, 0, s->joint[i].object[0], s->joint[i].name);
+		f->broke[i] = broke;
+	}
+	return !f->events->failed;
+}
+
+// Writes a message beside the motions if it is not as the last one of its kind, and keeps it in its place.
+static bool write_aside(film *f, ob_message *m, ob_message **last)
 {
 	enum { AFTER_HEAD = 16 };
-	const double time = ob_recording_state(f->recording)->time;
-	if (f->simulators && time < f->simulators_at)
-		return true;
-	ob_message *m = ob_feed_simulators(f->feed), *last = f->simulators;
 	if (!m)
 		return false;
-	if (!last || m->size != last->size ||
-	    memcmp(m->bytes + AFTER_HEAD, last->bytes + AFTER_HEAD, m->size - AFTER_HEAD) != 0) {
+	if (!*last || m->size != (*last)->size ||
+	    memcmp(m->bytes + AFTER_HEAD, (*last)->bytes + AFTER_HEAD, m->size - AFTER_HEAD) != 0) {
 		put(f->messages, m);
 		f->since += m->size;
 	}
-	ob_message_release(last);
-	f->simulators = m;
-	f->simulators_at = time + simulators_interval;
+	ob_message_release(*last);
+	*last = m;
 	return true;
+}
+
+// Writes who simulates each object, if that has changed.
+static bool write_simulators(film *f)
+{
+	const double time = ob_recording_state(f->recording)->time;
+	if (f->simulators && time < f->simulators_at)
+		return true;
+	f->simulators_at = time + simulators_interval;
+	return write_aside(f, ob_feed_simulators(f->feed), &f->simulators);
+}
+
+static bool write_joints(film *f)
+{
+	return ob_recording_state(f->recording)->joints == 0 || write_aside(f, ob_feed_joints(f->feed), &f->joints);
 }
 
 static bool write_state(film *f)
@@ -174,7 +220,7 @@ static bool write_state(film *f)
 	f->whole = f->whole ? f->whole : m->size; // the first is a whole state
 	ob_message_release(m);
 	if (f->since <= ANEW_AFTER * f->whole + ANEW_AT_LEAST)
-		return write_simulators(f);
+		return write_simulators(f) && write_joints(f);
 	m = ob_feed_whole(f->feed, &pace);
 	if (!m)
 		return false;
@@ -183,8 +229,9 @@ static bool write_state(film *f)
 	f->whole = m->size;
 	ob_message_release(m);
 	ob_message_release(f->simulators);
-	f->simulators = NULL;
-	return write_simulators(f);
+	ob_message_release(f->joints);
+	f->simulators = f->joints = NULL;
+	return write_simulators(f) && write_joints(f);
 }
 
 static bool has_time(const film *f, const char *path, ob_error *e)
@@ -203,7 +250,7 @@ static bool write_states(film *f, const char *path, ob_error *e)
 	while (ob_recording_next(f->recording, &ended, e)) {
 		bool changed = ob_recording_population(f->recording) != population;
 		population = ob_recording_population(f->recording);
-		if ((changed && !note_population(f)) || !write_state(f) || f->messages->failed)
+		if ((changed && !note_population(f)) || !note_breaks(f) || !write_state(f) || f->messages->failed)
 			return ob_fail(e, "%s: no memory to show it", path);
 		if (!has_time(f, path, e))
 			return false;
@@ -321,6 +368,8 @@ ob_message *ob_film_make(ob_recording *r, const char *path, double seconds, ob_e
 					.passport_version = recorded_passport_version,
 					.motion = recorded_motion,
 					.hull = recorded_hull,
+					.joints = recorded_joints,
+					.joint = recorded_joint,
 					.time = recorded_time,
 					.step_length = ob_recording_get_info(r)->scene.run.step_length };
 	film f = { .recording = r,
@@ -338,8 +387,10 @@ ob_message *ob_film_make(ob_recording *r, const char *path, double seconds, ob_e
 	ob_feed_destroy(f.feed);
 	ob_message_release(f.messages);
 	ob_message_release(f.simulators);
+	ob_message_release(f.joints);
 	ob_message_release(f.objects);
 	ob_message_release(f.events);
 	free(f.passport);
+	free(f.broke);
 	return out;
 }

@@ -102,6 +102,18 @@ static void send_all(ob_server *s, ob_message *m, bool contacts)
 	ob_message_release(m);
 }
 
+// Sends joints to those who have asked.
+static void send_joints(ob_server *s)
+{
+	ob_message *joints = NULL;
+	for (ob_client *c = s->clients; c; c = c->next) {
+		joints = c->joints && !joints ? ob_feed_joints(s->feed) : joints;
+		if (c->joints && joints)
+			send_to(c, joints);
+	}
+	ob_message_release(joints);
+}
+
 // Sends who simulates each object, and what workers do, to those who have asked.
 static void send_simulators(ob_server *s)
 {
@@ -199,6 +211,7 @@ static void send_details(ob_server *s)
 	for (ob_client *c = s->clients; c; c = c->next)
 		energy |= c->energy;
 	send_frozen(s);
+	send_joints(s);
 	send_simulators(s);
 	send_all(s, ob_facts_statistics(s->host, s->count, energy), false);
 }
@@ -325,6 +338,9 @@ static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 	switch (asked->kind) {
 	case OB_DO_CONTACTS:
 		c->contacts = asked->on;
+		return;
+	case OB_DO_JOINTS:
+		c->joints = asked->on;
 		return;
 	case OB_DO_SIMULATORS:
 		c->simulators = asked->on;

@@ -33,6 +33,27 @@ static void build_hulls(void)
 	CHECK(ob_hull_build(point, 4, &tetrahedron, &e) && ob_hull_build(point, 6, &prism, &e));
 }
 
+// Joints at each state: 0 of the objects 1 and 2, which breaks at 30; 1 of 3 and the world, from 20 to 60; the same at 90, of the
+// other object of that id.
+static uint32_t join(uint64_t state, ob_joint_passport joint[2])
+{
+	const bool third = (state >= 20 && state < 60) || state >= 90;
+	memset(joint, 0, 2 * sizeof *joint);
+	joint[0] = (ob_joint_passport){ .object = { 1, 2 },
+					.generation = { 1, 1 },
+					.kind = OB_JOINT_HINGE,
+					.flags = OB_JOINT_DRIVEN | (state >= 30 ? OB_JOINT_BROKEN : 0),
+					.frame = { { { 1, 2, 3 }, { .5, -.5, .5, .5 } }, { .q = { 1, 0, 0, 0 } } },
+					.length = .25,
+					.name = "hinge#0" };
+	if (third)
+		joint[1] = (ob_joint_passport){ .object = { 3, OB_JOINT_WORLD },
+						.generation = { 1 + (state >= 90), 0 },
+						.frame = { { .q = { 1, 0, 0, 0 } }, { .q = { 1, 0, 0, 0 } } },
+						.name = "eye" };
+	return 1 + third;
+}
+
 // Objects at each state: 0 a plane, 1 a ball in flight that rebounds every 50 states, 2 moves each step, 3 comes at
 // state 20, changes colour at 40 and goes at 60, from 80 on another has its id; 39 comes at the end. 2 is a hull, and 3 is one,
 // of another number, from 80 on.
@@ -41,6 +62,7 @@ static ob_snapshot at(uint64_t state)
 	static ob_passport passport[OBJECTS];
 	static ob_motion motion[OBJECTS];
 	static ob_hull *hull[HULLS];
+	static ob_joint_passport joint[2];
 	const double t = step_length * EVERY * (double)state;
 	memset(passport, 0, sizeof passport);
 	memset(motion, 0, sizeof motion);
@@ -90,6 +112,8 @@ static ob_snapshot at(uint64_t state)
 			      .count = OBJECTS,
 			      .passport = passport,
 			      .motion = motion,
+			      .joints = join(state, joint),
+			      .joint = joint,
 			      .hulls = HULLS,
 			      .hull = hull };
 }
@@ -187,6 +211,18 @@ static bool same_motion(const ob_motion *a, const ob_motion *b)
 	       memcmp(&a->w, &b->w, sizeof a->w) == 0 && memcmp(&a->a, &b->a, sizeof a->a) == 0 && a->flags == b->flags;
 }
 
+// Compares the recorded part of joints: neither strength nor what acts along axes.
+static void check_joints(const ob_snapshot *was, const ob_snapshot *now)
+{
+	for (uint32_t i = 0; i < was->joints || i < now->joints; i++) {
+		const ob_joint_passport *a = &was->joint[i], *b = &now->joint[i];
+		CHECK(ob_snapshot_has_joint(was, i) == ob_snapshot_has_joint(now, i));
+		if (ob_snapshot_has_joint(was, i))
+			CHECK(memcmp(a, b, offsetof(ob_joint_passport, length)) == 0 && a->length == b->length &&
+			      strcmp(a->name, b->name) == 0);
+	}
+}
+
 static void test_same_snapshots(void)
 {
 	ob_error e = { "" };
@@ -199,6 +235,7 @@ static void test_same_snapshots(void)
 		ob_snapshot was = at(states);
 		const ob_snapshot *now = ob_recording_state(r);
 		CHECK(now->step == states + 2 && now->time == was.time);
+		check_joints(&was, now);
 		for (uint32_t id = 0; id < OBJECTS; id++) {
 			bool there = id < now->count && now->passport[id].flags & OB_OBJECT_PRESENT;
 			CHECK(there == (was.passport[id].flags & OB_OBJECT_PRESENT));
@@ -430,6 +467,37 @@ static void nan_texture(hid_t file)
 	H5Tclose(pair);
 }
 
+static void joint_of_nobody(hid_t file)
+{
+	hid_t pair = H5Tarray_create2(H5T_NATIVE_UINT32, 1, (hsize_t[]){ 2 });
+	set_member(file, "joints", "object", pair, 0, (uint32_t[]){ 1, 3 });
+	H5Tclose(pair);
+}
+
+static void joint_of_no_kind(hid_t file)
+{
+	set_member(file, "joints", "joint", H5T_NATIVE_UINT32, 0, &(uint32_t){ OB_JOINT_KINDS });
+}
+
+static void huge_joint(hid_t file)
+{
+	set_member(file, "joints", "number", H5T_NATIVE_UINT32, 0, &(uint32_t){ UINT32_MAX });
+}
+
+static void joint_that_goes_first(hid_t file)
+{
+	set_member(file, "joints", "kind", H5T_NATIVE_UINT32, 0, &(uint32_t){ 3 });
+}
+
+static void nan_joint(hid_t file)
+{
+	hid_t pose = H5Tarray_create2(H5T_NATIVE_DOUBLE, 1, (hsize_t[]){ 7 });
+	hid_t two = H5Tarray_create2(pose, 1, (hsize_t[]){ 2 });
+	set_member(file, "joints", "frame", two, 0, (double[14]){ NAN, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1 });
+	H5Tclose(two);
+	H5Tclose(pose);
+}
+
 static void flat(hid_t file)
 {
 	set_member(file, "cameras", "fov", H5T_NATIVE_DOUBLE, 0, &(double){ 0 });
@@ -456,6 +524,11 @@ static void test_damaged(void)
 		{ heavy, "an object makes no sense" },
 		{ tiny, "an object makes no sense" },
 		{ twice, "comes twice" },
+		{ joint_of_nobody, "a joint makes no sense" },
+		{ joint_of_no_kind, "a joint makes no sense" },
+		{ nan_joint, "a joint makes no sense" },
+		{ huge_joint, "its joints make no sense" },
+		{ joint_that_goes_first, "its joints make no sense" },
 		{ flat, "its cameras make no sense" },
 		{ no_hulls, "an object makes no sense" },
 		{ another_hull, "an object makes no sense" },

@@ -23,6 +23,8 @@ hull {{ points = {{ {{ 0, 0, 0 }}, {{ .8, 0, 0 }}, {{ 0, .6, 0 }}, {{ .2, .2, .7
 sphere {{ radius = .1, at = {{ 2, 1, .1 }}, script = [[function on_start() self:wake(.2) end function on_wake()
 	hull {{ points = {{ {{ 0, 0, 0 }}, {{ .6, 0, 0 }}, {{ 0, .8, 0 }}, {{ .1, .1, .4 }}, {{ .5, .5, .4 }} }}, at = {{ 1, 1, 1.5 }} }} end]] }}
 hull {{ points = {{ {{ 0, 0, 0 }}, {{ .5, 0, 0 }}, {{ 0, .5, 0 }}, {{ 0, 0, .5 }}, {{ .5, .5, .5 }} }}, at = {{ -1, -1, 1 }}, born = .4 }}
+sphere {{ name = "bob", radius = .1, at = {{ -2, 1, 1.6 }}, mass = 1 }}
+hinge {{ "bob", name = "eye", at = {{ -2.4, 1, 1.6 }}, axis = {{ 0, 1, 0 }}, breaks_at = {{ force = 15 }} }}
 """
 
 
@@ -55,7 +57,7 @@ class Replay(program.Case):
 		"""Pictures of each step, and of times between two, with any camera."""
 		for words in (BOXES, [self.write_scene(1)]):
 			record = self.record(*words)
-			for view in (["--fps", "60"], ["--fps", "50", "--overlay", "aabb"], ["--fps", "23", "--camera", "travelling"]):
+			for view in (["--fps", "60"], ["--fps", "50", "--overlay", "aabb,joints"], ["--fps", "23", "--camera", "travelling"]):
 				if words is BOXES and "--camera" in view:
 					continue
 				name = f"{len(words)}{'-'.join(view)}"

@@ -415,6 +415,23 @@ controls { key = "w", label = "Ahead", sends = "go", values = { 1 } }
 		self.assertEqual(b.console(), [])
 		self.end()
 
+	def test_joints(self):
+		with open(self.path("swing.lua"), "w") as f:
+			f.write("""ground {} sphere { name = "bob", radius = .2, at = { 1, 0, 2 }, mass = 1 }
+				hinge { "bob", name = "eye", at = { 0, 0, 2 }, axis = { 0, 1, 0 }, breaks_at = { force = 20 } }""")
+		self.serve_file(self.path("swing.lua"), "--paused", "--listen", "127.0.0.1:0")
+		b = self.open()
+		without = self.still(b)
+		b.key("j")
+		b.wait("obsim.universe.joints.length === 1")
+		self.assertNotEqual(self.still(b), without)
+		self.assertEqual(b.run("return obsim.universe.joints[0].ends.map((e) => e.id)"), [1, 2 ** 32 - 1])
+		self.keep(b, "joints.png")
+		b.key(" ")
+		b.wait("obsim.universe.joints.length === 0") # it breaks
+		self.assertEqual(b.console(), [])
+		self.end()
+
 	def test_server_comes_back(self):
 		self.serve()
 		b = self.open()

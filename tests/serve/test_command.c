@@ -68,6 +68,7 @@ static void test_meaning(void)
 	CHECK(reads("{\"do\":\"step\",\"steps\":25}", &c) && c.steps == 25);
 	CHECK(reads("{\"do\":\"rate\",\"rate\":0.25}", &c) && c.rate == .25);
 	CHECK(reads("{\"do\":\"contacts\",\"on\":true}", &c) && c.on);
+	CHECK(reads("{\"do\":\"joints\",\"on\":true}", &c) && c.on && c.kind == OB_DO_JOINTS);
 	CHECK(reads("{\"do\":\"inspect\"}", &c) && c.id == UINT32_MAX);
 }
 

@@ -11,15 +11,19 @@
 #include "serve/film.h"
 #include "serve/film_page.h"
 
-enum { OBJECTS = 30, STATES = 400 };
+enum { OBJECTS = 30, STATES = 400, BREAKS = 100 };
 static const double step_length = .01;
 static char path[64];
 
-// Object 0 stands; the last is added in the middle; the rest circle, so that their motions are sent again and again.
+// Object 0 stands; the last is added in the middle; the rest circle, so that their motions are sent again and again. A joint of
+// two of them breaks.
 static void record(void)
 {
 	static ob_passport passport[OBJECTS];
 	static ob_motion motion[OBJECTS];
+	static ob_joint_passport joint = { .object = { 1, 2 },
+					   .frame = { { .q = { 1, 0, 0, 0 } }, { .q = { 1, 0, 0, 0 } } },
+					   .name = "eye" };
 	static ob_camera_def camera = { .name = "a \"camera\"", .eye = { 1, 2, 3 }, .fov = .7 };
 	static ob_scene scene = { .title = "</script><b>",
 				  .text = (char *)"",
@@ -61,8 +65,15 @@ static void record(void)
 		if (k < STATES / 2)
 			passport[OBJECTS - 1].flags = 0;
 		ob_snapshot s = {
-			.step = k, .time = k * step_length, .count = OBJECTS, .passport = passport, .motion = motion
+			.step = k,
+			.time = k * step_length,
+			.count = OBJECTS,
+			.passport = passport,
+			.motion = motion,
+			.joints = 1,
+			.joint = &joint,
 		};
+		joint.flags = k < BREAKS ? 0 : OB_JOINT_BROKEN;
 		CHECK(ob_recorder_append(r, &s, &e));
 	}
 	CHECK(ob_recorder_close(r, &e));
@@ -96,7 +107,7 @@ static bool has(const unsigned char *bytes, size_t size, const char *text)
 static void check_messages(const unsigned char *bytes, size_t size)
 {
 	double time = -1;
-	uint32_t number = 0, told = 0, anew = 0, simulators = 0;
+	uint32_t number = 0, told = 0, anew = 0, simulators = 0, joints = 0;
 	size_t at = 0, whole = 0;
 	for (; at + 4 <= size; number++) {
 		uint32_t n = u32_at(bytes + at);
@@ -107,7 +118,8 @@ static void check_messages(const unsigned char *bytes, size_t size)
 			CHECK(has(m, n, "{\"welcome\":") && has(m, n, "\"name\":\"a \\u0022camera\\u0022\""));
 		if (number == 1) {
 			CHECK(has(m, n, "{\"film\":{\"begin\":0,\"end\":3.99") && has(m, n, "\"interval\":0.01"));
-			CHECK(has(m, n, "\"events\":[[2,1,29,\"a \\u0022box\\u0022\"]]") && has(m, n, "[1,0,1,0,0]"));
+			CHECK(has(m, n, "\"events\":[[1,0,1,\"eye\"],[2,1,29,\"a \\u0022box\\u0022\"]]") &&
+			      has(m, n, "[1,0,1,0,0]"));
 		}
 		if (number < 2)
 			continue;
@@ -116,6 +128,12 @@ static void check_messages(const unsigned char *bytes, size_t size)
 		if (m[0] == OB_FEED_SIMULATORS) {
 			CHECK(now == time && u32_at(m + 4) == (now < 2 ? OBJECTS - 2 : OBJECTS - 1));
 			simulators++;
+			continue;
+		}
+		if (m[0] == OB_FEED_JOINTS) {
+			CHECK(now == time && u32_at(m + 4) == (now < BREAKS * step_length));
+			CHECK(n == (now < BREAKS * step_length ? 16 + 57 : 16));
+			joints++;
 			continue;
 		}
 		CHECK(m[0] == OB_FEED_MOTIONS && now >= time);
@@ -131,6 +149,7 @@ static void check_messages(const unsigned char *bytes, size_t size)
 		time = now;
 	}
 	CHECK(at == size && told == STATES - 1);
+	CHECK(joints >= anew && joints <= anew + 2);
 	CHECK(simulators >= anew && simulators <= anew + 2); // with each whole state, and once they have changed
 	CHECK(anew > 1 && whole < size / 3);
 }

@@ -14,6 +14,8 @@ const SUNSHINE = [1.95, 1.82, 1.6], FROM_SKY = 0.52, FROM_GROUND = 0.45, SUN_RAD
 const BEVEL_SHARE = 0.1, BEVEL_MOST = 0.05, MEDIUM_PX = 7, FINE_PX = 45;
 const INSTANCE = 16, SEGMENT = 11, MESH_VERTEX = 12; // floats
 const EDGE = { awake: [1, 0.86, 0.25, 1], flying: [0.45, 0.95, 1, 1], standing: [0.62, 0.66, 0.74, 1], fixed: [0.35, 0.37, 0.42, 1], frozen: [0.6, 0.85, 1, 1] };
+const JOINT = { line: [0.35, 0.85, 1, 1], axis: [1, 0.45, 0.9, 1], rim: [0.08, 0.02, 0.05, 0.85] };
+const APART = 6, AXES = new Set([1, 2]); // kinds of joints (<ob/joint.h>): no joint to be seen; hinge, slider
 
 const PROGRAMS = {
 	body: ['body.vert', 'body.frag'], textured: ['body.vert', 'body.frag', '#define OB_TEXTURED\n'], shadow: ['shadow.vert', 'shadow.frag'],
@@ -668,5 +670,22 @@ export function contactSegments(contacts, view, height) {
 			{ from: c.p, to: c.p, colour: [0.08, 0.02, 0.05, 0.85], width: 8.5 },
 			{ from: c.p, to: c.p, colour: [1, 0.3, 0.2, 1], width: 6 },
 		];
+	});
+}
+
+// Lines from the centres of both objects to the joint, its axis if it has one, and a dot.
+export function jointSegments(joints, bodies, view, height) {
+	const metresAPixel = 2 * view.tanY / height, byId = new Map(bodies.map((b) => [b.id, b]));
+	return joints.filter((j) => j.kind !== APART).flatMap(({ kind, ends }) => {
+		const [a, b] = ends.map(({ id, p, axis }) => {
+			const body = byId.get(id);
+			const at = body ? add(body.p, turned(body.q, p)) : p;
+			return { at, centre: body ? body.p : at, axis: body ? turned(body.q, axis) : axis };
+		});
+		const line = (from, to, colour, width) => ({ from, to, colour, width, over: true });
+		const length = 26 * metresAPixel * Math.hypot(...sub(b.at, view.eye));
+		const axis = AXES.has(kind) ? [line(add(b.at, b.axis, -length), add(b.at, b.axis, length), JOINT.axis, 2)] : [];
+		return [line(a.centre, a.at, JOINT.line, 1.5), line(b.centre, b.at, JOINT.line, 1.5), line(a.at, b.at, JOINT.line, 1.5),
+			...axis, line(b.at, b.at, JOINT.rim, 8.5), line(b.at, b.at, JOINT.line, 6)];
 	});
 }

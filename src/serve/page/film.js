@@ -3,7 +3,7 @@
 import { FREE, STANDS, normalize, poseAt } from './motion.js';
 import { Universe, between } from './universe.js';
 
-const LENGTH = 4, TIME_AT = 8, FLAGS_AT = 1, VOID = 1, JSON_BEGINS = 0x7b, MESH_BEGINS = 3, SIMULATORS_BEGIN = 4; // of a message
+const LENGTH = 4, TIME_AT = 8, FLAGS_AT = 1, VOID = 1, JSON_BEGINS = 0x7b, MESH_BEGINS = 3, ASIDE = new Set([4, 5]); // of a message; ASIDE: simulators and joints
 const JUMP = 1; // s: for a longer jump, it begins at a whole state
 const NEWS = 0.15; // s of wall time between two details of the picked object
 
@@ -46,7 +46,7 @@ export class Film extends Universe {
 			else if (first === MESH_BEGINS)
 				this.hear(data);
 			else
-				this.steps.push({ aside: first === SIMULATORS_BEGIN, time: view.getFloat64(at - size + TIME_AT, true), data, anew: (view.getUint8(at - size + FLAGS_AT) & VOID) !== 0 });
+				this.steps.push({ aside: ASIDE.has(first), time: view.getFloat64(at - size + TIME_AT, true), data, anew: (view.getUint8(at - size + FLAGS_AT) & VOID) !== 0 });
 		}
 		this.seek(this.begin);
 		this.rate = 1;
@@ -130,6 +130,7 @@ export class Film extends Universe {
 			this.rate = command.rate;
 			break;
 		case 'simulators':
+		case 'joints':
 			break; // it has them anyway
 		case 'inspect':
 			this.inspected = command.id;

@@ -1,6 +1,6 @@
 // The viewer: a user's own window into the universe that obsim serves.
 import { Camera, control, moveByKey } from './camera.js';
-import { Drawing, boxSegments, contactSegments, edgeColour, halfBounds } from './drawing.js';
+import { Drawing, boxSegments, contactSegments, edgeColour, halfBounds, jointSegments } from './drawing.js';
 import { Film } from './film.js';
 import { Panel } from './panel.js';
 import { isEndless, isHulled, outlineOf } from './shapes.js';
@@ -49,6 +49,8 @@ function readings(list) {
 
 function overlay(list, view) {
 	const out = panel.on.contacts ? contactSegments(universe.contacts, view, canvas.height) : [];
+	if (panel.on.joints)
+		out.push(...jointSegments(universe.joints, list, view, canvas.height));
 	for (const b of list) {
 		if (!isEndless(b.shape) && b.id === picked)
 			out.push(...boxSegments(b, PICKED, 2.5));
@@ -86,7 +88,7 @@ function frame(now) {
 	const view = camera.view(width, height);
 	// An unchanged picture is not drawn again: a paused universe costs nothing.
 	const { on } = panel, seen = [universe.time, universe.news, drawing.looks.size, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
-		on.contacts, on.simulators, workers.key, read, hand.held?.target].join();
+		on.contacts, on.joints, on.simulators, workers.key, read, hand.held?.target].join();
 	if (seen !== shown)
 		drawing.draw(list, view, look, overlay(list, view));
 	shown = seen;
@@ -228,6 +230,10 @@ function askSimulators() {
 	universe.send({ do: 'simulators', on: panel.on.simulators || workers.key !== 'own' || recorder.on });
 }
 
+function askJoints() {
+	universe.send({ do: 'joints', on: panel.on.joints || recorder.on });
+}
+
 panel.addEventListener('pause', () => universe.send({ do: universe.paused ? 'resume' : 'pause' }));
 panel.addEventListener('step', () => universe.send({ do: 'step' }));
 if (recording) {
@@ -236,6 +242,7 @@ if (recording) {
 }
 panel.addEventListener('rate', (e) => universe.send({ do: 'rate', rate: e.detail }));
 panel.addEventListener('contacts', (e) => universe.send({ do: 'contacts', on: e.detail }));
+panel.addEventListener('joints', askJoints);
 panel.addEventListener('simulators', (e) => {
 	workers.show(e.detail);
 	askSimulators();
@@ -255,7 +262,7 @@ offers.addEventListener('control', ({ detail: { to, text } }) => {
 explore.addEventListener('pick', (e) => pick(e.detail));
 panel.addEventListener('picture', () => explore.picture(canvas));
 panel.addEventListener('video', () => document.querySelector('[data-do=video]').setAttribute('aria-pressed', explore.video(canvas)));
-// Begins a record, with who simulates what, or ends it.
+// Begins a record, with joints and with who simulates what, or ends it.
 function record() {
 	if (recorder.on)
 		recorder.stop(look, addressOf).catch((error) => panel.notice(error.message));
@@ -263,6 +270,7 @@ function record() {
 		recorder.start();
 	document.querySelector('[data-do=record]').setAttribute('aria-pressed', recorder.on);
 	askSimulators();
+	askJoints();
 }
 panel.addEventListener('record', record);
 recorder.addEventListener('end', () => {
@@ -357,6 +365,8 @@ universe.addEventListener('welcome', (e) => {
 	panel.notice(frames ? '' : matchMedia('(pointer: coarse)').matches ? HINT_TOUCH : HINT, 8);
 	if (panel.on.contacts)
 		universe.send({ do: 'contacts', on: true });
+	if (panel.on.joints)
+		askJoints();
 	if (panel.on.simulators || workers.key !== 'own')
 		askSimulators();
 	if (panel.on.objects)

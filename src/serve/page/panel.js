@@ -5,7 +5,7 @@ const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, meta
 	wood: [600, 0.5, 0.1, [0.43, 0.22, 0.08], 0.62, 0], steel: [7800, 0.4, 0.3, [0.56, 0.57, 0.58], 0.32, 1],
 	rubber: [1100, 0.9, 0.7, [0.09, 0.09, 0.11], 0.8, 0], ice: [917, 0.03, 0.1, [0.55, 0.72, 0.83], 0.1, 0],
 };
-const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c: 'contacts', v: 'view', m: 'simulators', o: 'objects', p: 'offers', f: 'follow', '?': 'help', t: 'throw', r: 'restart', Delete: 'remove',
+const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c: 'contacts', j: 'joints', v: 'view', m: 'simulators', o: 'objects', p: 'offers', f: 'follow', '?': 'help', t: 'throw', r: 'restart', Delete: 'remove',
 	Escape: 'leave' };
 
 const MARKS_MOST = 400; // on the time bar
@@ -20,7 +20,7 @@ export class Panel extends EventTarget {
 	constructor() {
 		super();
 		this.off = new Set(); // unavailable controls
-		this.on = { make: false, boxes: false, contacts: false, simulators: false, objects: false, offers: false, help: false };
+		this.on = { make: false, boxes: false, contacts: false, joints: false, simulators: false, objects: false, offers: false, help: false };
 		document.addEventListener('click', (e) => {
 			const button = e.target.closest('[data-do]');
 			if (button)
@@ -153,9 +153,9 @@ export class Panel extends EventTarget {
 		const shown = f.events.filter((_, i) => i % Math.ceil(f.events.length / MARKS_MOST) === 0);
 		$('#marks').replaceChildren(...shown.map(([time, kind, , name]) => {
 			const mark = document.createElement('i');
-			mark.className = kind > 0 ? 'came' : 'went';
+			mark.className = kind > 0 ? 'came' : 'went'; // 0: a joint breaks
 			mark.style.left = `${100 * (time - f.begin) / span}%`;
-			mark.title = `${name} ${kind > 0 ? 'comes' : 'goes'}`;
+			mark.title = `${name} ${['goes', 'breaks', 'comes'][kind + 1]}`;
 			return mark;
 		}));
 	}

@@ -2,7 +2,7 @@
 // the server's empty page for one.
 import { save } from './explore.js';
 
-const MOTIONS = 1, SIMULATORS = 4, VOID = 1, FLAGS_AT = 1, TIME_AT = 8; // of a message
+const MOTIONS = 1, SIMULATORS = 4, JOINTS = 5, VOID = 1, FLAGS_AT = 1, TIME_AT = 8; // of a message
 const MOST = 2 ** 26; // bytes
 const EMPTY = '<script type="text/plain" id="recording"><' + '/script>'; // in one piece it would end this script in a page
 
@@ -40,7 +40,7 @@ export class Recorder extends EventTarget {
 
 	hear(data) {
 		const view = typeof data === 'string' ? null : new DataView(data), kind = view?.getUint8(0);
-		if (kind !== MOTIONS && kind !== SIMULATORS)
+		if (![MOTIONS, SIMULATORS, JOINTS].includes(kind))
 			return;
 		const time = view.getFloat64(TIME_AT, true), whole = kind === MOTIONS && (view.getUint8(FLAGS_AT) & VOID) !== 0;
 		if (this.begin === null && !whole)

@@ -5,7 +5,7 @@ import { isHulled, radiusOf } from './shapes.js';
 const DELAY = 0.05; // s of wall time by which the shown time lags, so that messages arrive before they are needed
 const PULL = 5; // 1/s: rate at which its clock approaches the universe's
 const LOST = 0.5, SETTLED = 1e-4; // s: from this difference on, the clock is set; below that, it stands
-const MOTIONS = 1, CONTACTS = 2, MESH = 3, SIMULATORS = 4, VOID = 1, PAUSED = 2; // of a message
+const MOTIONS = 1, CONTACTS = 2, MESH = 3, SIMULATORS = 4, JOINTS = 5, VOID = 1, PAUSED = 2; // of a message
 const MESH_HEAD = 12, MESH_VERTEX = 12; // bytes; floats
 const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
@@ -47,6 +47,7 @@ export class Universe extends EventTarget {
 		this.url = url;
 		this.objects = new Map();
 		this.contacts = [];
+		this.joints = []; // { kind, ends: two of { id, p, axis }: in the object's frame, or the world's }
 		this.simulators = new Map(); // by id: { home: worker, -1 unknown, island, substeps, state }
 		this.told = 0; // s: newest received time
 		this.toldAt = 0; // s of wall time of its arrival
@@ -91,6 +92,8 @@ export class Universe extends EventTarget {
 			this.hearContacts(r);
 		else if (kind === SIMULATORS)
 			this.hearSimulators(r);
+		else if (kind === JOINTS)
+			this.hearJoints(r);
 		else if (kind === MESH)
 			this.hearMesh(r, data);
 	}
@@ -169,6 +172,18 @@ export class Universe extends EventTarget {
 		r.f64();
 		this.news++;
 		this.contacts = Array.from({ length: n }, () => ({ p: r.vec3(), n: r.vec3(), impulse: r.f32() }));
+	}
+
+	hearJoints(r) {
+		r.u8();
+		r.u16();
+		const n = r.u32();
+		r.f64();
+		this.news++;
+		this.joints = Array.from({ length: n }, () => {
+			const kind = r.u8(), ids = [r.u32(), r.u32()];
+			return { kind, ends: ids.map((id) => ({ id, p: r.vec3(), axis: r.vec3() })) };
+		});
 	}
 
 	hearSimulators(r) {
