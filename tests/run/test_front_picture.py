@@ -1,9 +1,11 @@
-"""The README's first picture is the program's: it is drawn again, smaller and with fewer samples, and both are compared
-as thumbnails. Another Mesa draws other edges, but the same picture.
+"""Pictures of README and docs are the program's: the README's first one, and the first frame of those that move, are drawn
+again, smaller and with fewer samples, and compared as thumbnails. Another Mesa draws other edges, but the same picture.
 """
 
 import os
+import shutil
 import struct
+import subprocess
 import sys
 import unittest
 import zlib
@@ -66,7 +68,48 @@ def thumbnail(width, rows):
 	return cells
 
 
+def frames_of_webp(path):
+	"""Frames of an animated WebP, each by the bytes of its picture (WebP Container Specification: VP8X, ANIM, ANMF)."""
+	with open(path, "rb") as f:
+		data = f.read()
+	assert data[:4] == b"RIFF" and data[8:12] == b"WEBP"
+	frames, at = [], 12
+	while at < len(data):
+		kind, size = struct.unpack("<4sI", data[at:at + 8])
+		if kind == b"ANMF":
+			frames.append(data[at + 24:at + 8 + size])
+		at += 8 + size + size % 2
+	return frames
+
+
+def rows_of_frame(frame, width, height):
+	"""Rows of a frame that covers the picture."""
+	still = b"RIFF" + struct.pack("<I", 4 + len(frame)) + b"WEBP" + frame
+	raw = subprocess.run(["ffmpeg", "-loglevel", "error", "-f", "webp_pipe", "-i", "-", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
+		input=still, capture_output=True, check=True).stdout
+	assert len(raw) == 3 * width * height
+	return [raw[i:i + 3 * width] for i in range(0, len(raw), 3 * width)]
+
+
 class FrontPicture(program.Case):
+	@unittest.skipUnless(shutil.which("ffmpeg"), "no ffmpeg, which decodes WebP")
+	def test_moving(self):
+		for name, scene, frames, words in ("plaza", "plaza", 60, []), ("colours", "falling_boxes", 52, ["--colour-by", "simulator"]), \
+				("killed", "tower", 36, ["--colour-by", "worker"]):
+			with self.subTest(name=name):
+				path = os.path.join(ROOT, "docs", "images", f"moving_{name}.webp")
+				self.assertLess(os.path.getsize(path), 3e6)
+				found = frames_of_webp(path)
+				self.assertAlmostEqual(len(found), frames, delta=2) # equal frames are one
+				raw = self.path(name)
+				program.report(program.scene(scene), "--duration", ".01", "--still", "0", "--size", "320x180", "--raw", raw,
+					"--measure", "end", *words)
+				with open(raw, "rb") as f:
+					data = f.read()
+				drawn = thumbnail(320, [data[i:i + 960] for i in range(0, 320 * 180 * 3, 960)])
+				off = [abs(a - b) for a, b in zip(thumbnail(640, rows_of_frame(found[0], 640, 360)), drawn)]
+				self.assertLess(sum(off) / len(off), 2 * MEAN)
+
 	def draw(self, *words):
 		raw = self.path("raw")
 		program.report(program.scene("falling_boxes"), "--duration", "1.6", "--fps", "1.25", "--size", "320x180", "--raw", raw,
