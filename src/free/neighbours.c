@@ -62,14 +62,6 @@ static bool renew_bounds(ob_free_sim *s, ob_free_scratch *x, double h)
 	return true;
 }
 
-static bool overlaps(const ob_free_sim *s, const float box[6])
-{
-	bool found = true;
-	for (int c = 0; c < 3; c++)
-		found &= box[c] <= s->bounds[3 + c] && box[3 + c] >= s->bounds[c];
-	return found;
-}
-
 static uint32_t find(const ob_free_sim *s, uint32_t id)
 {
 	uint32_t i = 0;
@@ -112,22 +104,19 @@ static bool is_there(const ob_free_neighbour *n, const ob_universe *u)
 // Drops neighbours that are gone or far. One that has mail is kept until the account is settled.
 static void drop_far(ob_free_sim *s, const ob_free_scratch *x)
 {
-	float box[6];
 	for (uint32_t i = s->neighbours; i-- > 0;) {
 		const ob_free_neighbour *n = &s->neighbour[i];
-		ob_free_read_bounds(x->u, n->id, box);
-		if (!is_there(n, x->u) || !(overlaps(s, box) || has_account(s, n->id)))
+		if (!is_there(n, x->u) || !(ob_free_overlaps(x->u, n->id, s->bounds) || has_account(s, n->id)))
 			s->neighbour[i] = s->neighbour[--s->neighbours];
 	}
 }
 
 static void add_near(ob_free_sim *s, ob_free_scratch *x, uint32_t first, uint32_t end)
 {
-	float box[6];
 	uint32_t generation;
 	for (uint32_t id = first; id < end; id++) {
-		ob_free_read_bounds(x->u, id, box);
-		if (!(overlaps(s, box) || has_account(s, id)) || id == s->id || find(s, id) < s->neighbours)
+		if (!(ob_free_overlaps(x->u, id, s->bounds) || has_account(s, id)) || id == s->id ||
+		    find(s, id) < s->neighbours)
 			continue;
 		const ob_free_kind kind = ob_free_kind_of(x->u, id, &generation);
 		if (kind != OB_FREE_ABSENT)

@@ -251,11 +251,18 @@ uint32_t ob_free_changed(const ob_universe *u, uint32_t group, uint32_t number)
 	return change >> 32 == number + 1 ? (uint32_t)change : OB_NO_OBJECT;
 }
 
-void ob_free_read_bounds(const ob_universe *u, uint32_t id, float box[6])
+bool ob_free_overlaps(const ob_universe *u, uint32_t id, const float box[6])
 {
-	ob_word words[3];
-	get_words(words, u->step_data.bounds[id], sizeof words);
-	memcpy(box, words, sizeof words);
+	const ob_word *words = (const ob_word *)u->step_data.bounds[id];
+	const ob_word first = __atomic_load_n(words, __ATOMIC_ACQUIRE);
+	float other[6];
+	memcpy(other, &first, sizeof first);
+	if (other[0] > box[3] || other[1] > box[4])
+		return false; // so are most
+	const ob_word rest[2] = { __atomic_load_n(words + 1, __ATOMIC_ACQUIRE),
+				  __atomic_load_n(words + 2, __ATOMIC_ACQUIRE) };
+	memcpy(other + 2, rest, sizeof rest);
+	return other[2] <= box[5] && other[3] >= box[0] && other[4] >= box[1] && other[5] >= box[2];
 }
 
 // ---- counters

@@ -168,9 +168,10 @@ void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_l
 void ob_free_advance(ob_universe *u, uint32_t id, double t);
 void ob_free_put_counts(ob_universe *u, uint32_t id, const ob_free_counts *c);
 void ob_free_publish_bounds(ob_universe *u, uint32_t id, const float box[6]);
-// Counter of changes in a group of OB_FREE_GROUP objects; and a box.
+// Counter of changes in a group of OB_FREE_GROUP objects.
 uint32_t ob_free_moved(const ob_universe *u, uint32_t group);
-void ob_free_read_bounds(const ob_universe *u, uint32_t id, float box[6]);
+// True if the object's box overlaps another.
+bool ob_free_overlaps(const ob_universe *u, uint32_t id, const float box[6]);
 // Object of a change, by its number (from 0: what the counter was before). OB_NO_OBJECT: it is not kept.
 uint32_t ob_free_changed(const ob_universe *u, uint32_t group, uint32_t number);
 // Begins to sleep in flight until own time `holds` (s). The simulator then looks once more whether it may.
