@@ -36,9 +36,16 @@ struct ob_ode_baseline {
 	double *depth;
 	size_t points_max;
 	struct touching_list pressed, presses; // with scripts: pairs that press before the step, and in it
+	ob_found_joint *joint; // [joints_max]: loads of this step
+	bool *joined; // [joints_max]: the world has it
 	uint32_t awake, pairs;
 	bool traced;
 };
+
+static bool may_touch(const void *universe, uint32_t a, uint32_t b)
+{
+	return ob_may_touch(universe, a, b);
+}
 
 ob_ode_baseline *ob_ode_baseline_create(ob_universe *u)
 {
@@ -52,6 +59,9 @@ ob_ode_baseline *ob_ode_baseline_create(ob_universe *u)
 		.boxed = run->narrow_phase == OB_NARROW_AABB,
 		.pairs_max = ob_universe_step_data(u)->pairs_max,
 		.load = run->load,
+		.joints = ob_universe_step_data(u)->joints_max,
+		.may_touch = ob_universe_step_data(u)->joints_max ? may_touch : NULL,
+		.of = u,
 	};
 	ob_ode_thread_init();
 	ob_ode_baseline *m = calloc(1, sizeof *m);
@@ -61,8 +71,10 @@ ob_ode_baseline *ob_ode_baseline_create(ob_universe *u)
 	m->run = run;
 	m->traced = ob_universe_traced(u);
 	m->held = calloc(capacity, sizeof *m->held);
+	m->joint = calloc(setup.joints + 1, sizeof *m->joint);
+	m->joined = calloc(setup.joints + 1, sizeof *m->joined);
 	m->world = ob_ode_world_create(&setup);
-	if (!m->held || !m->world) {
+	if (!m->held || !m->joint || !m->joined || !m->world) {
 		ob_ode_baseline_destroy(m);
 		return NULL;
 	}
@@ -75,6 +87,8 @@ void ob_ode_baseline_destroy(ob_ode_baseline *m)
 		return;
 	ob_ode_world_destroy(m->world);
 	free(m->held);
+	free(m->joint);
+	free(m->joined);
 	free(m->point);
 	free(m->depth);
 	free(m->pressed.pair);
@@ -115,6 +129,64 @@ static void follow_passports(ob_ode_baseline *m)
 		ob_state s = { { first->p, first->q }, first->v, first->w };
 		ob_ode_world_add(m->world, p, &s);
 		*h = (struct held_object){ true, p->generation };
+	}
+}
+
+static bool holds(const ob_ode_baseline *m, uint32_t joint)
+{
+	const ob_joint_passport *j = &ob_universe_step_data(m->u)->joint[joint];
+	return j->kind != OB_JOINT_APART && ob_joint_holds(m->u, j);
+}
+
+// Joins objects, or parts them, as the universe's joints say. Call after follow_passports.
+static void follow_joints(ob_ode_baseline *m)
+{
+	const ob_step_data *data = ob_universe_step_data(m->u);
+	for (uint32_t i = 0; i < ob_joints_end(data); i++) {
+		const bool was = m->joined[i], is = holds(m, i);
+		m->joint[i] = (ob_found_joint){ .joint = i };
+		if (was && !is)
+			ob_ode_world_unjoin(m->world, i);
+		if (is && !was && !ob_ode_world_join(m->world, i, &data->joint[i]))
+			ob_step_fail(m->u, OB_STEP_ENGINE, data->joint[i].object[0]);
+		m->joined[i] = is;
+	}
+}
+
+static void drive_joints(ob_ode_baseline *m, double h)
+{
+	const ob_step_data *data = ob_universe_step_data(m->u);
+	for (uint32_t i = 0; i < ob_joints_end(data); i++)
+		ob_ode_world_drive_joint(m->world, i, &data->joint[i].axis, h);
+}
+
+// Adds loads of a substep. A joint that has more than its strength ends with it: its load is that by which it broke.
+static void load_joints(ob_ode_baseline *m)
+{
+	const ob_step_data *data = ob_universe_step_data(m->u);
+	const double share = 1. / m->run->substeps;
+	for (uint32_t i = 0; i < ob_joints_end(data); i++) {
+		const ob_joint_passport *j = &data->joint[i];
+		ob_found_joint *f = &m->joint[i];
+		ob_joint_load now;
+		if (!ob_ode_world_joint_load(m->world, i, &now))
+			continue;
+		f->broke = ob_norm(now.force) > j->breaks_force || ob_norm(now.torque) > j->breaks_torque;
+		f->force = f->broke ? now.force : ob_madd(f->force, share, now.force);
+		f->torque = f->broke ? now.torque : ob_madd(f->torque, share, now.torque);
+		f->along = f->broke ? now.along : f->along + share * now.along;
+		if (f->broke)
+			ob_ode_world_unjoin(m->world, i);
+	}
+}
+
+static void publish_joints(ob_ode_baseline *m)
+{
+	const ob_step_data *data = ob_universe_step_data(m->u);
+	for (uint32_t i = 0; i < ob_joints_end(data); i++) {
+		if (m->joined[i])
+			ob_commit_joint(m->u, &m->joint[i]);
+		m->joined[i] &= !m->joint[i].broke;
 	}
 }
 
@@ -341,20 +413,24 @@ void ob_ode_baseline_step(ob_ode_baseline *m)
 	const bool scripts = ob_universe_step_data(m->u)->script_of;
 	const double h = m->run->step_length / m->run->substeps;
 	follow_passports(m);
+	follow_joints(m);
 	for (uint32_t i = 0; i < m->run->substeps; i++) {
 		drive(m, (double)ob_step_count(m->u) * m->run->step_length + i * h);
+		drive_joints(m, h);
 		if (!ob_ode_world_step(m->world, h)) {
 			bool full;
 			uint32_t culprit = ob_ode_world_culprit(m->world, &full);
 			ob_step_fail(m->u, full ? OB_STEP_PAIRS_FULL : OB_STEP_ENGINE, culprit);
 			return;
 		}
+		load_joints(m);
 		if (scripts)
 			note_touches(m);
 	}
 	if (scripts)
 		end_touches(m);
 	publish_all(m);
+	publish_joints(m);
 	publish_pairs(m);
 }
 

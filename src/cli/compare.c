@@ -82,6 +82,7 @@ static bool load_point(ob_sweep_point *p, const ob_arguments *a, ob_error *e)
 	}
 	if (fine) {
 		p->objects = scene->objects;
+		p->joints = scene->joints;
 		p->seed = scene->seed;
 		p->step = request.run.step_length;
 		p->steps = ob_request_steps(request.duration, p->step);

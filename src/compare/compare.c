@@ -212,6 +212,8 @@ static void plan_point(const ob_comparison *c, ob_sweep_point *p)
 			snprintf(why, room, "the pool has as many");
 		else if (i == OB_CONFIGURATION_GROUPS && p->workers[i] < 2)
 			snprintf(why, room, "%" PRIu32 " objects are one group", p->objects);
+		else if (p->joints > 0 && w->other_narrow && strcmp(w->arch, "monolith") != 0)
+			snprintf(why, room, "only true shapes have joints");
 		else if (w->objects_max && p->objects > w->objects_max && is_asked(c, i))
 			snprintf(why, room, "%" PRIu32 " objects are more than the %" PRIu32 " that are tried",
 				 p->objects, w->objects_max);

@@ -102,7 +102,7 @@ enum { OB_SWEEP_POINTS = 16, OB_COMPARE_OPTIONS = 128, OB_COMPARE_RUNS = 99 };
 // The scene with one value of the varied parameter.
 typedef struct ob_sweep_point {
 	char define[128]; // "n=100"; "" = no parameter
-	uint32_t objects;
+	uint32_t objects, joints;
 	uint64_t steps, seed;
 	double step, simulated; // s
 	char key[OB_CASE_KEY]; // the case of its records: names the scene, its contents and all options

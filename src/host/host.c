@@ -17,6 +17,7 @@
 #include "host/host_state.h"
 #include "host/restart.h"
 #include "ode/ode_body.h"
+#include "ode/ode_world.h"
 #include "scene/object_limits.h"
 #include "step/sim.h"
 
@@ -34,17 +35,28 @@ static bool has_outboxes(const ob_host_config *c)
 static bool check_joints(const ob_scene *scene, const ob_host_config *c, ob_error *e)
 {
 	const ob_run_settings *r = &c->run, usual = ob_run_settings_default();
-	const char *lacks = !scene->joints                          ? NULL
-			    : r->monolith                           ? "arch: the one ODE world"
-			    : c->free                               ? "sync: a free run"
-			    : r->solver != usual.solver             ? "solver: such a run"
-			    : r->integrator != usual.integrator     ? "integrator: such a run"
-			    : r->narrow_phase != usual.narrow_phase ? "narrow phase: such a run"
-								    : NULL;
+	const char *lacks = !scene->joints                                          ? NULL
+			    : c->free                                               ? "sync: a free run"
+			    : r->solver != usual.solver                             ? "solver: such a run"
+			    : r->integrator != usual.integrator                     ? "integrator: such a run"
+			    : r->narrow_phase != usual.narrow_phase && !r->monolith ? "narrow phase: such a run"
+										    : NULL;
 	return !lacks || ob_fail(e,
 				 "%s has no joints, as this scene has: take simulators in lockstep, with the usual "
 				 "methods",
 				 lacks);
+}
+
+// Refuses joints that ODE does not have.
+static bool check_ode_joints(const ob_scene *scene, ob_error *e)
+{
+	for (uint32_t i = 0; i < scene->joints; i++)
+		if (!ob_ode_has_joint(&scene->joint[i]))
+			return ob_fail(e,
+				       "arch: the one ODE world has no joint as \"%s\": neither distances that change "
+				       "nor two of friction, spring and motor along an axis; take object simulators",
+				       scene->joint[i].name);
+	return true;
 }
 
 static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_error *e)
@@ -74,7 +86,7 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "on death: the scene has scripts, whose objects cannot be frozen");
 	if (r->monolith && scene->hulls > 0) // few of ODE's convex geometries collide with each other
 		return ob_fail(e, "arch: the one ODE world has no hulls, as this scene has: take object simulators");
-	if (!check_joints(scene, c, e))
+	if (!check_joints(scene, c, e) || (r->monolith && !check_ode_joints(scene, e)))
 		return false;
 	for (uint32_t i = 0; i < scene->objects; i++) {
 		if (!ob_object_check(&scene->object[i], e))

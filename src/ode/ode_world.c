@@ -5,6 +5,7 @@
 #include "base/cpu.h"
 #include "ode/ode_body.h"
 #include "ode/ode_geom.h"
+#include "ode/ode_joint.h"
 
 // ---- contacts of axis-aligned boxes
 
@@ -123,6 +124,7 @@ struct ob_ode_world {
 	uint64_t steps, box_tests;
 	double substep; // s, of the last step
 	struct object *object;
+	ob_ode_joint **joint; // [setup.joints]; NULL: none
 	struct contact_pair *pair;
 	struct contact_pair **order; // pairs by their ids: they are too big to be moved about
 	size_t pairs, pairs_max;
@@ -133,14 +135,17 @@ ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s)
 {
 	ob_ode_world *w = calloc(1, sizeof *w);
 	struct object *object = calloc(s->objects ? s->objects : 1, sizeof *object);
-	if (!w || !object) {
+	ob_ode_joint **joint = calloc(s->joints ? s->joints : 1, sizeof *joint);
+	if (!w || !object || !joint) {
 		free(w);
 		free(object);
+		free(joint);
 		return NULL;
 	}
 	ob_ode_init();
 	w->setup = *s;
 	w->object = object;
+	w->joint = joint;
 	w->world = dWorldCreate();
 	w->threading = dThreadingAllocateSelfThreadedImplementation();
 	w->space = s->hashed ? dHashSpaceCreate(0) : dSweepAndPruneSpaceCreate(0, dSAP_AXES_XYZ);
@@ -179,6 +184,8 @@ void ob_ode_world_destroy(ob_ode_world *w)
 		ob_ode_abandon(&w->abandoned);
 		return;
 	}
+	for (uint32_t i = 0; i < w->setup.joints; i++)
+		ob_ode_joint_destroy(w->joint[i]);
 	for (uint32_t id = 0; id < w->setup.objects; id++)
 		clear_object(&w->object[id]);
 	dJointGroupDestroy(w->joints);
@@ -186,6 +193,7 @@ void ob_ode_world_destroy(ob_ode_world *w)
 	dWorldDestroy(w->world);
 	dThreadingFreeImplementation(w->threading);
 	free(w->object);
+	free(w->joint);
 	free(w->pair);
 	free(w->order);
 	free(w);
@@ -293,6 +301,46 @@ void ob_ode_world_remove(ob_ode_world *w, uint32_t id)
 	w->pairs = 0; // the last contacts may refer to it
 }
 
+bool ob_ode_has_joint(const ob_joint_passport *p)
+{
+	const ob_joint_axis *a = &p->axis;
+	if (!(p->flags & OB_JOINT_DRIVEN))
+		return true;
+	return p->kind != OB_JOINT_DISTANCE &&
+	       (a->friction > 0) + (a->stiffness > 0 || a->damping > 0) + (a->motor != OB_MOTOR_NONE) <= 1;
+}
+
+bool ob_ode_world_join(ob_ode_world *w, uint32_t number, const ob_joint_passport *j)
+{
+	ob_ode_end end[2];
+	for (int side = 0; side < 2; side++) {
+		const struct object *m = j->object[side] == OB_JOINT_WORLD ? NULL : &w->object[j->object[side]];
+		const ob_pose world = { .q = ob_quat_identity() };
+		end[side] = (ob_ode_end){ m ? m->body : NULL, m ? m->placed.pose : world };
+	}
+	w->joint[number] = ob_ode_joint_create(w->world, j, end);
+	return w->joint[number];
+}
+
+void ob_ode_world_unjoin(ob_ode_world *w, uint32_t number)
+{
+	ob_ode_joint_destroy(w->joint[number]);
+	w->joint[number] = NULL;
+}
+
+void ob_ode_world_drive_joint(ob_ode_world *w, uint32_t number, const ob_joint_axis *axis, double h)
+{
+	if (w->joint[number])
+		ob_ode_joint_drive(w->joint[number], axis, h);
+}
+
+bool ob_ode_world_joint_load(const ob_ode_world *w, uint32_t number, ob_joint_load *out)
+{
+	if (w->joint[number])
+		ob_ode_joint_load(w->joint[number], out);
+	return w->joint[number];
+}
+
 // Ends the step if there is no room: any number of pairs may follow.
 static struct contact_pair *next_pair(ob_ode_world *w)
 {
@@ -333,7 +381,8 @@ static void collide_pair(void *data, dGeomID one, dGeomID other)
 {
 	ob_ode_world *w = data;
 	struct object *a = dGeomGetData(one), *b = dGeomGetData(other);
-	if ((!is_awake(a) && !is_awake(b)) || (!is_dynamic(a) && !is_dynamic(b)) || !hit_each_other(one, other))
+	if ((!is_awake(a) && !is_awake(b)) || (!is_dynamic(a) && !is_dynamic(b)) || !hit_each_other(one, other) ||
+	    (w->setup.may_touch && !w->setup.may_touch(w->setup.of, a->id, b->id)))
 		return;
 	if (a->id > b->id) {
 		struct object *lower = b;

@@ -6,6 +6,7 @@
 #ifndef OB_ODE_WORLD_H
 #define OB_ODE_WORLD_H
 
+#include <ob/joint.h>
 #include <ob/motion.h>
 
 typedef struct ob_ode_world ob_ode_world;
@@ -21,6 +22,10 @@ typedef struct ob_ode_world_setup {
 	double surface_layer; // m, depth to which contacts may sink; 0 = ODE's default, also below
 	double softness; // constraint force mixing (kg^-1) of all constraints
 	double correcting_speed; // m/s, maximum speed of penetration correction
+	uint32_t joints; // their numbers are 0 .. joints-1
+	bool (*may_touch)(const void *of, uint32_t a,
+			  uint32_t b); // false: the two pass through each other; NULL: all may
+	const void *of;
 } ob_ode_world_setup;
 
 ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s); // NULL: no memory
@@ -35,6 +40,16 @@ void ob_ode_world_push(ob_ode_world *w, uint32_t id, ob_vec3 force, ob_vec3 torq
 void ob_ode_world_kick(ob_ode_world *w, uint32_t id, ob_vec3 impulse, ob_vec3 twist);
 // Removes an object; objects in contact with it wake. Does nothing if there is no such object.
 void ob_ode_world_remove(ob_ode_world *w, uint32_t id);
+// True if the world has such a joint: no distances with something along them, and one thing along an axis, beside limits.
+bool ob_ode_has_joint(const ob_joint_passport *j);
+// Joins objects that were added, or one and the world, as the passport has them; not OB_JOINT_APART. They never sleep.
+// false: no memory.
+bool ob_ode_world_join(ob_ode_world *w, uint32_t number, const ob_joint_passport *j);
+void ob_ode_world_unjoin(ob_ode_world *w, uint32_t number); // does nothing if there is none
+// Sets what acts along the axis of a joint before a step of h (s).
+void ob_ode_world_drive_joint(ob_ode_world *w, uint32_t number, const ob_joint_axis *axis, double h);
+// Action of a joint on its first object in the last step. false: there is no such joint.
+bool ob_ode_world_joint_load(const ob_ode_world *w, uint32_t number, ob_joint_load *out);
 // Collides and steps by h (s). Skips pairs without an awake dynamic object. Returns false if pairs do not fit, or ODE
 // gave up; the world may only be destroyed then.
 bool ob_ode_world_step(ob_ode_world *w, double h);

@@ -156,6 +156,17 @@ sphere { name = "glue", radius = .1, at = { 4, 0, .1 }, mass = 1, script = [[
 ]] }
 """
 
+# An arm that a motor turns by more than half a turn, to a limit of 4 rad.
+FAR = """scene { title = "Far", duration = 4 }
+box { name = "wall", size = { .2, 1, 3 }, kind = "static", at = { 0, 0, 1.5 }, rotation = { axis = { 0, 0, 1 }, degrees = 180 } }
+box { name = "arm", size = { 1, .1, .1 }, at = { .5, 0, 3 }, mass = 2, script = [[
+	function on_start() self:wake(3.9) end
+	function on_wake() print("@arm", (joint("axle")), self:position()) end
+]] }
+hinge { "wall", "arm", name = "axle", at = { 0, 0, 3 }, axis = { 0, -1, 0 }, low = -.5, high = 4,
+	motor = { rate = 1.5, most = 100 } }
+"""
+
 
 def kept(folder, text):
 	path = os.path.join(folder, "scene.lua")
@@ -187,24 +198,48 @@ class Joints(unittest.TestCase):
 				path = kept(folder, text)
 				self.assertEqual(len({state(path, *way)[0] for way in WAYS}), 1)
 
-	# In the end gates hang on their limits, the seat carries its rider, the lift is up, the car goes.
+	# In the end gates hang on their limits, the seat carries its rider, the lift is up, the car goes; in ODE likewise.
 	def test_drives(self):
+		for arch, fine in (("obs", 1e-6), ("monolith", 1e-3)):
+			with tempfile.TemporaryDirectory() as folder:
+				done = program.call("run", kept(folder, DRIVES), "--measure", "end", "--arch", arch)
+			self.assertEqual(done.returncode, 0, done.stderr)
+			at = {name: [float(x) for x in rest.split()] for name, rest in re.findall(r"@(\w+)(.*)", done.stderr)}
+			for name in ("flap", "gate"):
+				self.assertAlmostEqual(at[name][2], 1 - .5 * math.sin(.6), delta=fine)
+			self.assertAlmostEqual(at["seat"][2], 1 - 15 * 9.81 / 2000, delta=1e-3)
+			self.assertAlmostEqual(at["lift"][2], 1.2, delta=fine)
+			self.assertAlmostEqual(at["car"][3], 2, delta=.01 if arch == "obs" else .1)
+
+	def told(self, *words):
+		"""Instants and loads of all breaks by the joints' names, and the ended program."""
 		with tempfile.TemporaryDirectory() as folder:
-			done = program.call("run", kept(folder, DRIVES), "--measure", "end")
+			done = program.call("run", kept(folder, BREAKS), "--measure", "end", *words)
 		self.assertEqual(done.returncode, 0, done.stderr)
-		at = {name: [float(x) for x in rest.split()] for name, rest in re.findall(r"@(\w+)(.*)", done.stderr)}
-		for name in ("flap", "gate"):
-			self.assertAlmostEqual(at[name][2], 1 - .5 * math.sin(.6), delta=1e-6)
-		self.assertAlmostEqual(at["seat"][2], 1 - 15 * 9.81 / 2000, delta=1e-3)
-		self.assertAlmostEqual(at["lift"][2], 1.2, delta=1e-6)
-		self.assertAlmostEqual(at["car"][3], 2, delta=.01)
+		return {name: (float(t), float(force), float(torque)) for name, t, force, torque in
+			re.findall(r"@broke (\w+)\s+(\S+)\s+(\S+)\s+(\S+)", done.stderr)}, done
+
+	# ODE's joints break likewise, by loads of the same size.
+	def test_breaks_in_ode(self):
+		broke, ode = self.told()[0], self.told("--arch", "monolith")[0]
+		self.assertEqual(set(broke), set(ode))
+		self.assertLess(abs(broke["rope"][0] - ode["rope"][0]), .05)
+		self.assertAlmostEqual(ode["rope"][1], broke["rope"][1], delta=6)
+
+	# A hinge whose limit lies beyond half a turn, of a static object to one that moves, comes to its limit in ODE as well.
+	def test_frames_in_ode(self):
+		found = []
+		for arch in ("obs", "monolith"):
+			with tempfile.TemporaryDirectory() as folder:
+				done = program.call("run", kept(folder, FAR), "--measure", "end", "--arch", arch)
+			self.assertEqual(done.returncode, 0, done.stderr)
+			found.append([float(x) for x in re.search(r"@arm(.*)", done.stderr).group(1).split()])
+		for one, other in zip(*found):
+			self.assertAlmostEqual(one, other, delta=.03) # ODE goes beyond the limit by up to a step
+		self.assertAlmostEqual(found[1][0], 4, delta=.03) # the value
 
 	def test_breaks(self):
-		with tempfile.TemporaryDirectory() as folder:
-			done = program.call("run", kept(folder, BREAKS), "--measure", "end")
-		self.assertEqual(done.returncode, 0, done.stderr)
-		broke = {name: (float(t), float(force), float(torque)) for name, t, force, torque in
-			re.findall(r"@broke (\w+)\s+(\S+)\s+(\S+)\s+(\S+)", done.stderr)}
+		broke, done = self.told()
 		self.assertEqual(set(broke), {"bracket", "glue", "eye3", "rope"})
 		self.assertGreater(broke["bracket"][2], 100)
 		self.assertGreater(broke["rope"][1], 40)
@@ -225,7 +260,7 @@ class Joints(unittest.TestCase):
 		self.assertGreater(found["hook"][5], 10) # it bears the weight
 		self.assertAlmostEqual(found["slid"][0], .4, delta=.05)
 
-	# What joints have become stays so, whenever the run is saved, and whoever dies.
+	# Joints stay as they have become, whenever the run is saved, and whoever dies.
 	def test_again(self):
 		for text, durations in ((BREAKS, (1 / 60, .2, .8)), (GRABS, (.3, 1, 1.9))):
 			with tempfile.TemporaryDirectory() as folder:
@@ -260,11 +295,21 @@ class Joints(unittest.TestCase):
 				self.assertEqual(state("--resume", kept, *scene[-2:])[0], state(*scene)[0])
 
 	def test_refusals(self):
-		for words in (["--arch", "monolith"], ["--sync", "free"], ["--solver", "ghost"], ["--solver", "jacobi"],
+		for words in (["--sync", "free"], ["--solver", "ghost"], ["--solver", "jacobi"],
 			["--integrator", "ode"]):
 			done = program.call("run", *self.scenes[0], *words)
 			self.assertNotEqual(done.returncode, 0, words)
 			self.assertRegex(done.stderr, r"^obsim: .*(has no joints, as this scene has: take|the scene has joints, which hold in lockstep) .*\n$")
+
+	# One thing along an axis is ODE's motor, and a distance has none.
+	def test_refused_in_ode(self):
+		for joint in ('distance { "bob", name = "rope", stiffness = 9, to = { 0, 0, 3 } }',
+			'hinge { "bob", name = "rope", at = { 0, 0, 3 }, axis = { 0, 1, 0 }, friction = 1, damping = 2 }'):
+			with tempfile.TemporaryDirectory() as folder:
+				path = kept(folder, 'sphere { name = "bob", radius = .1, at = { 1, 0, 3 } }\n' + joint)
+				done = program.call("run", path, "--arch", "monolith")
+			self.assertEqual(done.returncode, 1, done.stderr)
+			self.assertRegex(done.stderr, r'^obsim: .*arch: the one ODE world has no joint as "rope": .*\n$')
 
 
 unittest.main()
