@@ -247,6 +247,8 @@ uint64_t ob_layout_element(ob_area area);
 uint64_t ob_layout_elements_of(const ob_layout_sizes *s, ob_area area, uint32_t ids);
 // Copies the newest body properties; returns false if there have never been any. Any reader.
 bool ob_passport_read(const ob_universe *u, uint32_t id, ob_passport *out);
+// Likewise up to the moments of inertia; the rest of *out stays as it was.
+bool ob_passport_read_body(const ob_universe *u, uint32_t id, ob_passport *out);
 // True if the numbers of a record from outside are plausible for an object.
 bool ob_passport_makes_sense(const ob_passport *p, uint32_t id);
 bool ob_motion_makes_sense(const ob_motion *m);

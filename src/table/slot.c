@@ -107,6 +107,12 @@ bool ob_passport_read(const ob_universe *u, uint32_t id, ob_passport *out)
 	return ob_ring_read(&u->passport[id].version, u->passport_even + id, stride_of(u, id), sizeof *out, out);
 }
 
+bool ob_passport_read_body(const ob_universe *u, uint32_t id, ob_passport *out)
+{
+	const size_t bytes = offsetof(ob_passport, friction);
+	return ob_ring_read(&u->passport[id].version, u->passport_even + id, stride_of(u, id), bytes, out);
+}
+
 void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p)
 {
 	// Reading body properties that were never written would touch a page of the even ones.
