@@ -9,6 +9,7 @@ import os
 import pty
 import re
 import signal
+import socket
 import struct
 import subprocess
 import tempfile
@@ -95,7 +96,7 @@ def checkpoint_areas(file):
 	(checkpoint/file.h, checkpoint/saved_run.c)."""
 	with open(file, "rb") as f:
 		table = f.read(4096)[128:]
-	lines = [struct.unpack_from("=4Q", table, 32 * i) for i in range(19)]
+	lines = [struct.unpack_from("=4Q", table, 32 * i) for i in range(22)]
 	return [(element, count, checksum) for i, (element, count, _, checksum) in enumerate(lines) if i not in (0, 4)]
 
 
@@ -164,6 +165,45 @@ def end(pid):
 		return True
 	except ProcessLookupError:
 		return False
+
+
+class Led:
+	"""Control of a run of obsim control by its packets (control/packet.h), as a program without libobsim."""
+
+	HELLO, STEP, KILL, SAVE = 0, 1, 19, 22
+
+	def __init__(self, name):
+		self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+		self.socket.settimeout(PATIENCE)
+		self.socket.connect("\0obsim." + name)
+		self.call(self.HELLO)
+
+	def call(self, command, number=0, count=0, payload=b""):
+		self.socket.send(struct.pack("=8s4IQd", b"OBSIMCT1", command, count, len(payload), 0, number, 0) + payload)
+		answer = self.socket.recv(10000)
+		error = answer[:answer.find(b"\0")].decode()
+		if error or not answer:
+			raise AssertionError(error or "the run has ended")
+
+	def step(self, steps):
+		self.call(self.STEP, steps)
+
+	def kill(self, object):
+		"""Kills the worker that simulates the object."""
+		self.call(self.KILL, 0, 1, struct.pack("=2I13d", object, 0, *13 * [0]))
+
+	def save(self, path):
+		self.call(self.SAVE, 0, 1, path.encode() + b"\0")
+
+	def close(self):
+		"""Ends the run."""
+		self.socket.close()
+
+
+def deaths(name):
+	"""Deaths of simulators so far, according to obsim top."""
+	found = re.search(r"^deaths (\d+)", call("top", name, "--once", "--interval", ".01").stdout, re.MULTILINE)
+	return int(found[1]) if found else 0
 
 
 def wait_until(condition, seconds=PATIENCE):
