@@ -91,6 +91,14 @@ bool ob_controller_set_surface_velocities(ob_controller *c, const ob_change *cha
 bool ob_controller_set_motors(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 // Removes joints: a change's id is that of the joint's first object, its value the joint's number.
 bool ob_controller_unjoin(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
+// Path of a kinematic object from now on, in place of any other: from where it stands through n points, with times from now, as
+// a scene's path = { kind = "spline" } has it: it accelerates and decelerates between them, and stands at the last. turns: it
+// takes their attitudes, by the shortest way; else it keeps its spin. loop: it begins again at the last point, which is where
+// it stands now. The path ends with a new one, and with set_states. false and e: among others, if points are less than two
+// steps apart.
+enum { OB_CONTROL_POINTS = 64 };
+bool ob_controller_set_path(ob_controller *c, uint32_t id, const ob_path_point *point, size_t n, bool turns, bool loop,
+			    ob_error *e);
 // Kills the worker processes that simulate these objects (value unused): a fault, after which the run goes on to the same
 // bits. Refused where simulators are threads.
 bool ob_controller_kill(ob_controller *c, const ob_change *change, size_t n, ob_error *e);

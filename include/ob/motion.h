@@ -17,6 +17,13 @@ typedef struct ob_state {
 	ob_vec3 w; // rad/s, world frame
 } ob_state;
 
+// Point of a path that a kinematic object follows.
+typedef struct ob_path_point {
+	double t; // s, after the path begins
+	ob_vec3 p; // m
+	ob_quat q; // body to world, if the path turns
+} ob_path_point;
+
 // State at time t (s): parabola for the centre, torque-free rotation for the attitude. A swinging object with frequency
 // f moves along the ellipse p + v sin(f s) / f + a (1 - cos(f s)) / f^2, s = t - t0: to and fro if v and a are
 // parallel. Torque-free rotation of a rigid body in closed form: Jacobi elliptic functions for the body rates (Jacobi

@@ -17,6 +17,7 @@ import ctypes
 import itertools
 import os
 import subprocess
+import sys
 import tempfile
 import time
 import weakref
@@ -31,6 +32,7 @@ __all__ = ['Error', 'Joint', 'Object', 'Run', 'Universe', 'attach', 'names', 'ru
 CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
 CONTACT_EVENT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('step', 'u4'), ('begins', 'u4')])
 CHANGE = numpy.dtype([('id', 'u4'), ('generation', 'u4'), ('value', 'f8', 13)])
+POINT = numpy.dtype([('time', 'f8'), ('position', 'f8', 3), ('attitude', 'f8', 4)])
 _PRESENT, _STATIC, _FROZEN, _KINEMATIC, _SENSOR = 1, 2, 4, 8, 64
 _WORLD = 0xffffffff
 _SAME = numpy.nan
@@ -157,6 +159,11 @@ class Object:
         """Ends torque, push and drag."""
         self._universe.release([self._id])
 
+    def follow(self, times, positions, attitudes=None, loop=False):
+        """A kinematic object's path from now on: from where it stands through positions (m), at times from now (s). With
+        attitudes it turns to them; loop: it begins again at the last point, which is where it stands now."""
+        self._universe.set_path(self._id, times, positions, attitudes, loop)
+
     def kill(self):
         """Kills the worker process that simulates it; the run goes on to the same bits."""
         self._universe.kill([self._id])
@@ -247,6 +254,7 @@ class Universe:
 
     def __init__(self, name):
         self._u = _native.call('ob_universe_attach', name.encode())
+        self._last = {} # results of states, for their memory
         self._detach = weakref.finalize(self, _native.library().ob_universe_detach, self._u)
 
     def _info(self):
@@ -277,6 +285,12 @@ class Universe:
         """Number of objects."""
         return _native.library().ob_universe_get_states(self._u, ctypes.byref(_native.StateArrays()), 0)
 
+    def _column(self, name, shape, dtype):
+        """Memory for a result: that of the last one if nobody has it any more, as the system takes longest to give new pages."""
+        if name not in self._last or self._last[name].shape != shape or sys.getrefcount(self._last[name]) > 2:
+            self._last[name] = numpy.empty(shape, dtype)
+        return self._last[name]
+
     def states(self, *which):
         """Arrays by name, of one instant while the universe stands: id, generation, position, attitude, velocity,
         angular_velocity; all unless some are named."""
@@ -284,7 +298,7 @@ class Universe:
                    'velocity': (float, (3,)), 'angular_velocity': (float, (3,))}
         n = self._info().objects
         while True:
-            arrays = {name: numpy.empty((n, *columns[name][1]), columns[name][0]) for name in which or columns}
+            arrays = {name: self._column(name, (n, *columns[name][1]), columns[name][0]) for name in which or columns}
             pointers = _native.StateArrays(**{name: a.ctypes.data for name, a in arrays.items()})
             found = _native.library().ob_universe_get_states(self._u, ctypes.byref(pointers), n)
             if found <= n:
@@ -358,7 +372,8 @@ class Universe:
         raise Error('this universe is read only: obsim.run starts one that can be changed')
 
     step = reset = set_states = set_forces = set_colours = kick = send = remove = create = snapshot = restore = _refuse
-    save = picture = watch_contacts = contact_events = set_torques = set_frictions = set_surface_velocities = set_motors = push = drag = release = kill = _refuse
+    save = picture = watch_contacts = contact_events = set_torques = set_frictions = set_surface_velocities = set_motors = set_path = _refuse
+    push = drag = release = kill = _refuse
 
 
 class Run(Universe):
@@ -555,6 +570,13 @@ class Run(Universe):
         numbers = [[j._number] for j in joints]
         self._change('ob_controller_set_motors', [j._passport().object[0] for j in joints], (numbers, 1),
                      (numpy.reshape(target, (-1, 1)), 1))
+
+    def set_path(self, id_, times, positions, attitudes=None, loop=False):
+        """Path of a kinematic object from now on: Object.follow has the arguments."""
+        points = numpy.zeros(len(times), POINT)
+        points['time'], points['position'] = times, positions
+        points['attitude'] = (1, 0, 0, 0) if attitudes is None else attitudes
+        self._call('ob_controller_set_path', id_, points.ctypes.data, len(points), attitudes is not None, loop)
 
     def kill(self, ids):
         """Kills the worker processes that simulate these objects."""

@@ -118,6 +118,7 @@ _functions = {
     'ob_controller_set_motors': (ctypes.c_bool, _change),
     'ob_controller_unjoin': (ctypes.c_bool, _change),
     'ob_controller_set_surface_velocities': (ctypes.c_bool, _change),
+    'ob_controller_set_path': (ctypes.c_bool, [_pointer, _u32, _pointer, _size, ctypes.c_bool, ctypes.c_bool, _pointer]),
     'ob_controller_reset': (ctypes.c_bool, [_pointer, ctypes.POINTER(_u64), _pointer, _size, _pointer]),
     'ob_controller_save': (ctypes.c_bool, [_pointer, ctypes.c_char_p, _pointer]),
     'ob_controller_subscribe_contacts': (ctypes.c_bool, [_pointer, ctypes.c_bool, _pointer]),

@@ -29,6 +29,8 @@ typedef enum saved_area {
 	AREA_SCRIPT_TEXTS,
 	AREA_HULLS, // without the scene's
 	AREA_PULLS,
+	AREA_PATHS, // of requests
+	AREA_PATH_POINTS,
 	AREA_JOINTS,
 	AREAS
 } saved_area;
@@ -74,6 +76,8 @@ static const ob_checkpoint_rule rules[AREAS] = {
 	[AREA_SCRIPT_TEXTS] = { "scripts", 1, 0, SCRIPTS_MAX },
 	[AREA_HULLS] = { "hulls", sizeof(ob_hull_corners), 0, OB_SCENE_HULLS_MAX },
 	[AREA_PULLS] = { "pulls", sizeof(ob_pull), 0, OB_PULLS_MAX },
+	[AREA_PATHS] = { "paths", sizeof(ob_given_path), 0, OB_GIVEN_PATHS_MAX },
+	[AREA_PATH_POINTS] = { "points of paths", sizeof(ob_path_point), 0, OB_GIVEN_POINTS_MAX },
 	[AREA_JOINTS] = { "joints", sizeof(ob_saved_joint), 0, JOINTS_MAX },
 };
 
@@ -95,6 +99,8 @@ static void bind(ob_saved_run *r, const ob_checkpoint_file *f)
 	u->script_text = f->area[AREA_SCRIPT_TEXTS].at;
 	r->host.population.hull = f->area[AREA_HULLS].at;
 	r->host.population.pull = f->area[AREA_PULLS].at;
+	r->host.population.path = f->area[AREA_PATHS].at;
+	r->host.population.point = f->area[AREA_PATH_POINTS].at;
 	u->joint = f->area[AREA_JOINTS].at;
 }
 
@@ -155,6 +161,8 @@ bool ob_saved_run_make(ob_saved_run *r, ob_checkpoint_file *f, ob_host *h, const
 				  [AREA_SCRIPT_TEXTS] = u->script_bytes,
 				  [AREA_HULLS] = r->host.population.hulls,
 				  [AREA_PULLS] = r->host.population.pulls,
+				  [AREA_PATHS] = r->host.population.paths,
+				  [AREA_PATH_POINTS] = r->host.population.points,
 				  [AREA_JOINTS] = u->joints };
 	for (int i = 0; i < AREAS; i++)
 		if (count[i] > rules[i].most)
@@ -239,6 +247,8 @@ static bool open_universe(ob_saved_run *r, const ob_checkpoint_file *f, const ch
 	r->host.population.count = (uint32_t)f->area[AREA_SLOTS].count;
 	r->host.population.hulls = (uint32_t)f->area[AREA_HULLS].count;
 	r->host.population.pulls = (uint32_t)f->area[AREA_PULLS].count;
+	r->host.population.paths = (uint32_t)f->area[AREA_PATHS].count;
+	r->host.population.points = (uint32_t)f->area[AREA_PATH_POINTS].count;
 	u->joints = (uint32_t)f->area[AREA_JOINTS].count;
 	memcpy(&r->host.counters, f->area[AREA_COUNTERS].at, sizeof r->host.counters);
 	return ob_saved_universe_check(u, &why) || ob_fail(e, "%s: this checkpoint is damaged: %s", name, why.text);

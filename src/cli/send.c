@@ -216,6 +216,41 @@ static bool friction(sending *s, ob_error *e)
 	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
 }
 
+// Reads a point of a path from one word: "T X Y Z", or "T X Y Z QW QX QY QZ", as the first one has it.
+static bool read_point(const char *word, ob_request_path *path, ob_error *e)
+{
+	enum { PLACED = 4, TURNED = 8 };
+	double x[TURNED] = { [PLACED] = 1 };
+	int n = 0;
+	const char *at = word;
+	for (char *end; n < TURNED; n++, at = end) {
+		x[n] = strtod(at, &end);
+		if (end == at)
+			break;
+	}
+	const bool turns = n == TURNED;
+	if (at[strspn(at, " ")] || (n != PLACED && !turns) || (path->points > 0 && turns != path->turns))
+		return ob_fail(e,
+			       "path: expected points as '1.5 0 0 2' or, each of them, '1.5 0 0 2 1 0 0 0', got \"%s\"",
+			       word);
+	if (path->points == OB_REQUEST_POINTS)
+		return ob_fail(e, "path: expected at most %d points", OB_REQUEST_POINTS);
+	path->turns = turns;
+	path->point[path->points++] = (ob_path_point){ x[0], ob_v3(x[1], x[2], x[3]), { x[4], x[5], x[6], x[7] } };
+	return true;
+}
+
+static bool path(sending *s, ob_error *e)
+{
+	s->request.kind = OB_REQUEST_PATH;
+	for (int i = 1; s->word[i]; i++) {
+		s->request.path.loop = !s->word[i + 1] && strcmp(s->word[i], "loop") == 0;
+		if (!s->request.path.loop && !read_point(s->word[i], &s->request.path, e))
+			return false;
+	}
+	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+}
+
 static bool release(sending *s, ob_error *e)
 {
 	return send_object(s, OB_REQUEST_RELEASE, e);
@@ -273,6 +308,7 @@ static const struct verb {
 	{ "release", "release OBJECT", 1, 0, release },
 	{ "place", "place OBJECT X Y Z", 4, 0, place },
 	{ "velocity", "velocity OBJECT X Y Z", 4, 0, velocity },
+	{ "path", "path OBJECT 'T X Y Z [QW QX QY QZ]' ... [loop]", 2, INT_MAX - 2, path },
 	{ "friction", "friction OBJECT NUMBER", 2, 0, friction },
 	{ "motor", "motor JOINT TARGET", 2, 0, motor },
 	{ "unjoin", "unjoin JOINT", 1, 0, unjoin },

@@ -250,6 +250,21 @@ bool ob_controller_message(ob_controller *c, uint32_t id, const char *const *wor
 	return add_words(p, words, n, "message", e) && call(c, e);
 }
 
+bool ob_controller_set_path(ob_controller *c, uint32_t id, const ob_path_point *point, size_t n, bool turns, bool loop,
+			    ob_error *e)
+{
+	const ob_change to = { .id = id, .value = { turns, loop } };
+	ob_control_packet *p = command(c, OB_CONTROL_PATH);
+	if (n > OB_CONTROL_POINTS)
+		return ob_fail(e, "path: expected at most %d points, got %zu", OB_CONTROL_POINTS, n);
+	p->count = (uint32_t)n;
+	p->bytes = (uint32_t)(sizeof to + n * sizeof *point);
+	memcpy(p->payload, &to, sizeof to);
+	if (n)
+		memcpy(p->payload + sizeof to, point, n * sizeof *point);
+	return call(c, e);
+}
+
 bool ob_controller_reset(ob_controller *c, const uint64_t *seed, const char *const *parameters, size_t n, ob_error *e)
 {
 	ob_control_packet *p = command(c, OB_CONTROL_RESET);

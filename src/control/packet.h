@@ -45,6 +45,7 @@ typedef enum ob_control_command {
 	OB_CONTROL_EVENTS, // the answer has some of them, oldest first, and in number how many were lost
 	OB_CONTROL_MOTOR, // payload: count changes; likewise the next
 	OB_CONTROL_UNJOIN,
+	OB_CONTROL_PATH, // payload: a change (value: turns, loop), then count ob_path_point
 	OB_CONTROL_COMMANDS
 } ob_control_command;
 

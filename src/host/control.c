@@ -19,16 +19,14 @@
 #include "host/pace.h"
 #include "shape/shape.h"
 
-enum { IDLE_MS = 50, BATCH_MOST = 1 << 20 };
+enum { IDLE_MS = 50 };
 static const uint32_t pulling = 1u << 31; // origin of the program's pulls; viewers count from 1
-static const double go_time = .02; // s that the universe runs between checks whether the program has left
 
 struct ob_control {
 	int taken[2]; // pipe: sockets of programs, from the supervisor
 	atomic_bool busy; // a program controls the run
 	int fd; // its socket; -1: none
-	uint64_t first, target, batch; // step that the current command began at and waits for; steps a go
-	double went; // s, wall, of the last go
+	uint64_t target; // step that the current command waits for
 	bool stepping, running; // a command waits for steps; the run goes on by itself
 	ob_control_turn turn; // by the caller, in the current command
 	ob_contact_events *events; // NULL: the program has not subscribed
@@ -48,7 +46,6 @@ ob_control *ob_control_create(ob_error *e)
 		return NULL;
 	}
 	c->fd = -1;
-	c->batch = 1;
 	c->origin = pulling;
 	ob_pace_begin(&c->pace, 1, false);
 	return c;
@@ -229,6 +226,23 @@ static bool send_message(ob_control *c, ob_host *h, ob_error *e)
 	return fine;
 }
 
+static bool give_path(const ob_control *c, ob_host *h, ob_error *e)
+{
+	const ob_control_packet *p = &c->packet;
+	ob_change to;
+	ob_request r = { .kind = OB_REQUEST_PATH };
+	if (p->count > OB_REQUEST_POINTS || p->bytes != sizeof to + p->count * sizeof *r.path.point)
+		return ob_fail(e, "the path has a wrong length");
+	memcpy(&to, p->payload, sizeof to);
+	memcpy(r.path.point, p->payload + sizeof to, p->count * sizeof *r.path.point);
+	r.path.points = p->count;
+	r.path.turns = to.value[0] != 0;
+	r.path.loop = to.value[1] != 0;
+	const bool fine = find_object(h, &to, &r, e) && ob_host_ask(h, &r, e);
+	flush(h);
+	return fine;
+}
+
 // Checks that the payload holds as many words as it says, each ended by 0.
 static bool has_words(const ob_control_packet *p, ob_error *e)
 {
@@ -296,7 +310,6 @@ static bool begin_steps(ob_control *c, const ob_host *h, uint64_t last, ob_error
 	if (c->packet.number > left)
 		return ob_fail(e, "step: expected at most %llu, as the run then ends, got %llu",
 			       (unsigned long long)left, (unsigned long long)c->packet.number);
-	c->first = now;
 	c->target = now + c->packet.number;
 	c->stepping = c->packet.number > 0;
 	return true;
@@ -337,6 +350,8 @@ static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
 		return create(c, h, e);
 	case OB_CONTROL_MESSAGE:
 		return send_message(c, h, e);
+	case OB_CONTROL_PATH:
+		return give_path(c, h, e);
 	case OB_CONTROL_RESET:
 		return hand_on(c, OB_CONTROL_RESETS, e);
 	case OB_CONTROL_SAVE:
@@ -392,18 +407,11 @@ static bool listen_for(ob_control *c, ob_host *h, uint64_t last, int patience_ms
 	return n > 0 || (!(p.revents & (POLLHUP | POLLERR)) && (n < 0 || c->stepping));
 }
 
-// The next step while a command waits for its steps: as far as some time allows, so that a program is missed soon.
-static uint64_t some_steps(ob_control *c, uint64_t now)
+bool ob_control_is_called(const ob_control *c)
 {
-	const double wall = ob_clock_wall(), took = wall - c->went;
-	c->went = wall;
-	if (now != c->first && took < .5 * go_time && c->batch < BATCH_MOST)
-		c->batch *= 2;
-	else if (now != c->first && took > 2 * go_time && c->batch > 1)
-		c->batch /= 2;
-	if (c->events)
-		return now + 1;
-	return c->target - now < c->batch ? c->target : now + c->batch;
+	struct pollfd p = { .fd = c->fd,
+			    .events = c->stepping ? 0 : POLLIN }; // and always whether the program has left
+	return c->fd >= 0 && poll(&p, 1, 0) == 1;
 }
 
 const char *ob_control_words(const ob_control *c, uint32_t *count, const uint64_t **seed)
@@ -426,7 +434,6 @@ static void begin_anew(ob_control *c, ob_host *h)
 {
 	ob_contact_events *old = c->events;
 	c->stepping = c->running = false;
-	c->batch = 1;
 	c->events = old ? ob_contact_events_create(h->u) : NULL;
 	c->looked = ob_step_count(h->u);
 	ob_contact_events_destroy(old);
@@ -454,11 +461,12 @@ ob_control_turn ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64
 	if (c->turn != OB_CONTROL_GOES_ON)
 		return c->turn;
 	if (c->stepping) {
-		*step = some_steps(c, now);
+		*step = c->target;
 	} else if (c->running && now < last) {
 		const uint64_t due = ob_pace_wait(&c->pace, now, length, UINT64_MAX, .001);
-		c->target = due < last ? due : last; // without a limit, too, some steps a go
-		*step = due > now ? some_steps(c, now) : now;
+		*step = due < last ? due : last;
 	}
+	if (c->events && *step > now)
+		*step = now + 1;
 	return OB_CONTROL_GOES_ON;
 }

@@ -4,14 +4,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <urcu/wfcqueue.h>
 
 #include "base/log.h"
 #include "exchange/results.h"
 #include "free/free.h"
 #include "host/journal.h"
 #include "host/joining.h"
-#include "host/rcu_tsan.h"
 #include "scene/object_limits.h"
 #include "scene/random.h"
 #include "shape/shape.h"
@@ -54,6 +52,7 @@ struct ob_population {
 	uint32_t created; // existing objects that scripts have created
 	ob_hulls hulls;
 	ob_pulls pulls;
+	ob_given_paths paths;
 	uint64_t pulled; // step at whose beginning they have acted, and at whose end they will; 0: none
 	ob_journal journal; // requests since the population was kept
 	uint64_t reached; // steps that were complete before a restart
@@ -66,69 +65,9 @@ struct ob_kept_population {
 	size_t next;
 	uint32_t first_free, created, kinematic, pushed, hulls;
 	ob_pulls pulls;
+	ob_given_paths paths;
 	uint64_t pulled;
 };
-
-// ---- requests
-
-typedef struct queued_request {
-	struct cds_wfcq_node node;
-	ob_request request;
-} queued_request;
-
-struct ob_requests {
-	struct cds_wfcq_head head;
-	struct cds_wfcq_tail tail;
-};
-
-ob_requests *ob_requests_create(void)
-{
-	ob_requests *q = calloc(1, sizeof *q);
-	if (q)
-		cds_wfcq_init(&q->head, &q->tail);
-	return q;
-}
-
-void ob_requests_destroy(ob_requests *q)
-{
-	ob_request dropped;
-	if (!q)
-		return;
-	while (ob_requests_take(q, &dropped))
-		;
-	cds_wfcq_destroy(&q->head, &q->tail);
-	free(q);
-}
-
-bool ob_requests_push(ob_requests *q, const ob_request *r)
-{
-	queued_request *e = malloc(sizeof *e);
-	if (!e)
-		return false;
-	e->request = *r;
-	cds_wfcq_node_init(&e->node);
-	OB_ORDER_BEFORE(e);
-	cds_wfcq_enqueue(&q->head, &q->tail, &e->node);
-	return true;
-}
-
-bool ob_requests_take(ob_requests *q, ob_request *out)
-{
-	// there is one consumer only, so the queue's lock is not needed
-	struct cds_wfcq_node *node = __cds_wfcq_dequeue_blocking(&q->head, &q->tail);
-	if (!node)
-		return false;
-	queued_request *e = caa_container_of(node, queued_request, node);
-	OB_ORDER_AFTER(e);
-	*out = e->request;
-	free(e);
-	return true;
-}
-
-bool ob_requests_waiting(ob_requests *q)
-{
-	return !cds_wfcq_empty(&q->head, &q->tail);
-}
 
 // ---- checks
 
@@ -216,10 +155,16 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	give_script(p, id, def, state);
 }
 
-// NULL: none
-static const ob_path *path_of(const ob_population *p, uint32_t id)
+// The path that the object follows, and the step at which it begins: one that a request has given, or the scene's.
+static bool find_path(const ob_population *p, uint32_t id, ob_path *path, uint32_t *born)
 {
-	return p->slots[id].driven ? p->scene->object[id].path : NULL;
+	if (ob_given_paths_find(&p->paths, id, path, born))
+		return true;
+	*born = p->slots[id].born;
+	if (!p->slots[id].driven || !p->scene->object[id].path)
+		return false;
+	*path = *p->scene->object[id].path;
+	return true;
 }
 
 static const ob_force *force_of(const ob_population *p, uint32_t id)
@@ -227,9 +172,10 @@ static const ob_force *force_of(const ob_population *p, uint32_t id)
 	return p->slots[id].driven ? p->scene->object[id].force : NULL;
 }
 
-// Ends what the scene has planned for the object's motion.
+// Ends what the scene or a request has planned for the object's motion.
 static void end_plan(ob_population *p, uint32_t id)
 {
+	ob_given_paths_drop(&p->paths, id);
 	p->pushed -= force_of(p, id) != NULL;
 	p->slots[id].driven = false;
 }
@@ -422,6 +368,17 @@ static ob_state complete_state(const ob_state *now, const ob_state *asked)
 	return s;
 }
 
+// Any thread: the motion is copied as readers do.
+static bool check_new_path(const ob_population *p, const ob_request *r, ob_error *e)
+{
+	const double h = ob_universe_settings(p->u)->step_length;
+	ob_motion m;
+	if (!ob_universe_get_motion(p->u, r->id, &m))
+		return ob_fail(e, "the object has gone");
+	const ob_state now = ob_state_now(p->u, r->id, &m, ob_step_count(p->u));
+	return ob_given_path_check(&r->path, ob_passport_of(p->u, r->id), &now, h, e);
+}
+
 bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_error *e)
 {
 	static const ob_state legal = { .pose.q.w = 1 };
@@ -430,7 +387,7 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 	const ob_state state = complete_state(&legal, &r->state);
 	const bool pushes = r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_KICK;
 	if (!pushes && !is_pull(r) && r->kind != OB_REQUEST_STATE && r->kind != OB_REQUEST_FRICTION &&
-	    r->kind != OB_REQUEST_SURFACE && !ob_is_joint_request(r))
+	    r->kind != OB_REQUEST_SURFACE && r->kind != OB_REQUEST_PATH && !ob_is_joint_request(r))
 		return true;
 	if (r->kind != OB_REQUEST_FORCE && ob_universe_settings(p->u)->monolith)
 		return ob_fail(e, "the one ODE world keeps its bodies to itself: take object simulators");
@@ -440,6 +397,8 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 			       : ob_pull_check(&pull, pass, e);
 	if (ob_is_joint_request(r))
 		return ob_joint_request_check(p->u, r, e);
+	if (r->kind == OB_REQUEST_PATH)
+		return check_new_path(p, r, e);
 	if (r->kind == OB_REQUEST_SURFACE)
 		return ob_surface_velocity_check(pass, r->surface_velocity, e);
 	if (r->kind == OB_REQUEST_FRICTION)
@@ -478,8 +437,13 @@ static void set_motion(ob_population *p, const ob_request *r)
 			ob_log_warn("object %u is not pulled: too many pulls act, or there is no memory", r->id);
 		return;
 	}
-	if (r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_STATE)
+	if (r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_STATE || r->kind == OB_REQUEST_PATH)
 		end_plan(p, r->id);
+	if (r->kind == OB_REQUEST_PATH) {
+		if (!ob_given_paths_ask(&p->paths, r->id, (uint32_t)ob_step_count(p->u), &r->path, &now))
+			ob_log_warn("object %u goes on as it was: too many paths, or there is no memory", r->id);
+		return;
+	}
 	if (r->kind == OB_REQUEST_FORCE)
 		ob_sim_push(p->u, r->id, r->force, true);
 	else if (r->kind == OB_REQUEST_KICK)
@@ -599,7 +563,10 @@ static void prescribe_all(ob_population *p)
 	for (uint32_t id = 0; left > 0; id++) {
 		if (!p->slots[id].kinematic)
 			continue;
-		const uint64_t next = ob_sim_prescribe(p->u, id, path_of(p, id), p->slots[id].born);
+		ob_path path;
+		uint32_t born;
+		const bool follows = find_path(p, id, &path, &born);
+		const uint64_t next = ob_sim_prescribe(p->u, id, follows ? &path : NULL, born);
 		p->next_prescribed = next < p->next_prescribed ? next : p->next_prescribed;
 		left--;
 	}
@@ -698,6 +665,7 @@ void ob_kept_population_free(ob_kept_population *k)
 	if (k) {
 		free(k->slots);
 		ob_pulls_finish(&k->pulls);
+		ob_given_paths_finish(&k->paths);
 	}
 	free(k);
 }
@@ -709,7 +677,7 @@ ob_kept_population *ob_population_copy(const ob_population *p, ob_kept_populatio
 		k = calloc(1, sizeof *k);
 	if (k && !k->slots)
 		k->slots = malloc(bytes);
-	if (!k || !k->slots || !ob_pulls_copy(&k->pulls, &p->pulls)) {
+	if (!k || !k->slots || !ob_pulls_copy(&k->pulls, &p->pulls) || !ob_given_paths_copy(&k->paths, &p->paths)) {
 		ob_kept_population_free(k);
 		return NULL;
 	}
@@ -745,6 +713,8 @@ static void put_back(ob_population *p, const ob_kept_population *k)
 	p->pulled = k->pulled;
 	if (!ob_pulls_copy(&p->pulls, &k->pulls))
 		ob_log_warn("out of memory: objects are no longer pulled as they were");
+	if (!ob_given_paths_copy(&p->paths, &k->paths))
+		ob_log_warn("out of memory: objects no longer follow the paths that they were given");
 	publish_roster(p);
 }
 
@@ -794,7 +764,12 @@ void ob_population_count_saved(const ob_population *p, ob_saved_population *out)
 	while (count > ids && count > p->scene->objects && !p->slots[count - 1].generation)
 		count--;
 	*out = (ob_saved_population){
-		.events = p->next, .count = count, .hulls = p->hulls.count - p->hulls.of_scene, .pulls = p->pulls.count
+		.events = p->next,
+		.count = count,
+		.hulls = p->hulls.count - p->hulls.of_scene,
+		.pulls = p->pulls.count,
+		.paths = p->paths.count,
+		.points = p->paths.points,
 	};
 }
 
@@ -812,6 +787,10 @@ void ob_population_save(const ob_population *p, ob_saved_population *out)
 		memcpy(out->hull, p->hulls.corners, out->hulls * sizeof *out->hull);
 	if (out->pulls)
 		memcpy(out->pull, p->pulls.at, out->pulls * sizeof *out->pull);
+	if (out->paths)
+		memcpy(out->path, p->paths.at, out->paths * sizeof *out->path);
+	if (out->points)
+		memcpy(out->point, p->paths.point, out->points * sizeof *out->point);
 }
 
 // Applies the first events of the timetable to the slots, which are as planned at the start.
@@ -911,6 +890,7 @@ static bool load_pulls(ob_population *p, const ob_saved_population *s, ob_error 
 
 bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error *e)
 {
+	const double step_length = ob_universe_settings(p->u)->step_length;
 	if (s->count > ob_universe_capacity(p->u) || s->count < p->scene->objects || s->events > p->event_count)
 		return ob_fail(e, "its objects are not those of its scene");
 	if (!ob_hulls_load(&p->hulls, s->hull, s->hulls, e) || !check_objects(p, e))
@@ -932,7 +912,12 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 	}
 	p->next = s->events;
 	publish_roster(p);
-	return load_pulls(p, s, e);
+	for (uint32_t i = 0; i < s->paths; i++)
+		if (s->path[i].id >= s->count || !p->slots[s->path[i].id].kinematic)
+			return ob_fail(e, "path %u makes no sense", i);
+	const ob_given_paths paths = { .at = s->path, .count = s->paths, .point = s->point, .points = s->points };
+	return load_pulls(p, s, e) && ob_given_paths_check(&paths, ob_step_count(p->u), step_length, e) &&
+	       (ob_given_paths_copy(&p->paths, &paths) || ob_fail(e, "out of memory"));
 }
 
 // ---- the scene's timetable
@@ -992,6 +977,7 @@ void ob_population_destroy(ob_population *p)
 	free(p->slots);
 	ob_hulls_finish(&p->hulls);
 	ob_pulls_finish(&p->pulls);
+	ob_given_paths_finish(&p->paths);
 	ob_kept_population_free(p->kept);
 	ob_journal_finish(&p->journal);
 	free(p);

@@ -6,23 +6,15 @@
 #ifndef OB_HOST_POPULATION_H
 #define OB_HOST_POPULATION_H
 
+#include "host/given_paths.h"
 #include "host/hulls.h"
 #include "host/pull.h"
 #include "host/request.h"
 #include "host/request_log.h"
+#include "host/request_queue.h"
 #include "host/roster.h"
 #include "scene/scene.h"
 #include "table/table.h"
-
-// Requests to add, remove or colour objects, or to send them a message, kept until the next step boundary: a wait-free
-// queue of liburcu. Any number of threads push, one takes.
-typedef struct ob_requests ob_requests;
-
-ob_requests *ob_requests_create(void); // NULL: out of memory
-void ob_requests_destroy(ob_requests *q);
-bool ob_requests_push(ob_requests *q, const ob_request *r); // false: out of memory
-bool ob_requests_take(ob_requests *q, ob_request *out); // oldest first; false: none
-bool ob_requests_waiting(ob_requests *q);
 
 typedef struct ob_population ob_population;
 
@@ -84,9 +76,12 @@ typedef struct ob_saved_population {
 	ob_hull_corners *hull; // [hulls]
 	uint32_t pulls;
 	ob_pull *pull; // [pulls]
+	uint32_t paths, points; // paths that requests have given; points of all
+	ob_given_path *path; // [paths]
+	ob_path_point *point; // [points]
 } ob_saved_population;
 
-// Fills in events, count, hulls and pulls, so that the caller can make the arrays; then fills the arrays.
+// Fills in events and numbers of elements, so that the caller can make the arrays; then fills the arrays.
 void ob_population_count_saved(const ob_population *p, ob_saved_population *out);
 void ob_population_save(const ob_population *p, ob_saved_population *out);
 // Replaces the first update, after ob_universe_load. false and e: the data does not fit this scene and universe.

@@ -2,6 +2,8 @@
 #ifndef OB_HOST_REQUEST_H
 #define OB_HOST_REQUEST_H
 
+#include <ob/control.h>
+
 #include "scene/scene.h"
 
 typedef enum ob_request_kind {
@@ -14,6 +16,7 @@ typedef enum ob_request_kind {
 	OB_REQUEST_STATE, // the object goes on from another place, with other velocities
 	OB_REQUEST_FRICTION, // its coefficient; its contacts begin anew
 	OB_REQUEST_SURFACE, // velocity of the surface of a static or kinematic object; likewise
+	OB_REQUEST_PATH, // a kinematic object follows points from now on
 	OB_REQUEST_MOTOR, // target of the motor of a joint whose first object it is
 	OB_REQUEST_TORQUE, // from now on, until another is set by the same origin; likewise below (pull.h)
 	OB_REQUEST_PUSH, // a force at a point of its body
@@ -31,12 +34,25 @@ typedef enum ob_request_kind {
 	OB_REQUEST_KINDS
 } ob_request_kind;
 
+enum { OB_REQUEST_POINTS = OB_CONTROL_POINTS };
+
+// Path from where the object then stands, which is its first point, through others.
+typedef struct ob_request_path {
+	uint32_t points; // beside the first
+	uint32_t loop, turns; // 0 or 1, as in ob_path
+	uint32_t zero;
+	ob_path_point point[OB_REQUEST_POINTS]; // times: s after the first
+} ob_request_path;
+
 typedef struct ob_request {
 	uint32_t kind; // ob_request_kind
 	uint32_t id, generation; // of the object; unused for an object to add
 	uint32_t origin; // of an object to add, or a pull: number of the viewer's connection; 0: none
 	ob_object_def def; // to add
-	ob_hull_corners corners; // of a hull
+	union {
+		ob_hull_corners corners; // of a hull to add
+		ob_request_path path;
+	};
 	float colour[4]; // linear
 	uint32_t worker; // target of the move
 	ob_state state; // to go on from; a part whose first number is NaN stays as it is

@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "base/cpu.h"
 #include "base/log.h"
 #include "base/utf8.h"
 #include "free/free.h"
@@ -15,6 +16,7 @@
 
 static const double poll_interval = .05; // s, between checks of a run that does not pause
 enum { LOOKS_PER_POLL = 5 }; // checks for Ctrl-C in each of these intervals
+static const double spin_time = 5e-5; // s
 static const double interrupt_grace = .03; // s that a step may still take after Ctrl-C, unless the run is to be saved
 
 // Paused: adds and removes objects, then opens the gate for the next interval, if the target is still ahead.
@@ -98,6 +100,11 @@ static void report_stall(ob_host *h, uint64_t step)
 	ob_restart_request(h, &d);
 }
 
+static bool is_called(const ob_host *h)
+{
+	return h->control && ob_control_is_called(h->control);
+}
+
 // Between pauses: detects a stall, and ends the interval early if a thread waits for a pause. false: interrupted, and
 // the step does not end.
 static bool check_progress(ob_host *h, ob_stall_watch *stall, double *interrupted_at)
@@ -109,7 +116,10 @@ static bool check_progress(ob_host *h, ob_stall_watch *stall, double *interrupte
 		report_stall(h, stall->step);
 	if (h->interrupted && *interrupted_at == 0)
 		*interrupted_at = now;
-	if (h->interrupted || ob_requests_waiting(h->requests) || ob_restart_checkpoint_due(h))
+	const bool called = is_called(h);
+	if (called)
+		h->target = ob_step_count(h->u);
+	if (h->interrupted || called || ob_requests_waiting(h->requests) || ob_restart_checkpoint_due(h))
 		ob_host_pause_early(h);
 	return h->saved || !(h->interrupted && now - *interrupted_at > interrupt_grace);
 }
@@ -238,14 +248,26 @@ static bool result_of_run(ob_host *h, ob_error *e)
 	return false;
 }
 
+// Waits a little without sleeping, if there is a core for it: a program that leads the run waits for a step, and to wake a
+// core takes longer than a short step. Returns true if the host has its turn.
+static bool spin_for_turn(ob_host *h)
+{
+	const bool has_core = h->control && h->workers < (uint32_t)ob_cpu_count();
+	const double end = ob_clock_wall() + spin_time;
+	bool turn = false;
+	while (has_core && !turn && ob_clock_wall() < end)
+		turn = ob_gate_host_wait(h->u, 0);
+	return turn;
+}
+
 // True if the host gets its turn within one poll interval.
 static bool wait_for_turn(ob_host *h)
 {
-	bool turn = false;
+	bool turn = spin_for_turn(h);
 	for (int i = 0; i < LOOKS_PER_POLL && !turn; i++) {
 		turn = ob_free_settings_of(h->u) ? ob_host_free_wait(h, poll_interval / LOOKS_PER_POLL)
 						 : ob_gate_host_wait(h->u, poll_interval / LOOKS_PER_POLL);
-		if (h->interrupted)
+		if (h->interrupted || is_called(h))
 			break;
 	}
 	return turn;

@@ -13,12 +13,6 @@
 
 enum { OB_PATH_POINTS_MAX = 1024 };
 
-typedef struct ob_path_point {
-	double t; // s, after the object's first instant
-	ob_vec3 p; // m
-	ob_quat q; // body to world, if the path turns
-} ob_path_point;
-
 typedef struct ob_path {
 	double frequency; // rad/s; 0: it does not swing
 	ob_vec3 a; // m/s^2, if it swings: at the first instant

@@ -121,7 +121,21 @@ bool ob_state_check(const ob_passport *p, const ob_state *s, ob_error *e)
 	return within("spin", " m/s at its surface", 0, OB_SPEED_MOST, ob_norm(s->w) * radius, e);
 }
 
-static bool check_path(const ob_path *path, const ob_state *start, ob_error *e)
+bool ob_path_check_turns(const ob_path *path, ob_error *e)
+{
+	const ob_path_point *first = path->point, *last = first + path->points - 1;
+	ob_vec3 turn;
+	if (path->loop && (first->p.x != last->p.x || first->p.y != last->p.y || first->p.z != last->p.z))
+		return ob_fail(e, "loop: expected the last point where the first one is");
+	for (uint32_t i = 1; path->turns && i < path->points; i++)
+		if (!ob_path_turn(path->point[i - 1].q, path->point[i].q, &turn))
+			return ob_fail(e, "points: expected less than half a turn from point %u to point %u", i, i + 1);
+	if (path->turns && path->loop && (!ob_path_turn(last->q, first->q, &turn) || ob_norm(turn) > 1e-9))
+		return ob_fail(e, "loop: expected the last point with the attitude of the first one");
+	return true;
+}
+
+static bool check_speed(const ob_path *path, const ob_state *start, ob_error *e)
 {
 	const double swing = path->frequency > 0 ? ob_norm(path->a) / path->frequency : 0;
 	ob_vec3 turn;
@@ -136,6 +150,33 @@ static bool check_path(const ob_path *path, const ob_state *start, ob_error *e)
 	}
 	return path->points > 0 ||
 	       within("path", " m/s", 0, OB_SPEED_MOST, ob_norm(ob_v3(ob_norm(start->v), swing, 0)), e);
+}
+
+static bool check_point(const ob_path *path, uint32_t i, ob_error *e)
+{
+	const ob_path_point *at = &path->point[i];
+	const ob_quat q = at->q;
+	const double before = i ? at[-1].t : 0, norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+	if (!(i ? at->t > before && at->t <= OB_TIME_MOST : at->t == 0))
+		return ob_fail(e, "points: expected times that grow from 0 and end before %g s, got %.10g at point %u",
+			       OB_TIME_MOST, at->t, i + 1);
+	if (path->turns && !(fabs(norm - 1) < 1e-6))
+		return ob_fail(e, "points: expected a unit quaternion at point %u", i + 1);
+	return within3("points", " m", OB_PLACE_MOST, at->p, e);
+}
+
+bool ob_path_check(const ob_path *path, double step_length, ob_error *e)
+{
+	uint32_t which;
+	if (path->points < 2 || path->points > OB_PATH_POINTS_MAX)
+		return ob_fail(e, "points: expected 2 to %d, got %u", OB_PATH_POINTS_MAX, path->points);
+	for (uint32_t i = 0; i < path->points; i++)
+		if (!check_point(path, i, e))
+			return false;
+	if (!ob_path_fits(path, step_length, &which))
+		return ob_fail(e, "points: expected at least two steps of %g s from point %u to point %u", step_length,
+			       which, which + 1);
+	return ob_path_check_turns(path, e) && check_speed(path, NULL, e);
 }
 
 // The largest force in its course, beside the constant one.
@@ -156,7 +197,7 @@ bool ob_object_def_check(const ob_object_def *def, ob_error *e)
 {
 	const ob_passport *p = &def->passport;
 	return ob_passport_check(p, e) && check_inertia(p, e) &&
-	       (!def->path || check_path(def->path, &def->state, e)) && ob_state_check(p, &def->state, e) &&
+	       (!def->path || check_speed(def->path, &def->state, e)) && ob_state_check(p, &def->state, e) &&
 	       (!def->force || check_varying_force(def->force, p, e));
 }
 

@@ -15,6 +15,7 @@
 #define OB_MASS_LEAST 1e-12 // kg
 #define OB_MASS_MOST 1e12 // kg: 1 km of water
 #define OB_PLACE_MOST 1e7 // m from the origin along each axis: a double has steps of 2e-9 m there
+#define OB_TIME_MOST 1e9 // s: of points of a path or a force
 #define OB_JOINT_MOST 1e15 // along the axis of a joint: forces, stiffness, damping, targets
 #define OB_SPEED_MOST 1e5 // m/s along each axis, and of the surface by spin
 #define OB_SPIN_MOST 1e4 // rad/s
@@ -29,6 +30,11 @@ bool ob_object_def_check(const ob_object_def *def, ob_error *e);
 // Likewise of a state to go on from, and of a force (N) or an impulse (N s) with an angular impulse (N m s), world frame.
 bool ob_state_check(const ob_passport *p, const ob_state *s, ob_error *e);
 bool ob_push_check(const ob_passport *p, ob_vec3 force, ob_vec3 twist, ob_error *e);
+// Likewise of a spline: its points are in bounds and their times grow from 0, a loop is closed, neighbours are less than half a
+// turn and at least two steps of step_length (s) apart, speeds are in bounds.
+bool ob_path_check(const ob_path *path, double step_length, ob_error *e);
+// The part of it about ends and turns: e begins with the field of a scene's path that is wrong, as "loop: expected ..".
+bool ob_path_check_turns(const ob_path *path, ob_error *e);
 bool ob_friction_check(double friction, ob_error *e);
 bool ob_surface_velocity_check(const ob_passport *p, ob_vec3 v, ob_error *e); // and the object is static or kinematic
 // The same, and its name ends; e names the object, too.

@@ -100,7 +100,7 @@ static bool read_point(lua_State *L, double most, int numbers, ob_path_point *ou
 	for (int i = 0; i < numbers && good; i++) {
 		good = lua_rawgeti(L, -1, i + 1) == LUA_TNUMBER;
 		x[i] = lua_tonumber(L, -1);
-		good = good && fabs(x[i]) <= (i ? most : 1e9);
+		good = good && fabs(x[i]) <= (i ? most : OB_TIME_MOST);
 		lua_pop(L, 1);
 	}
 	const ob_quat q = { x[4], x[5], x[6], x[7] };
@@ -146,37 +146,28 @@ static uint32_t read_points(lua_State *L, const char *where, double most, ob_pat
 }
 
 // Makes rotations from the object's initial attitude, at which it must be at rest.
-static void make_turns(lua_State *L, const char *where, const draft *d, ob_object_def *o, ob_path_point *point,
-		       uint32_t n)
+static void make_turns(lua_State *L, const char *where, ob_object_def *o, const ob_path *path)
 {
-	ob_vec3 turn;
 	if (ob_norm2(o->state.w) > 0)
 		ob_sandbox_fail(L, "%s.points: expected no attitudes beside a spin", where);
-	for (uint32_t i = 1; i < n; i++)
-		if (!ob_path_turn(point[i - 1].q, point[i].q, &turn))
-			ob_sandbox_fail(L, "%s.points: expected less than half a turn from point %d to point %d", where,
-					(int)i, (int)i + 1);
-	if (d->loop && (!ob_path_turn(point[n - 1].q, point[0].q, &turn) || ob_norm(turn) > 1e-9))
-		ob_sandbox_fail(L, "%s.loop: expected the last point with the attitude of the first one", where);
-	for (uint32_t i = 0; i < n; i++)
-		point[i].q = ob_quat_mul(point[i].q, o->state.pose.q);
-	o->state.pose.q = point[0].q;
+	for (uint32_t i = 0; i < path->points; i++)
+		path->point[i].q = ob_quat_mul(path->point[i].q, o->state.pose.q);
+	o->state.pose.q = path->point[0].q;
 }
 
 static void make_spline(lua_State *L, const char *where, const draft *d, ob_object_def *o)
 {
-	ob_path_point *point;
-	bool turns;
-	const uint32_t n = read_points(L, where, OB_PLACE_MOST, &point, &turns);
-	const ob_vec3 first = point[0].p, last = point[n - 1].p;
-	if (d->loop && (first.x != last.x || first.y != last.y || first.z != last.z))
-		ob_sandbox_fail(L, "%s.loop: expected the last point where the first one is", where);
-	for (uint32_t i = 0; i < n; i++)
-		point[i].p = ob_add(point[i].p, o->state.pose.p);
-	if (turns)
-		make_turns(L, where, d, o, point, n);
-	keep_path(L, where, o, &(ob_path){ .points = n, .loop = d->loop, .turns = turns, .point = point });
-	o->state.pose.p = point[0].p;
+	ob_path path = { .loop = d->loop };
+	ob_error e;
+	path.points = read_points(L, where, OB_PLACE_MOST, &path.point, &path.turns);
+	if (!ob_path_check_turns(&path, &e))
+		ob_sandbox_fail(L, "%s.%s", where, e.text);
+	for (uint32_t i = 0; i < path.points; i++)
+		path.point[i].p = ob_add(path.point[i].p, o->state.pose.p);
+	if (path.turns)
+		make_turns(L, where, o, &path);
+	keep_path(L, where, o, &path);
+	o->state.pose.p = path.point[0].p;
 	lua_pop(L, 1);
 }
 

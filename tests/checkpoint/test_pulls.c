@@ -1,5 +1,5 @@
-// Changes by requests that last are part of a checkpoint: a run that is dragged, turned and pushed, and in which a request has
-// ended a path, ends in the same bits whether it goes on by itself or from the file, in any configuration.
+// Changes by requests that last are part of a checkpoint: a run that is dragged, turned and pushed, and in which requests have
+// ended a path and given another, ends in the same bits whether it goes on by itself or from the file, in any configuration.
 #include "check.h"
 
 #include <stdlib.h>
@@ -10,9 +10,9 @@
 static const char text[] =
 	"scene { duration = 2, step = .01 }\nground {}\n"
 	"for i = 1, 5 do box { size = { .3, .2, .4 }, at = { .2 * i, .1 * (i % 2), .4 * i } } end\n"
-	"for i = 1, 2 do box { size = { 1, 1, .1 }, at = { 3, 3 * i, 1 }, kind = 'kinematic', path = { kind = 'sine', "
+	"for i = 1, 3 do box { size = { 1, 1, .1 }, at = { 3, 3 * i, 1 }, kind = 'kinematic', path = { kind = 'sine', "
 	"amplitude = { 0, 0, .2 }, frequency = 1 } } end\n";
-enum { SAVED = 60, END = 150, PATHS = 6 };
+enum { SAVED = 60, END = 150, PATHS = 6, GIVEN = 8 };
 
 static ob_host *start(const ob_scene *s, const ob_run_settings *run, ob_isolation isolation, const ob_saved_host *from)
 {
@@ -71,6 +71,12 @@ int main(void)
 	ask(h, (ob_request){ .kind = OB_REQUEST_STATE,
 			     .id = PATHS,
 			     .state = { { { 3, 0, 2 }, { .w = NAN } }, { 0 }, { .x = NAN } } });
+	ask(h, (ob_request){ .kind = OB_REQUEST_PATH,
+			     .id = GIVEN,
+			     .path = { .points = 2,
+				       .turns = 1,
+				       .point = { { .2, { 3, 9, 2 }, { 1, 0, 0, 0 } },
+						  { .9, { 3, 8, 1 }, { .8, .6, 0, 0 } } } } });
 	go(h, SAVED);
 	CHECK(ob_saved_run_make(&r, &f, h, "test", &e));
 	ob_checkpoint_seal(&f);
@@ -78,7 +84,8 @@ int main(void)
 	for (int i = 0; i < 2; i++) {
 		CHECK(ob_saved_run_parse(&opened, &copy, f.bytes, f.size, "file", &e));
 		CHECK(opened.host.population.pulls == 3 && opened.host.population.slot[PATHS].unplanned == 1 &&
-		      opened.host.population.slot[PATHS + 1].unplanned == 0);
+		      opened.host.population.slot[PATHS + 1].unplanned == 0 && opened.host.population.paths == 1 &&
+		      opened.host.population.points == 3);
 		CHECK(end_of(start(s, &opened.settings, (ob_isolation)i, &opened.host)) == hash);
 		ob_saved_run_close(&opened, &copy);
 	}

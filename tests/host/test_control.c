@@ -14,7 +14,7 @@
 #include "measure/measure.h"
 #include "workers.h"
 
-enum { BALLS = 20, STEPS = 160 };
+enum { BALLS = 20, STEPS = 160, LAST = 1 << 22 };
 
 // ---- a run that is led by a program in another thread
 
@@ -33,7 +33,7 @@ static void *lead(void *argument)
 	do {
 		ob_host_go(r->host, step);
 		r->failed = !ob_host_wait(r->host, &e);
-	} while (!r->failed && ob_control_next(r->control, r->host, 100000, &step) == OB_CONTROL_GOES_ON);
+	} while (!r->failed && ob_control_next(r->control, r->host, LAST, &step) == OB_CONTROL_GOES_ON);
 	if (r->failed)
 		ob_control_end(r->control, e.text);
 	return NULL;
@@ -66,6 +66,25 @@ static uint64_t hash_of(const ob_universe *u)
 	const uint64_t hash = ob_measure_hash(&s);
 	ob_snapshot_finish(&s);
 	return hash;
+}
+
+// A command is answered soon while the run goes on as fast as it can, also after it went on slowly for a while.
+static void hurry(void)
+{
+	enum { SLOWLY = 25, SOON = 1 << 19 }; // SOON: seconds of steps on any machine
+	ob_error e = { "" };
+	ob_scene s = little_scene(1);
+	led_run r;
+	CHECK(begin(&r, &s, OB_ISOLATION_THREAD, 1));
+	ob_controller *c = ob_controller_open(ob_host_universe(r.host), &e);
+	CHECK(c && ob_controller_run(c, 1, &e));
+	while (steps_of(r.host) < SLOWLY)
+		pause_ms(1);
+	CHECK(ob_controller_run(c, INFINITY, &e) && ob_controller_pause(c, &e));
+	CHECK(ob_controller_steps(c) < SOON);
+	ob_controller_close(c);
+	end(&r);
+	free(s.object);
 }
 
 // ---- the same life, with and without detours
@@ -383,6 +402,7 @@ int main(void)
 {
 	test_session(OB_ISOLATION_THREAD);
 	test_session(OB_ISOLATION_PROCESS);
+	hurry();
 	test_lives();
 	return check_end();
 }

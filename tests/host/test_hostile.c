@@ -102,6 +102,8 @@ static void make_request(asking *p)
 	r->state = (ob_state){ { { NAN, 0, 0 }, { NAN, 0, 0, 0 } }, { NAN, 0, 0 }, { 0, 0, 1 } };
 	r->force = r->twist = ob_v3(0, 0, 1e-4);
 	r->target = ob_v3(0, 0, 2);
+	if (r->kind == OB_REQUEST_PATH)
+		r->path = (ob_request_path){ .points = 1, .point = { { 1, { 0, 0, 2 }, { 1, 0, 0, 0 } } } };
 	if (draw(4))
 		spoil((unsigned char *)r, sizeof *r);
 	if (draw(8) == 0)
@@ -135,12 +137,14 @@ static void make_command(ob_control_packet *p, size_t *bytes)
 	p->bytes = count * (uint32_t)sizeof(ob_change);
 	p->number = draw(3);
 	p->value = 1;
-	for (uint32_t i = 0; i < count; i++) {
+	for (uint32_t i = 0; i < 6; i++) {
 		ob_change c = { .id = (uint32_t)draw(BALLS + 3) };
 		for (int k = 0; k < 13; k++)
 			c.value[k] = draw(2) ? number() : 1e-3 * (double)draw(100);
 		memcpy(p->payload + i * sizeof c, &c, sizeof c);
 	}
+	if (p->command == OB_CONTROL_PATH)
+		p->bytes = (uint32_t)(sizeof(ob_change) + count * sizeof(ob_path_point));
 	if (p->command == OB_CONTROL_CREATE)
 		p->bytes = (uint32_t)snprintf((char *)p->payload, 200, "sphere { radius = %g, at = { %d, 0, 9 } }",
 					      number(), (int)draw(99));
@@ -188,6 +192,8 @@ static void attack(ob_isolation isolation, long packets)
 	ob_scene s = little_scene(BALLS);
 	ob_host_config c = little_config(&s, isolation, 2);
 	led_run r = { .control = ob_control_create(&e) };
+	s.object[BALLS].passport.flags |= OB_OBJECT_KINEMATIC;
+	s.object[BALLS].passport.mass = 0;
 	c.control = r.control;
 	c.spare = 100;
 	r.host = ob_host_start(&s, &c, &e);

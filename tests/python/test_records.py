@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 try:
@@ -14,6 +15,7 @@ except ImportError as e:
     print(e)
     sys.exit(77)
 
+import obsim
 from obsim.records import Record
 
 SCENE = """scene { duration = .5, step = .01 }
@@ -47,6 +49,27 @@ class Records(unittest.TestCase):
             self.assertAlmostEqual(guest.time.max(), .29)
             events = r.events()
             self.assertEqual(events[events.name == 'guest'].what.tolist(), ['came', 'went'])
+
+    def test_given_path(self):
+        """A record has the motion of a path that was given during the run."""
+        scene, program, name = self.path + '.lua', os.environ['OBSIM'], f'records-{os.getpid()}'
+        with open(scene, 'w', encoding='utf-8') as f:
+            f.write('scene { step = .01 }\nbox { name = "lift", size = { 1, 1, .1 }, at = { 6, 0, 1 }, kind = "kinematic" }\n')
+        words = [program, 'run', scene, '--record', self.path, '--duration', '1e6', '--pace', 'realtime', '--name', name]
+        with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+            while name not in obsim.names():
+                time.sleep(.01)
+            subprocess.run([program, 'send', name, 'path', 'lift', '.3 6 0 2', '.6 6 1 2'], check=True)
+            u = obsim.attach(name)
+            while u.position.tolist() != [[6, 1, 2]]:
+                time.sleep(.01)
+            run.terminate()
+        with Record(self.path) as r:
+            way = r.position[:, 0]
+            self.assertEqual((way[0].tolist(), way[-1].tolist()), ([6, 0, 1], [6, 1, 2]))
+            begin = numpy.flatnonzero(way[:, 2] > 1)[0] - 1
+            numpy.testing.assert_allclose(way[begin + 15], [6, 0, 1.5], atol=1e-6)
+            numpy.testing.assert_allclose(way[begin + 45], [6, .5, 2], atol=1e-6)
 
     def test_wrong(self):
         path = self.path + '.other'

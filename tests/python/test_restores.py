@@ -36,6 +36,7 @@ for i = 1, 5 do
 	if i > 1 then ball { "bob" .. i - 1, "bob" .. i, at = { 1.8 + .4 * i, 0, 1 } } end
 end
 hinge { "bob1", at = { 2, 0, 1 }, axis = { 0, 1, 0 } }
+box { name = "paddle", size = { 2, .1, .3 }, at = { 0, -1, .2 }, kind = "kinematic" }
 """
 WAYS = ({'workers': 1}, {'workers': 2}, {'workers': 'objects'}, {'isolation': 'process', 'workers': 2},
         {'isolation': 'process', 'harden': True})
@@ -59,6 +60,8 @@ class Restores(unittest.TestCase):
     def end_of(self, options, chance=None, kills=False):
         """States at the end, by name. chance: with detours from random moments."""
         with obsim.run(self.scene, options=options) as u:
+            u.step()
+            u['paddle'].follow((.4, 1, 2.2), ((0, 0, .2), (0, 0, .6), (0, -1, .2)), ((1, 0, 0, 0), (.8, 0, 0, .6), (1, 0, 0, 0)))
             for moment in sorted(chance.sample(range(STEPS), MOMENTS)) if chance else []:
                 if moment > u.steps:
                     u.step(moment - u.steps)

@@ -11,6 +11,7 @@ ground {}
 script("it", "function on_message(from, ...) print('got', from:exists(), ...) end")
 sphere { name = "listener", radius = .3, at = { 0, 0, .3 }, script = "it" }
 box { name = "crate", size = { 1, 1, 1 }, at = { 3, 0, .5 } }
+box { name = "lift", size = { 1, 1, .1 }, at = { 6, 0, 1 }, kind = "kinematic" }
 """
 
 
@@ -82,6 +83,25 @@ class Send(program.Case):
 			self.send(*words, code=2, saying=saying)
 		self.run_.terminate()
 		self.assertIn("got false hello 3 2.5 true -1 -0.5 -x", self.run_.communicate(timeout=program.PATIENCE)[1])
+
+	def height_of_lift(self):
+		for line in program.call("top", self.name, "--once", "--interval", ".01").stdout.splitlines():
+			words = line.split()
+			if words[1:2] == ["lift"]:
+				return float(words[7])
+		return None
+
+	def test_path(self):
+		"""A kinematic object goes where it is sent, and stands there."""
+		self.send(self.name, "path", "lift", ".2 6 0 2.5", "1 6 0 4.25")
+		self.assertTrue(program.wait_until(lambda: self.height_of_lift() == 4.25))
+		self.send(self.name, "path", "lift", ".2 6 0 2.5 .8 .6 0 0", "1 6 0 4.25 1 0 0 0", "loop")
+		for words, saying in ((["x"], "expected points as"), (["1 2 3"], "expected points as"), (["1 6 0 2", "2 6 0 2 1 0 0 0"], "each of them"),
+				(["1 6 0 2", "1 6 0 3"], "times that grow"), (["0 6 0 2"], "times that grow"), (["loop"], "expected 2 to 1024, got 1"),
+				(["1 6 0 2 1 1 0 0"], "unit quaternion"), (["1 6 0 9e9"], "points: expected from")):
+			self.send(self.name, "path", "lift", *words, code=1, saying=saying)
+		self.send(self.name, "path", "crate", "1 6 0 2", code=1, saying="expected a kinematic object")
+		self.send(self.name, "path", "lift", code=2, saying="path OBJECT")
 
 	def call_silently(self, count):
 		"""Connects a number of times, and sends nothing."""
