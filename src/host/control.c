@@ -407,13 +407,6 @@ static bool listen_for(ob_control *c, ob_host *h, uint64_t last, int patience_ms
 	return n > 0 || (!(p.revents & (POLLHUP | POLLERR)) && (n < 0 || c->stepping));
 }
 
-bool ob_control_is_called(const ob_control *c)
-{
-	struct pollfd p = { .fd = c->fd,
-			    .events = c->stepping ? 0 : POLLIN }; // and always whether the program has left
-	return c->fd >= 0 && poll(&p, 1, 0) == 1;
-}
-
 const char *ob_control_words(const ob_control *c, uint32_t *count, const uint64_t **seed)
 {
 	*count = c->packet.count;
@@ -468,5 +461,6 @@ ob_control_turn ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64
 	}
 	if (c->events && *step > now)
 		*step = now + 1;
+	h->caller = (struct pollfd){ .fd = c->fd, .events = c->stepping ? 0 : POLLIN };
 	return OB_CONTROL_GOES_ON;
 }

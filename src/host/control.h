@@ -35,8 +35,6 @@ bool ob_control_take(ob_control *c, int fd, ob_error *e);
 // After a wait: answers what is done, carries out commands, and returns the step to go to: the current one while there is
 // nothing to do, after a short wait.
 ob_control_turn ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64_t *step);
-// True if the program has left, or waits for an answer that needs no further step: the next wait should end soon.
-bool ob_control_is_called(const ob_control *c);
 // Words of the command that the caller is to carry out, each ended by 0; count: how many. seed, for a reset: NULL = the same.
 const char *ob_control_words(const ob_control *c, uint32_t *count, const uint64_t **seed);
 // Answers that command. why: NULL = done; else the run is as before. A reset that succeeds is answered by the next

@@ -307,7 +307,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	h->wake_fd = h->interrupt_fd = h->asked.events = h->asked.socket = -1;
+	h->caller.fd = h->wake_fd = h->interrupt_fd = h->asked.events = h->asked.socket = -1;
 	h->patience = config->patience > 0 ? config->patience : default_patience;
 	h->saved = config->saved;
 	h->free_end = config->free && isfinite(config->free->end)

@@ -3,6 +3,7 @@
 #ifndef OB_HOST_HOST_STATE_H
 #define OB_HOST_HOST_STATE_H
 
+#include <poll.h>
 #include <pthread.h>
 #include <stdatomic.h>
 
@@ -67,6 +68,9 @@ struct ob_host {
 	int wake_fd, interrupt_fd; // ends the supervisor; SIGINT and its kin
 	ob_asked asked; // requests of other programs
 	ob_control *control; // see ob_host_config
+	// Socket of the program that controls the run (-1: none), for the leading thread. An event, the program's next command
+	// or that it has left, ends the wait for steps.
+	struct pollfd caller;
 	ob_snapshots snapshots;
 	uint64_t start, kept; // snapshots for visitors; 0 = none
 	bool returns; // see ob_host_config
