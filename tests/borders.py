@@ -30,7 +30,7 @@ ARROWS = {
     'table': 'shape motion elementary settings base',
     'control': 'base',
     'contact': 'shape motion elementary base',
-    'ode': 'shape base',
+    'ode': 'shape elementary base',
     'solver': 'contact ode shape motion elementary settings base table/counters.h table/pair_state.h',
     'schedule': 'table settings base',
     'cluster': 'schedule table elementary settings base',

@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "elementary/elementary.h"
+
 struct ob_ode_joint {
 	dJointID id;
 	dJointFeedback feedback;
@@ -100,7 +102,7 @@ static void attach(ob_ode_joint *j)
 {
 	ob_pose at = { .q = ob_quat_identity() }, before[2] = { 0 };
 	ob_pose frame[2] = { j->p.frame[0], j->p.frame[1] };
-	const ob_quat turn = { cos(.5 * j->middle), 0, 0, -sin(.5 * j->middle) };
+	const ob_quat turn = { ob_cos(.5 * j->middle), 0, 0, -ob_sin(.5 * j->middle) };
 	frame[0].q = ob_quat_mul(frame[0].q, turn);
 	for (int side = 0; side < 2; side++)
 		if (!j->end[side].body)
