@@ -82,7 +82,7 @@ class Policy(program.Case):
 	def test_freeze_what_fails(self):
 		"""An island that takes too much work: the same in threads and processes, with any number of workers."""
 		seen, words = set(), (BRICKS, "--duration", ".05", "--on-death", "freeze", "--patience", "600") # sanitizers take a minute
-		for isolation, workers in ("thread", "1"), ("thread", "objects"), ("process", "2"):
+		for isolation, workers in program.ways(("thread", "1"), ("thread", "objects"), ("process", "2")):
 			r = program.report(*words, "--isolation", isolation, "--workers", workers)
 			self.assertEqual([d["cause"] for d in r["death_list"]], ["failure"] * r["deaths"])
 			self.assertEqual((r["steps"], r["death_list"][0]["name"]), (3, "brick 1"))

@@ -16,6 +16,9 @@ SCENES = {
 	"machines": ["--duration", "1.5"],
 	"solids": ["--duration", "1.5"],
 }
+if program.SANITIZED: # the same questions of fewer bodies
+	SCENES["falling_boxes"] = ["-D", "n=50", "--duration", "2.5"]
+	SCENES["pile"] = ["-D", "n=4", "--duration", "1"]
 NAME = sys.argv.pop(1)
 
 
