@@ -159,18 +159,31 @@ void ob_joint_request_carry_out(ob_universe *u, const ob_request *r)
 		ob_log_warn("%s", e.text);
 }
 
+// The joint between these objects with this name. Another one may have got the number of a joint that is asked for.
+static uint32_t find_same(const ob_universe *u, const ob_joint_passport *j)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t end = ob_joints_end(data);
+	uint32_t i = 0;
+	while (i < end && (ob_joint_is_free(data, i) || memcmp(data->joint[i].object, j->object, sizeof j->object) ||
+			   memcmp(data->joint[i].generation, j->generation, sizeof j->generation) ||
+			   strncmp(data->joint[i].name, j->name, OB_NAME_MAX)))
+		i++;
+	return i < end ? i : UINT32_MAX;
+}
+
 bool ob_joint_post_carry_out(ob_universe *u, const ob_script_post *post, ob_error *e)
 {
 	ob_joint_passport j;
-	uint32_t joint;
-	if (post->kind == OB_SCRIPT_JOIN && post->used == sizeof j) {
+	if ((post->kind != OB_SCRIPT_JOIN && post->kind != OB_SCRIPT_UNJOIN) || post->used != sizeof j)
+		return ob_fail(e, "the joint makes no sense");
+	if (post->kind == OB_SCRIPT_JOIN) {
 		read_joint(&j, post + 1);
 		return !has_ends(u, &j) || join(u, &j, e);
 	}
-	if (post->kind != OB_SCRIPT_UNJOIN || post->used != sizeof joint)
-		return ob_fail(e, "the joint makes no sense");
-	memcpy(&joint, post + 1, sizeof joint);
-	if (has_joint(u, post->object, joint))
+	memcpy(&j, post + 1, sizeof j);
+	const uint32_t joint = find_same(u, &j);
+	if (joint != UINT32_MAX)
 		unjoin(u, joint);
 	return true;
 }

@@ -636,8 +636,9 @@ static int call_unjoin(lua_State *L)
 {
 	const ob_script_runner *r = runner_of(L);
 	const uint32_t joint = find_joint(L, r, "unjoin", true);
-	if (joint != UINT32_MAX)
-		post(L, r, OB_SCRIPT_UNJOIN, &r->data->joint[joint], &joint, sizeof joint);
+	const ob_joint_passport *j = joint == UINT32_MAX ? NULL : &r->data->joint[joint];
+	if (j)
+		post(L, r, OB_SCRIPT_UNJOIN, j, j, sizeof *j);
 	return 0;
 }
 

@@ -156,6 +156,29 @@ sphere { name = "glue", radius = .1, at = { 4, 0, .1 }, mass = 1, script = [[
 ]] }
 """
 
+# In one pause two scripts remove one joint, and one between them adds another, which gets its number.
+TWICE = """scene { title = "Twice", duration = .2, gravity = { 0, 0, 0 } }
+local script = [[
+	function on_start() self:wake(.05) end
+	function on_wake()
+		if time() > .1 then
+			print("@" .. self:name(), joint_load("old") and 1 or 0, joint_load("new") and 1 or 0)
+		else
+			if self:name() == "b" then
+				fixed { "a", "c", name = "new" }
+			else
+				unjoin("old")
+			end
+			self:wake(.1)
+		end
+	end
+]]
+for i, name in ipairs { "a", "b", "c" } do
+	sphere { name = name, radius = .1, at = { i, 0, 0 }, mass = 1, script = script }
+end
+fixed { "a", "b", name = "old" }
+"""
+
 # An arm that a motor turns by more than half a turn, to a limit of 4 rad.
 FAR = """scene { title = "Far", duration = 4 }
 box { name = "wall", size = { .2, 1, 3 }, kind = "static", at = { 0, 0, 1.5 }, rotation = { axis = { 0, 0, 1 }, degrees = 180 } }
@@ -193,7 +216,7 @@ class Joints(unittest.TestCase):
 			self.assertEqual(len({state(*scene, *way)[0] for way in WAYS}), 1, scene)
 
 	def test_mechanisms(self):
-		for text in (MECHANISMS, DRIVES, CRANK, BREAKS, GRABS):
+		for text in (MECHANISMS, DRIVES, CRANK, BREAKS, GRABS, TWICE):
 			with tempfile.TemporaryDirectory() as folder:
 				path = kept(folder, text)
 				self.assertEqual(len({state(path, *way)[0] for way in WAYS}), 1)
@@ -261,6 +284,11 @@ class Joints(unittest.TestCase):
 		self.assertAlmostEqual(found["slid"][0], .4, delta=.05)
 
 	# Joints stay as they have become, whenever the run is saved, and whoever dies.
+	def test_removed_twice(self):
+		with tempfile.TemporaryDirectory() as folder:
+			done = program.call("run", kept(folder, TWICE), "--measure", "end")
+		self.assertEqual(re.findall(r"@(\w)\s+(\d)\s+(\d)", done.stderr), [("a", "0", "1"), ("b", "0", "1"), ("c", "0", "1")])
+
 	def test_again(self):
 		for text, durations in ((BREAKS, (1 / 60, .2, .8)), (GRABS, (.3, 1, 1.9))):
 			with tempfile.TemporaryDirectory() as folder:
