@@ -93,10 +93,11 @@ const char *ob_sim_failure(const ob_universe *u)
 			 name_of(u, object), step);
 		return text;
 	case OB_STEP_ENGINE:
-		snprintf(text, sizeof text,
-			 "ODE gave up in step %llu at %s, whose state is too wild for it; try more substeps or a "
-			 "smaller step",
-			 step, name_of(u, object));
+		snprintf(
+			text, sizeof text,
+			"the solver gave up in step %llu at %s, whose state is too wild for it; try more substeps or a "
+			"smaller step",
+			step, name_of(u, object));
 		return text;
 	case OB_STEP_OVERWORKED:
 		describe_work(u, object, step, text, sizeof text);

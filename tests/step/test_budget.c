@@ -219,7 +219,7 @@ static void test_engine(void)
 	ob_world_ground(&s->world);
 	little_universe l;
 	little_open(&l, s);
-	expect_failure(&l, OB_STEP_ENGINE, 0, "ODE gave up in step 1 at object 0");
+	expect_failure(&l, OB_STEP_ENGINE, 0, "the solver gave up in step 1 at object 0");
 	little_close(&l);
 	free(s);
 }
