@@ -209,7 +209,7 @@ def state(*words):
 class Joints(unittest.TestCase):
 	# The ball hits the wall in the first second.
 	scenes = [[program.scene("wrecking_ball"), "-D", "links=4", "-D", "rows=3", "--duration", 1.4],
-		[program.scene("bridge"), "-D", "planks=8", "--duration", 1]]
+		[program.scene("bridge"), "-D", "planks=8", "--duration", 1], [program.scene("crane"), "-D", "stools=1", "--duration", 9]]
 
 	def test_same_bits(self):
 		for scene in self.scenes:
