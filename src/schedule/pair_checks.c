@@ -71,7 +71,7 @@ void ob_pairs_follow(ob_universe *u, uint32_t id)
 		    !ob_pair_is_checked_here(u, k))
 			continue;
 		if (data->count->merged)
-			k->limit = -INFINITY;
+			ob_pair_void_check(k);
 		ob_calendar_set(&look, at.pair, ob_step_count(u) + 1);
 	}
 }

@@ -5,6 +5,8 @@
 #ifndef OB_SCHEDULE_PAIR_CHECKS_H
 #define OB_SCHEDULE_PAIR_CHECKS_H
 
+#include <math.h>
+
 #include "table/table.h"
 
 // True if this rank has one of the pair's objects.
@@ -19,6 +21,13 @@ bool ob_joint_is_across(const ob_universe *u, const ob_joint_passport *j);
 void ob_pair_enter_check(ob_universe *u, uint32_t pair, uint64_t step);
 // Schedules a check of all pairs of the object before its next step, as its motion changes.
 void ob_pairs_look(ob_universe *u, uint32_t id);
+// Forgets what a check within the step has found: an island of the pair is solved again. Where the pair is checked and where the
+// island is solved, which may be two ranks.
+static inline void ob_pair_void_check(ob_pair_key *k)
+{
+	k->limit = -INFINITY;
+	k->clear_until = 0;
+}
 // Schedules the pairs of an object that another rank has solved in this step: those that are checked here are, at the
 // step's end. Their known distance is void if islands have been merged.
 void ob_pairs_follow(ob_universe *u, uint32_t id);

@@ -278,7 +278,7 @@ static uint32_t island_of_pair(const ob_involved *p, ob_pair_key *k)
 {
 	const uint32_t ia = p->data->result_island[k->a], ib = p->data->result_island[k->b], i = ia != NONE ? ia : ib;
 	if (p->merges)
-		k->limit = -INFINITY, k->clear_until = 0;
+		ob_pair_void_check(k);
 	if (i == NONE || (ia != ib && ((ia != NONE && ib != NONE) || (is_dynamic(p, k->a) && is_dynamic(p, k->b)))))
 		return NONE;
 	if (k->active)
