@@ -679,7 +679,7 @@ controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 		with open(log, "rb") as f:
 			whole = f.read()
 		with open(log, "wb") as f:
-			f.write(whole[:-5000] + b"\xff" * 5000)
+			f.write(whole[:-20000] + b"\xff" * 20000)
 		self.refuse("run", scene, *words, "--replay-requests", log, saying="makes no sense")
 		with open(log, "wb") as f:
 			f.write(whole[:20])
