@@ -103,7 +103,7 @@ static void report_stall(ob_host *h, uint64_t step)
 
 static bool is_called(ob_host *h)
 {
-	return poll(&h->caller, 1, 0) == 1;
+	return h->caller.fd >= 0 && poll(&h->caller, 1, 0) == 1;
 }
 
 // Between pauses: detects a stall, and ends the interval early if a thread waits for a pause. false: interrupted, and

@@ -125,7 +125,7 @@ bool ob_path_check_turns(const ob_path *path, ob_error *e)
 {
 	const ob_path_point *first = path->point, *last = first + path->points - 1;
 	ob_vec3 turn;
-	if (path->loop && (first->p.x != last->p.x || first->p.y != last->p.y || first->p.z != last->p.z))
+	if (path->loop && !ob_equal(first->p, last->p))
 		return ob_fail(e, "loop: expected the last point where the first one is");
 	for (uint32_t i = 1; path->turns && i < path->points; i++)
 		if (!ob_path_turn(path->point[i - 1].q, path->point[i].q, &turn))

@@ -127,16 +127,11 @@ static void publish_prescribed(ob_universe *u, uint32_t id, ob_motion *m, double
 	ob_publish_motion(u, id, m);
 }
 
-static bool same(ob_vec3 a, ob_vec3 b)
-{
-	return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 // True if the motion is that piece, between these instants (s): nothing is to be published.
 static bool is_piece(const ob_motion *m, const ob_path_piece *piece, double begin, double end)
 {
-	return m->t0 == begin && m->valid_until == end && !(m->flags & OB_MOTION_SWINGS) && same(m->p, piece->p) &&
-	       same(m->v, piece->v) && same(m->a, piece->a);
+	return m->t0 == begin && m->valid_until == end && !(m->flags & OB_MOTION_SWINGS) && ob_equal(m->p, piece->p) &&
+	       ob_equal(m->v, piece->v) && ob_equal(m->a, piece->a);
 }
 
 static uint64_t prescribe_spline(ob_universe *u, uint32_t id, const ob_path *path, uint64_t born)
@@ -147,7 +142,7 @@ static uint64_t prescribe_spline(ob_universe *u, uint32_t id, const ob_path *pat
 	const uint64_t from = born + piece.from, until = piece.until == UINT64_MAX ? UINT64_MAX : born + piece.until;
 	const double begin = (double)from * h, end = until == UINT64_MAX ? INFINITY : (double)until * h;
 	ob_motion m = *ob_newest_motion(u, id);
-	if (is_piece(&m, &piece, begin, end) && (!path->turns || same(m.w, piece.w)))
+	if (is_piece(&m, &piece, begin, end) && (!path->turns || ob_equal(m.w, piece.w)))
 		return until;
 	if (m.flags & OB_MOTION_SWINGS) { // an earlier path
 		m.flags &= ~(uint32_t)OB_MOTION_SWINGS;

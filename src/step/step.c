@@ -620,8 +620,9 @@ static ob_phase after_baseline(const scheduler *c)
 static bool free_broken(const scheduler *c)
 {
 	const ob_step_data *data = c->data;
+	const uint32_t end = ob_universe_settings(c->u)->monolith ? 0 : ob_joints_end(data);
 	bool any = false;
-	for (uint32_t i = 0; i < ob_joints_end(data) && !ob_universe_settings(c->u)->monolith; i++)
+	for (uint32_t i = 0; i < end; i++)
 		for (int side = 0; ob_joint_broke_now(c->u, i) && side < 2; side++) {
 			const uint32_t id = data->joint[i].object[side];
 			if (id >= data->objects_max || !ob_schedule_is_dynamic(&data->schedule[id]))

@@ -72,7 +72,7 @@ typedef struct ob_script_cell {
 
 // Record of an outbox, one after the other; in an inbox, the same with the sender in place of the addressee. Contents:
 // the values of a message; nothing; an ob_object_def, the state of its script, and the corners of a hull; an
-// ob_script_motor; an ob_joint_passport; the number of a joint.
+// ob_script_motor; an ob_joint_passport; the same, of the joint that is to go.
 typedef enum ob_script_post_kind {
 	OB_SCRIPT_MESSAGE,
 	OB_SCRIPT_REMOVE,
