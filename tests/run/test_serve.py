@@ -326,7 +326,8 @@ controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 		other.until(lambda: other.objects[box]["p"][0] > 3.2)
 		self.assertLess(abs(other.objects[foreign["id"]]["p"][0]), 2)
 		operator.send(do="message", text="roll 0 1", **own) # an operator may
-		other.until(lambda: other.objects[own["id"]]["p"][1] > 1)
+		for v in one, other:
+			v.until(lambda: v.objects[own["id"]]["p"][1] > 1)
 		operator.send(do="restart") # and all are there again
 		one.until(lambda: one.told["avatar"]["generation"] != own["generation"] or one.objects.get(own["id"], {}).get("p", [9, 9])[1] < 1)
 		gone = self.avatar(one)
