@@ -7,13 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../tests/contact/scene.h"
 #include "base/clock.h"
 #include "contact/kernel.h"
 #include "motion/flight.h"
 #include "motion/spin.h"
 #include "step/broadphase.h"
 #include "table/table.h"
+
+#include "../tests/contact/scene.h"
 
 enum { BATCHES = 60 };
 
