@@ -204,6 +204,9 @@ bool ob_universe_get_worker(const ob_universe *u, uint32_t worker, ob_worker_inf
 // Home worker of the object's simulator: the one that solved its island last, or to which it was moved; its own, if
 // each object has one. Returns false without one: objects unaffected by forces, or not yet solved.
 bool ob_universe_get_home(const ob_universe *u, uint32_t id, uint32_t *worker);
+// Own time (s) of the object's simulator in a free run: at or after the universe's, which all have passed. Returns false
+// in lockstep, or without a simulator.
+bool ob_universe_get_own_time(const ob_universe *u, uint32_t id, double *time);
 // Returns false if no object has this id now.
 bool ob_universe_get_passport(const ob_universe *u, uint32_t id, ob_passport *out);
 // Version of the body properties: changes with them, so a reader can tell that its copy is outdated; 0: no such object.

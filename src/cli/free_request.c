@@ -54,7 +54,7 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	if (sync && strchr(sync, ','))
 		return ob_fail(e, "--sync %s: a run has one of them; obsim compare runs both ways", sync);
 	r->is_free = sync ? strcmp(sync, "free") == 0 : r->replay_schedule != NULL;
-	r->free_command = a->command == OB_COMMAND_RUN;
+	r->free_command = a->command == OB_COMMAND_RUN || a->command == OB_COMMAND_SERVE;
 	for (size_t i = 0; i < sizeof of_free / sizeof *of_free; i++)
 		if (a->value[of_free[i]])
 			r->of_free = ob_option_table[of_free[i]].name;
@@ -90,7 +90,8 @@ static bool check(const ob_run_request *r, const ob_scene *s, ob_error *e)
 {
 	if (!r->free_command)
 		return ob_fail(
-			e, "the scene runs free (scene.sync), which obsim run alone can do: set sync = \"lockstep\"");
+			e,
+			"the scene runs free (scene.sync), which obsim run and serve can do: set sync = \"lockstep\"");
 	if (r->of_lockstep)
 		return ob_fail(e, "--%s does not go with --sync free: leave one of them away", r->of_lockstep);
 	if (r->run.monolith || r->run.solver == OB_SOLVER_JACOBI)

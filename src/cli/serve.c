@@ -23,6 +23,7 @@
 static const double patience = .05; // s, in which requests are taken while no step is due
 static const double go_time = .02; // s that the universe runs between checks if it cannot keep its pace
 static const uint64_t paced_steps = 8; // in one go at least, if paced: it is not further behind at a usual rate
+static const double free_window = .25; // s, of a free run: changes take effect when all simulators have come so far
 
 typedef struct serve_request {
 	ob_run_request run;
@@ -82,6 +83,9 @@ static bool load(serving *s, ob_error *e)
 		return false;
 	if (s->a->value[OB_OPTION_DURATION])
 		s->last = ob_request_steps(q->duration, q->run.step_length);
+	else
+		q->free.end = INFINITY;
+	s->q.server.free_run = q->is_free;
 	s->q.server.fixed = q->record          ? "it is recorded (--record)"
 			    : s->scene->meshes ? "viewers have its meshes already"
 					       : NULL;
@@ -92,8 +96,10 @@ static bool start(serving *s, ob_error *e)
 {
 	const ob_run_request *q = &s->q.run;
 	ob_host_config config = ob_request_host(q);
-	if (!s->a->value[OB_OPTION_ON_DEATH] && !config.run.monolith && !s->scene->scripts) // neither can be frozen
+	if (!s->a->value[OB_OPTION_ON_DEATH] && !config.run.monolith && !s->scene->scripts &&
+	    !q->is_free) // none can be frozen
 		config.on_death = OB_ON_DEATH_KEEP;
+	config.free_window = free_window;
 	config.spare = s->q.room;
 	config.returns = !q->record;
 	config.log = s->q.log;
@@ -173,13 +179,24 @@ static bool start_anew(serving *s, const ob_define *wish, ob_error *e)
 	return start(s, e) && ob_server_go_on(s->server, s->scene, s->host, e);
 }
 
+// Returns the next step of a free run, whose simulators follow the clock themselves; while paused, steps that are allowed.
+static uint64_t pace_free(serving *s, uint64_t done)
+{
+	const ob_pace_state pace = ob_pace_get(&s->pace);
+	const uint64_t due =
+		pace.paused ? ob_pace_wait(&s->pace, done, s->q.run.run.step_length, 1, patience) : done + 1;
+	ob_host_set_pace(s->host, pace.paused ? 0 : pace.rate, due);
+	return due;
+}
+
 // Lets the run go to the next step that is due, for a while at most. Returns that step.
 static uint64_t go_on(serving *s, uint64_t done, uint64_t *batch, bool *at_once)
 {
 	const uint64_t every = s->scene->record_every, state = s->recorder ? (done / every + 1) * every : UINT64_MAX;
 	const uint64_t paced = *batch < paced_steps ? paced_steps : *batch;
-	uint64_t due = ob_pace_wait(&s->pace, done, s->q.run.run.step_length,
-				    paced < state - done ? paced : state - done, patience);
+	uint64_t due = s->q.run.is_free ? pace_free(s, done)
+					: ob_pace_wait(&s->pace, done, s->q.run.run.step_length,
+						       paced < state - done ? paced : state - done, patience);
 	const uint64_t most = due < UINT64_MAX ? paced : *batch;
 	*at_once = due > done + most && done < s->last;
 	due = *at_once ? done + most : due;

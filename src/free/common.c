@@ -10,6 +10,7 @@
 #include "free/free.h"
 #include "free/view.h"
 #include "motion/flight.h"
+#include "table/home.h"
 
 static const double window_seconds =
 	1.25; // simulators may be ahead of the common time by so much, unless memory is short
@@ -91,6 +92,7 @@ void ob_free_enter_objects(ob_universe *u)
 			const ob_state state = ob_motion_at(&m, p.inertia, now);
 			m = motion_from(&m, &state, now);
 			m.flags = OB_MOTION_FREE;
+			ob_home_set(u, id, ob_free_worker_of(u, id));
 		}
 		ob_free_enter(u, id, kind, p.generation, &m);
 	}

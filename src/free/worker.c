@@ -97,10 +97,8 @@ static ob_free_sim *earliest(worker *w, ob_free_sim **blocked)
 // Sleeps until a simulator is due by the clock. false: it is due.
 static bool wait_for_clock(const worker *w, const ob_free_sim *s)
 {
-	const double pace = w->scratch.free->pace, most = .02;
-	if (isinf(pace))
-		return false;
-	const uint64_t due = ob_free_begun_ns(w->u) + (uint64_t)(1e9 * s->time / pace), now = ob_clock_ns();
+	const double most = .02;
+	const uint64_t due = ob_free_due_ns(w->u, s->time), now = ob_clock_ns();
 	if (now >= due)
 		return false;
 	const double left = ob_min(most, 1e-9 * (double)(due - now));

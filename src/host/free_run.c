@@ -1,5 +1,6 @@
 #include "host/free_run.h"
 
+#include <math.h>
 #include <time.h>
 
 #include "base/clock.h"
@@ -15,12 +16,22 @@ bool ob_host_free_is_ahead(const ob_host *h)
 // Moves `until` ahead of the common time.
 static void extend(ob_host *h)
 {
-	const uint64_t events = ob_population_next_step(h->population),
-		       ahead = ob_step_count(h->u) + ob_free_window(h->u);
+	const uint64_t events = ob_population_next_step(h->population), window = ob_free_window(h->u),
+		       ahead = ob_step_count(h->u) + (h->free_window < window ? h->free_window : window);
 	const uint32_t now = ob_free_until(h->u);
 	uint64_t until = ahead < events ? ahead : events;
 	until = until < h->free_end ? until : h->free_end;
 	ob_free_run_until(h->u, h->free_hold || until < now ? now : until);
+}
+
+void ob_host_free_pace(ob_host *h, double pace, uint64_t stands)
+{
+	const double step = ob_universe_settings(h->u)->step_length, end = pace > 0 ? INFINITY : (double)stands * step;
+	if (pace == h->free_pace && (pace > 0 || stands == h->free_stands))
+		return;
+	h->free_pace = pace;
+	h->free_stands = stands;
+	ob_free_set_clock(h->u, (double)ob_step_count(h->u) * step, pace > 0 ? pace : 1, end);
 }
 
 void ob_host_free_resume(ob_host *h)

@@ -13,6 +13,9 @@
 
 // True if simulators may be ahead of the common time: objects cannot be changed now.
 bool ob_host_free_is_ahead(const ob_host *h);
+// Has simulators follow the clock at this pace (s a second), from the common time on; 0: they stand once they have passed
+// `stands`, a step. The same pace again changes nothing.
+void ob_host_free_pace(ob_host *h, double pace, uint64_t stands);
 // Enters objects that were changed, and lets simulators run on.
 void ob_host_free_resume(ob_host *h);
 // Completes the steps that all have passed, up to the interval's end. true: the end is reached, or a simulator has failed;

@@ -313,6 +313,9 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->free_end = config->free && isfinite(config->free->end)
 			      ? (uint64_t)ceil(config->free->end / config->run.step_length - 1e-9)
 			      : UINT64_MAX;
+	h->free_window =
+		config->free_window > 0 ? (uint64_t)ceil(config->free_window / config->run.step_length) : UINT64_MAX;
+	h->free_pace = NAN; // none was set
 	h->on_death = config->on_death;
 	h->limit = config->limit;
 	h->control = config->control;

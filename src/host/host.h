@@ -58,6 +58,7 @@ typedef struct ob_host_config {
 	ob_run_settings run; // one_per_object is set by the host from workers
 	const ob_free_settings
 		*free; // settings of a free run (free/free.h); NULL: in lockstep. `objects` is set by the host
+	double free_window; // s that its simulators may be ahead of the common time; 0: as far as memory reaches
 	ob_request_log *log; // input from outside; NULL = none. It must outlive the host
 	bool returns; // visitors may put the run back (ob_host_operate)
 	struct ob_control *control; // takes programs that control the run (control.h); NULL = refuses them. Likewise
@@ -95,6 +96,9 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 // diverged, or SIGINT/SIGTERM came (ob_host_interrupted).
 void ob_host_go(ob_host *h, uint64_t step);
 bool ob_host_wait(ob_host *h, ob_error *e);
+// Sets the pace of a free run (simulated s a second; 0: it stands at this step) from the steps that are complete on.
+// Between a wait and the next go.
+void ob_host_set_pace(ob_host *h, double pace, uint64_t stands);
 // States to readers that no step will follow (OB_UNIVERSE_FINISHED). Workers stay, and requests are still taken by go.
 // Call it after a wait; again has no effect.
 void ob_host_finish(ob_host *h);

@@ -88,6 +88,9 @@ struct ob_host {
 	} scripts; // scripts that errors have stopped, or that have no effect
 	uint64_t target; // the caller's
 	uint64_t free_end; // last step of a free run
+	uint64_t free_window; // steps that simulators may be ahead of the common time
+	double free_pace; // as ob_host_free_pace
+	uint64_t free_stands;
 	atomic_bool free_hold; // simulators of a free run are to stop and wait where they may run to now
 	bool started; // the gate was opened once
 	double patience; // s

@@ -132,6 +132,11 @@ void ob_host_go(ob_host *h, uint64_t step)
 		begin_interval(h);
 }
 
+void ob_host_set_pace(ob_host *h, double pace, uint64_t stands)
+{
+	ob_host_free_pace(h, pace, stands);
+}
+
 void ob_host_finish(ob_host *h)
 {
 	if (!h->failed)

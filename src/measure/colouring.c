@@ -12,6 +12,7 @@ static const float rest[][3] = {
 	[OB_REST_ASLEEP] = { .09f, .13f, .40f },
 };
 static const double most_substeps = 512;
+static const double least_lead = 1e-3, most_lead = 1; // s
 
 // Colour of a number: a hue of its own, bright for even, darker for odd turns.
 static void colour_of_number(uint32_t number, float out[3])
@@ -31,17 +32,28 @@ ob_rest ob_rest_of(const ob_motion *m)
 	return !(m->flags & OB_MOTION_SWINGS) && ob_norm2(m->a) > 0 ? OB_REST_FLIES : OB_REST_TOUCHES;
 }
 
-// From dark blue by red to light yellow.
-static void colour_of_cost(const ob_motion *m, float out[3])
+// From dark blue by red to light yellow. share: from 0 to 1; NaN: none.
+static void colour_of_share(double share, float out[3])
 {
-	if (m->flags & OB_MOTION_RESTS || m->substeps == 0) {
+	if (isnan(share)) {
 		memcpy(out, none, 3 * sizeof *out);
 		return;
 	}
-	const double share = fmin(1, log2(m->substeps) / log2(most_substeps));
+	share = fmax(0, fmin(1, share));
 	out[0] = (float)(.03 + .87 * fmin(1, 2 * share));
 	out[1] = (float)(.03 + .72 * share * share);
 	out[2] = (float)(.22 * fmax(0, 1 - 2 * share) + .10 * share);
+}
+
+static double share_of_cost(const ob_motion *m)
+{
+	const bool solved = !(m->flags & OB_MOTION_RESTS) && m->substeps > 0;
+	return solved ? log2(m->substeps) / log2(most_substeps) : NAN;
+}
+
+double ob_share_of_lead(double lead)
+{
+	return isnan(lead) ? NAN : log2(1 + fmax(0, lead) / least_lead) / log2(1 + most_lead / least_lead);
 }
 
 // The colour of a worker, of its rank, or of the first worker of its process.
@@ -79,7 +91,9 @@ void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, f
 	else if (c->key == OB_COLOUR_REST)
 		memcpy(colour, rest[ob_rest_of(m)], 3 * sizeof *colour);
 	else if (c->key == OB_COLOUR_COST)
-		colour_of_cost(m, colour);
+		colour_of_share(share_of_cost(m), colour);
+	else if (c->key == OB_COLOUR_LAG)
+		colour_of_share(s->own_time ? ob_share_of_lead(s->own_time[id] - s->time) : NAN, colour);
 	else
 		colour_of_home(c, s->home ? s->home[id] : UINT32_MAX, colour);
 }

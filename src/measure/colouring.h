@@ -1,5 +1,5 @@
 // Colours that show the architecture in a picture: an object's colour by its simulator, worker, process, rank, island,
-// rest or cost. The page has the same functions (src/serve/page/colouring.js). Pure functions.
+// rest, cost or lag. The page has the same functions (src/serve/page/colouring.js). Pure functions.
 #ifndef OB_MEASURE_COLOURING_H
 #define OB_MEASURE_COLOURING_H
 
@@ -14,8 +14,9 @@ typedef enum ob_colour_key {
 	OB_COLOUR_ISLAND, // bodies solved together; grey: alone
 	OB_COLOUR_REST, // orange: touches; cyan: flies; green: in equilibrium; blue: asleep
 	OB_COLOUR_COST, // dark to bright: substeps that its island needs, by their logarithm; grey: not solved
+	OB_COLOUR_LAG, // dark to bright: lead of its own time over the common time, to 1 s, by its logarithm; grey: lockstep
 } ob_colour_key;
-#define OB_COLOUR_KEY_NAMES "own|simulator|worker|process|rank|island|rest|cost"
+#define OB_COLOUR_KEY_NAMES "own|simulator|worker|process|rank|island|rest|cost|lag"
 
 // Process and rank of a worker
 typedef struct ob_worker_place {
@@ -38,6 +39,8 @@ typedef enum ob_rest {
 } ob_rest;
 
 ob_rest ob_rest_of(const ob_motion *m);
+// Place on a scale, 0 to 1, of a lead (s) of an own time over the common time. NaN stays NaN.
+double ob_share_of_lead(double lead);
 
 // Colour, linear RGB, of a present object. Objects without a simulator are grey, except for OB_COLOUR_OWN.
 void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, float colour[3]);

@@ -18,6 +18,7 @@ typedef struct ob_snapshot {
 	ob_passport *passport;
 	ob_motion *motion;
 	uint32_t *home; // home worker of each simulator, UINT32_MAX: none; NULL: unknown, as of a record
+	double *own_time; // s, of each simulator in a free run; NaN: none; NULL: unknown
 	size_t contacts;
 	ob_contact_point *contact;
 	uint32_t joints;

@@ -1,5 +1,6 @@
 #include "measure/measure.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,18 +14,22 @@ static bool grow_objects(ob_snapshot *s, uint32_t count)
 	ob_passport *passport = calloc(count, sizeof *passport);
 	ob_motion *motion = calloc(count, sizeof *motion);
 	uint32_t *home = calloc(count, sizeof *home);
-	if (!passport || !motion || !home) {
+	double *own_time = calloc(count, sizeof *own_time);
+	if (!passport || !motion || !home || !own_time) {
 		free(passport);
 		free(motion);
 		free(home);
+		free(own_time);
 		return false;
 	}
 	free(s->passport);
 	free(s->motion);
 	free(s->home);
+	free(s->own_time);
 	s->passport = passport;
 	s->motion = motion;
 	s->home = home;
+	s->own_time = own_time;
 	s->count_max = count;
 	s->count = 0;
 	return true;
@@ -106,6 +111,8 @@ static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_er
 	memset(&s->motion[id], 0, sizeof s->motion[id]);
 	if (!ob_universe_get_home(u, id, &s->home[id]))
 		s->home[id] = UINT32_MAX;
+	if (!ob_universe_get_own_time(u, id, &s->own_time[id]))
+		s->own_time[id] = NAN;
 	if (!ob_universe_get_passport(u, id, p) || !(p->flags & OB_OBJECT_PRESENT))
 		return true;
 	if (ob_universe_get_motion(u, id, &s->motion[id]))
@@ -200,6 +207,8 @@ bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from)
 			memcpy(to->home, from->home, from->count * sizeof *to->home);
 		else
 			memset(to->home, 0xff, from->count * sizeof *to->home);
+		for (uint32_t i = 0; i < from->count; i++)
+			to->own_time[i] = from->own_time ? from->own_time[i] : NAN;
 	}
 	if (from->joints)
 		memcpy(to->joint, from->joint, from->joints * sizeof *to->joint);
@@ -213,6 +222,7 @@ void ob_snapshot_finish(ob_snapshot *s)
 	free(s->passport);
 	free(s->motion);
 	free(s->home);
+	free(s->own_time);
 	free(s->contact);
 	free(s->joint);
 	drop_hulls(s);

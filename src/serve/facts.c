@@ -73,6 +73,7 @@ ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_u
 	put_text(m, "universe", info->name);
 	put_text(m, "version", c->version);
 	put_text(m, "isolation", info->isolation);
+	put_text(m, "sync", c->free_run ? "free" : "lockstep");
 	ob_message_print(m, ",\"workers\":%u,\"role\":\"%s\",\"look_only\":%s,\"step_length\":%.17g", info->workers,
 			 ob_role_name(role), role == OB_ROLE_WATCH ? "true" : "false", info->step_length);
 	put_vec3(m, "gravity", info->gravity);

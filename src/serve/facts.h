@@ -7,7 +7,7 @@
 #include "serve/message.h"
 #include "serve/serve.h"
 
-// {"welcome": title, isolation, role, gravity, look, cameras, params, controls, avatar's name, meshes ..}: the first message. mesh: contents of the
+// {"welcome": title, isolation, sync, role, gravity, look, cameras, params, controls, avatar's name, meshes ..}: the first message. mesh: contents of the
 // scene's meshes, by their numbers, less 1; NULL: they are sent otherwise.
 ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
 			     const ob_content *mesh);

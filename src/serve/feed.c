@@ -1,5 +1,6 @@
 #include "serve/feed.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -504,13 +505,13 @@ ob_message *ob_feed_whole(ob_feed *f, const ob_pace_state *pace)
 }
 
 // Begins a message beside the motions, with a count to be set.
-static ob_message *begin_aside(const ob_feed *f, unsigned first_byte)
+static ob_message *begin_aside(const ob_feed *f, unsigned first_byte, unsigned flags)
 {
 	ob_message *out = ob_message_new(false);
 	if (!out)
 		return NULL;
 	ob_message_put_u8(out, first_byte);
-	ob_message_put_u8(out, 0);
+	ob_message_put_u8(out, flags);
 	ob_message_put(out, &(uint16_t){ 0 }, 2);
 	ob_message_put_u32(out, 0);
 	ob_message_put_f64(out, f->time);
@@ -528,7 +529,7 @@ ob_message *ob_feed_contacts(ob_feed *f)
 		f->contact = grown;
 		f->contact_room = room;
 	}
-	ob_message *out = begin_aside(f, OB_FEED_CONTACTS);
+	ob_message *out = begin_aside(f, OB_FEED_CONTACTS, 0);
 	if (!out)
 		return NULL;
 	ob_message_set_u32(out, COUNT_AT, (uint32_t)n);
@@ -540,10 +541,26 @@ ob_message *ob_feed_contacts(ob_feed *f)
 	return whole_or_none(out);
 }
 
+// Own time, s; NaN: none, as in lockstep.
+static double own_time_of(const ob_feed *f, uint32_t id)
+{
+	double time;
+	return f->u && ob_universe_get_own_time(f->u, id, &time) ? time : NAN;
+}
+
+static bool runs_free(const ob_feed *f)
+{
+	size_t i = 0;
+	while (i < f->objects && isnan(own_time_of(f, f->object[i].id)))
+		i++;
+	return i < f->objects;
+}
+
 ob_message *ob_feed_simulators(ob_feed *f)
 {
 	uint32_t sent = 0, before = UINT32_MAX;
-	ob_message *out = begin_aside(f, OB_FEED_SIMULATORS);
+	const bool free_run = runs_free(f);
+	ob_message *out = begin_aside(f, OB_FEED_SIMULATORS, free_run ? OB_FEED_FREE_RUN : 0);
 	if (!out)
 		return NULL;
 	for (size_t i = 0; i < f->objects; i++) {
@@ -558,6 +575,8 @@ ob_message *ob_feed_simulators(ob_feed *f)
 		put_number(out, m.flags & OB_MOTION_SWINGS ? k->id : m.island);
 		put_number(out, rests ? 0 : m.substeps);
 		ob_message_put_u8(out, ob_rest_of(&m));
+		if (free_run)
+			ob_message_put_f32(out, own_time_of(f, k->id) - f->time);
 		before = k->id;
 		sent++;
 	}
@@ -569,7 +588,7 @@ ob_message *ob_feed_joints(ob_feed *f)
 {
 	const uint32_t joints = f->source.joints(f->source.of);
 	uint32_t sent = 0;
-	ob_message *out = begin_aside(f, OB_FEED_JOINTS);
+	ob_message *out = begin_aside(f, OB_FEED_JOINTS, 0);
 	for (uint32_t i = 0; out && i < joints; i++) {
 		ob_joint_passport j;
 		if (!f->source.joint(f->source.of, i, &j) || j.flags & OB_JOINT_BROKEN)

@@ -37,9 +37,10 @@
 //                     u8 wrap[2]: beyond an image's sides it is 0 repeated, 1 mirrored, 2 clamped. No parts: no images
 //        images       u32 width, height; then u8 red, green, blue, alpha of each pixel, the top row first
 //
-//      u8  4          u8 0    u16 0    u32 simulators    f64 time; then for each:
+//      u8  4          u8 flags (1: a free run's)    u16 0    u32 simulators    f64 time; then for each:
 //                     id less the previous one, 1 + home worker (0: unknown), island, substeps, each in groups of 7
-//                     bits, low first; u8 state: 0 touches, 1 flies, 2 in equilibrium, 3 asleep
+//                     bits, low first; u8 state: 0 touches, 1 flies, 2 in equilibrium, 3 asleep; if free,
+//                     f32 s, own time less the message's
 //
 //      u8  5          u8 0    u16 0    u32 joints that hold    f64 time; then for each:
 //                     u8 kind (ob_joint_kind); u32 object[2], the second UINT32_MAX: the world; of each object f32 p[3], z[3]:
@@ -64,7 +65,7 @@ enum {
 	OB_FEED_SIMULATORS = 4,
 	OB_FEED_JOINTS = 5
 }; // first byte
-enum { OB_FEED_VOID = 1, OB_FEED_PAUSED = 2 }; // its flags
+enum { OB_FEED_VOID = 1, OB_FEED_PAUSED = 2, OB_FEED_FREE_RUN = 1 }; // flags of motions; of simulators
 enum { // an object's
 	OB_FEED_STATIC = 1,
 	OB_FEED_FROZEN = 2,

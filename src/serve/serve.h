@@ -43,6 +43,7 @@ typedef struct ob_server_config {
 	uint32_t viewers; // at most
 	const ob_scene *scene;
 	const char *version;
+	bool free_run; // simulators have times of their own (free/free.h)
 	const char *fixed; // why the scene cannot start anew with other parameters; NULL: it can
 	const ob_message *film; // shown instead of a universe (film.h), to each viewer at a time of its own; NULL: none
 } ob_server_config;

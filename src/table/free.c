@@ -394,7 +394,7 @@ void ob_free_run_until(ob_universe *u, uint64_t step)
 {
 	ob_free_control *c = u->free.control;
 	if (c->begun_ns == 0 && step > 0)
-		__atomic_store_n(&c->begun_ns, ob_clock_ns(), __ATOMIC_RELEASE);
+		ob_free_set_clock(u, 0, c->settings.pace, INFINITY);
 	const bool moves = __atomic_load_n(&c->until, __ATOMIC_RELAXED) != (uint32_t)step;
 	end_sleeps(u, (double)step * u->header.run.step_length, moves);
 	if (!moves)
@@ -408,7 +408,19 @@ uint32_t ob_free_until(const ob_universe *u)
 	return __atomic_load_n(&u->free.control->until, __ATOMIC_ACQUIRE);
 }
 
-uint64_t ob_free_begun_ns(const ob_universe *u)
+void ob_free_set_clock(ob_universe *u, double t, double pace, double stands)
 {
-	return __atomic_load_n(&u->free.control->begun_ns, __ATOMIC_ACQUIRE);
+	ob_free_control *c = u->free.control;
+	__atomic_store(&c->stands, &stands, __ATOMIC_RELEASE);
+	__atomic_store(&c->pace, &pace, __ATOMIC_RELEASE);
+	__atomic_store_n(&c->begun_ns, ob_clock_ns() - (uint64_t)(1e9 * t / pace), __ATOMIC_RELEASE);
+}
+
+uint64_t ob_free_due_ns(const ob_universe *u, double t)
+{
+	const ob_free_control *c = u->free.control;
+	double pace, stands;
+	__atomic_load(&c->stands, &stands, __ATOMIC_ACQUIRE);
+	__atomic_load(&c->pace, &pace, __ATOMIC_ACQUIRE);
+	return t < stands ? __atomic_load_n(&c->begun_ns, __ATOMIC_ACQUIRE) + (uint64_t)(1e9 * t / pace) : UINT64_MAX;
 }

@@ -112,6 +112,8 @@ typedef struct ob_free_control {
 	_Alignas(64) uint32_t until; // futex word: step (from 0) at which simulators stop and wait; the host's
 	uint32_t zero;
 	uint64_t begun_ns; // clock at which own time 0 was due; 0 = not yet
+	double pace; // s a second of that clock; infinity: simulators follow none
+	double stands; // s: own time at which the clock stands; infinity: it goes on
 } ob_free_control;
 
 static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 448 && sizeof(ob_free_group) == 192,
@@ -133,6 +135,9 @@ void ob_free_set_rate(ob_universe *u, uint32_t id, double rate);
 // Lets simulators run until so many steps are complete. The first call starts their clock. Wakes simulators that sleep, but
 // those whose flights hold until then: one that falls asleep meanwhile is woken by the next call.
 void ob_free_run_until(ob_universe *u, uint64_t step);
+// Sets the clock of all simulators: own time t (s) is due now, later times at this pace, and none from `stands` (s) on.
+// While it changes, a step may begin that is due by neither clock. Infinity: no pace; it goes on.
+void ob_free_set_clock(ob_universe *u, double t, double pace, double stands);
 // Wakes all that sleep in flight: something has changed.
 void ob_free_wake(ob_universe *u);
 // Wakes all that wait, so that they see that the run stops.
@@ -155,7 +160,8 @@ uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint3
 bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_ledger *out);
 // Step at which simulators stop and wait.
 uint32_t ob_free_until(const ob_universe *u);
-uint64_t ob_free_begun_ns(const ob_universe *u);
+// Clock (ob_clock_ns) from which on a simulator at own time t (s) may step; UINT64_MAX: the clock stands before.
+uint64_t ob_free_due_ns(const ob_universe *u, double t);
 void ob_free_get_counts(const ob_universe *u, uint32_t id, ob_free_counts *out);
 // Object that the simulator of an object waits for. False: none.
 bool ob_free_blocker(const ob_universe *u, uint32_t id, uint32_t *blocker);

@@ -15,7 +15,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 41, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
+enum { OB_LAYOUT_VERSION = 42, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
 
 typedef enum ob_area {
 	OB_AREA_CONTROL,

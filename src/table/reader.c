@@ -181,6 +181,15 @@ bool ob_universe_get_home(const ob_universe *u, uint32_t id, uint32_t *worker)
 	return *worker < u->header.sizes.workers;
 }
 
+bool ob_universe_get_own_time(const ob_universe *u, uint32_t id, double *time)
+{
+	if (is_lost(u) || !ob_free_settings_of(u) || id >= u->header.sizes.capacity ||
+	    ob_free_kind_of(u, id, NULL) != OB_FREE_SIMULATED)
+		return false;
+	*time = ob_free_time(u, id);
+	return isfinite(*time);
+}
+
 // Copies plain data word by word: at least each word is whole.
 static void copy_words(void *to, const void *from, size_t bytes)
 {

@@ -1,6 +1,7 @@
 // Colours by who simulates: equal for members of a group, different across groups.
 #include "check.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "measure/colouring.h"
@@ -9,11 +10,14 @@ enum { OBJECTS = 6 };
 static ob_passport passport[OBJECTS];
 static ob_motion motion[OBJECTS];
 static uint32_t home[OBJECTS] = { UINT32_MAX, 0, 1, 2, 2, UINT32_MAX };
+static double own_time[OBJECTS] = { NAN, 2, 2.01, 2.01, 3, NAN };
 static const ob_worker_place place[] = { { 100, 0 }, { 101, 0 }, { 101, 1 } };
 
 static bool alike(ob_colour_key key, uint32_t a, uint32_t b)
 {
-	const ob_snapshot s = { .count = OBJECTS, .passport = passport, .motion = motion, .home = home };
+	const ob_snapshot s = {
+		.time = 2, .count = OBJECTS, .passport = passport, .motion = motion, .home = home, .own_time = own_time
+	};
 	const ob_colouring c = { key, place, 3 };
 	float of_a[3], of_b[3];
 	ob_colouring_of(&c, &s, a, of_a);
@@ -36,6 +40,8 @@ int main(void)
 	CHECK(alike(OB_COLOUR_PROCESS, 2, 3) && !alike(OB_COLOUR_PROCESS, 1, 2));
 	CHECK(alike(OB_COLOUR_RANK, 1, 2) && !alike(OB_COLOUR_RANK, 2, 3));
 	CHECK(alike(OB_COLOUR_WORKER, 0, 5)); // none is known
+	CHECK(alike(OB_COLOUR_LAG, 2, 3) && !alike(OB_COLOUR_LAG, 1, 2) && !alike(OB_COLOUR_LAG, 3, 4));
+	CHECK(alike(OB_COLOUR_LAG, 0, 5) && ob_share_of_lead(0) == 0 && ob_share_of_lead(1) == 1);
 	CHECK(alike(OB_COLOUR_ISLAND, 2, 3) && !alike(OB_COLOUR_ISLAND, 3, 4));
 	CHECK(alike(OB_COLOUR_REST, 2, 3) && !alike(OB_COLOUR_REST, 1, 2));
 	CHECK(!alike(OB_COLOUR_COST, 2, 3) && alike(OB_COLOUR_COST, 0, 1));

@@ -64,6 +64,12 @@ class Frames(program.Case):
 		self.assertEqual(pictures["island"], pictures["processes"])
 		self.assertEqual(len({str(p) for p in pictures.values()}), 3)
 
+	def test_own_times(self):
+		"""Bodies have colours by lag in a free run, and are grey in lockstep."""
+		for name, *words in (("free", "--sync", "free", "--jitter", ".3"), ("lockstep",)):
+			self.draw(name, "--duration", "1", "--still", "1", "--colour-by", "lag", *words)
+		self.assertNotEqual(digest(self.path("free")), digest(self.path("lockstep")))
+
 	def draw(self, name, *words):
 		report = program.report(*BOXES, *SIZE, "--frames", self.path(name), *words)
 		names = sorted(os.listdir(self.path(name)))

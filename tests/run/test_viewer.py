@@ -153,6 +153,37 @@ class Viewer(server.Case):
 		self.assertEqual(b.console(), [])
 		self.end(saying="was killed by SIGKILL")
 
+	def test_own_times(self):
+		"""In a free run the ribbon shows own times: while a simulator stands, others are ahead. It can be killed; time can stand."""
+		self.serve("--sync", "free", "-D", "n=8", "--isolation", "process", "--workers", "4", scene="falling_boxes")
+		b = self.open()
+		b.key("m")
+		leads = "[...obsim.universe.simulators.values()].map((s) => s.lead)"
+		b.wait(f"obsim.universe.told > .5 && obsim.universe.simulators.size === 8 && Math.max(...{leads}) > 0")
+		b.wait("!document.querySelector('#times').hidden && document.querySelectorAll('#times rect').length > 0")
+		picked, pid = b.run("const [id, s] = [...obsim.universe.simulators][0]; obsim.pick(id); return [id, obsim.workers.list[s.home].pid]")
+		os.kill(pid, signal.SIGSTOP)
+		b.wait(f"Math.max(...{leads}) > .2 && obsim.universe.simulators.get({picked}).lead < .05")
+		b.run("const s = document.querySelector('#colours'); s.value = 'lag'; s.dispatchEvent(new Event('change'))")
+		self.keep(b, "own-times.png")
+		os.kill(pid, signal.SIGCONT)
+		b.wait(f"Math.max(...{leads}) < .1")
+		b.wait("!document.querySelector('[data-do=kill]').hidden && !document.querySelector('[data-do=kill]').disabled")
+		b.run("document.querySelector('[data-do=kill]').click()")
+		b.wait("document.querySelector('#notice').textContent.includes('It goes on where it had published')")
+		b.key(" ")
+		b.wait("obsim.universe.paused")
+		stood = b.wait("obsim.universe.told")
+		b.key(".")
+		b.wait(f"obsim.universe.told > {stood} && obsim.universe.told < {stood} + .02")
+		b.key(" ")
+		b.wait(f"obsim.universe.told > {stood} + .1")
+		count = b.run("return obsim.universe.objects.size")
+		b.key("t")
+		b.wait(f"obsim.universe.objects.size > {count}")
+		self.assertEqual(b.console(), [])
+		self.end(saying="was killed by SIGKILL")
+
 	def test_hand(self):
 		"""A visitor drags a picked box, edits and pushes it; another sees it."""
 		with open(self.path("scene.lua"), "w") as f:

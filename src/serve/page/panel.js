@@ -122,6 +122,8 @@ export class Panel extends EventTarget {
 		$('#rate').disabled = !operates;
 		this.looksOnly = w.look_only;
 		this.isolation = w.isolation;
+		this.free = w.sync === 'free';
+		$('#colours [value=lag]').hidden = !this.free;
 		this.pool = `one of ${w.workers} ${w.isolation === 'process' ? 'processes' : 'threads'}`;
 	}
 
@@ -164,7 +166,7 @@ export class Panel extends EventTarget {
 		$('#statistics').textContent = `${s.objects} objects, ${s.awake} awake, ${s.islands} islands, ` +
 			`${s.viewers} viewer${s.viewers === 1 ? '' : 's'}${s.frozen ? `, ${s.frozen} frozen` : ''}${s.deaths ? `, ${s.deaths} death${s.deaths === 1 ? '' : 's'}` : ''}`;
 		if (this.deaths !== undefined && s.deaths > this.deaths)
-			this.notice(`${s.last_death}. All simulators were started again from the last checkpoint, and reach the same bits.`, 8);
+			this.notice(`${s.last_death}. ${this.free ? 'It goes on where it had published.' : 'All simulators were started again from the last checkpoint, and reach the same bits.'}`, 8);
 		else if (s.ended && !this.ended)
 			this.notice(`The run has ended after step ${s.step}${s.deaths ? `, with ${s.deaths} deaths` : ''}; hash of its state: ${s.hash}`, 0);
 		this.deaths = s.deaths;
@@ -221,7 +223,7 @@ export class Panel extends EventTarget {
 		why.hidden = button.hidden;
 		const named = shared.map((name, i) => name || `object ${i}`).join(', '), more = (d.shared ?? 0) - shared.length;
 		why.textContent = button.disabled ? 'Its simulator is a thread of one process, which a kill would end as a whole; serve with --isolation process.' :
-			`It simulates ${named}${more > 0 ? ` and ${more} more` : ''}. All simulators start again from the last checkpoint, and reach the same bits.`;
+			`It simulates ${named}${more > 0 ? ` and ${more} more` : ''}. ${this.free ? 'They go on where they had published; others do not wait.' : 'All simulators start again from the last checkpoint, and reach the same bits.'}`;
 	}
 
 	// Shows a notice for some seconds, or, with none, until the next

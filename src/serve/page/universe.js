@@ -5,7 +5,7 @@ import { isHulled, radiusOf } from './shapes.js';
 const DELAY = 0.05; // s of wall time by which the shown time lags, so that messages arrive before they are needed
 const PULL = 5; // 1/s: rate at which its clock approaches the universe's
 const LOST = 0.5, SETTLED = 1e-4; // s: from this difference on, the clock is set; below that, it stands
-const MOTIONS = 1, CONTACTS = 2, MESH = 3, SIMULATORS = 4, JOINTS = 5, VOID = 1, PAUSED = 2; // of a message
+const MOTIONS = 1, CONTACTS = 2, MESH = 3, SIMULATORS = 4, JOINTS = 5, VOID = 1, PAUSED = 2, FREE_RUN = 1; // of a message
 const MESH_HEAD = 12, MESH_VERTEX = 12; // bytes; floats
 const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
@@ -48,7 +48,7 @@ export class Universe extends EventTarget {
 		this.objects = new Map();
 		this.contacts = [];
 		this.joints = []; // { kind, ends: two of { id, p, axis }: in the object's frame, or the world's }
-		this.simulators = new Map(); // by id: { home: worker, -1 unknown, island, substeps, state }
+		this.simulators = new Map(); // by id: { home: worker, -1 unknown, island, substeps, state, lead: s, NaN in lockstep }
 		this.told = 0; // s: newest received time
 		this.toldAt = 0; // s of wall time of its arrival
 		this.speed = 0; // simulated seconds a second, measured
@@ -187,16 +187,17 @@ export class Universe extends EventTarget {
 	}
 
 	hearSimulators(r) {
-		r.u8();
+		const free = (r.u8() & FREE_RUN) !== 0;
 		r.u16();
 		const n = r.u32();
 		r.f64();
 		this.simulators.clear();
 		for (let i = 0, id = -1; i < n; i++) {
 			id = (id + r.number()) % 2 ** 32;
-			this.simulators.set(id, { home: r.number() - 1, island: r.number(), substeps: r.number(), state: r.u8() });
+			this.simulators.set(id, { home: r.number() - 1, island: r.number(), substeps: r.number(), state: r.u8(), lead: free ? r.f32() : NaN });
 		}
 		this.news++;
+		this.tell('simulators', this.simulators);
 	}
 
 	// The clock follows received times, at any rate.

@@ -1,8 +1,10 @@
-// The strip of workers: colour, process, CPU, and what each does now; and the choice of colours.
-import { colourOfNumber, cssColour } from './colouring.js';
+// The strip of workers: colour, process, CPU, and what each does now; the choice of colours; and the own times of a free run.
+import { colourOfNumber, colourOfShare, cssColour, shareOfLead } from './colouring.js';
 
 const SPAN = 1; // s over which a share of CPU is taken: the host refreshes CPU times twice a second
 const MOST = 16; // rows: beyond that, the workers with the most CPU
+const PLACES = 128; // of the ribbon of own times: simulators at one place share a line
+const SVG = 'http://www.w3.org/2000/svg';
 
 const $ = (selector) => document.querySelector(selector);
 
@@ -42,6 +44,25 @@ export class Workers extends EventTarget {
 		$('#workers tbody').replaceChildren(...rowsShown.slice(0, MOST).map((w) => this.row(w, nameOf)));
 		const more = rowsShown.length - MOST;
 		$('#workers .rest').textContent = more > 0 ? `and ${more} more, with less CPU` : '';
+	}
+
+	// The ribbon: a line for each place on the scale of leads, the higher the more simulators are there.
+	times(simulators) {
+		const leads = [...simulators.values()].map((s) => s.lead).filter((lead) => !Number.isNaN(lead)), counts = Array(PLACES).fill(0);
+		$('#times').hidden = leads.length === 0;
+		if ($('#workers').hidden || leads.length === 0)
+			return;
+		for (const lead of leads)
+			counts[Math.round((PLACES - 1) * Math.min(1, shareOfLead(lead)))]++;
+		$('#times output').value = `${leads.length} simulators`;
+		$('#times svg').replaceChildren(...counts.flatMap((n, i) => {
+			if (n === 0)
+				return [];
+			const bar = document.createElementNS(SVG, 'rect'), high = 0.3 + 0.7 * Math.sqrt(n / Math.max(...counts));
+			for (const [name, value] of Object.entries({ x: i / PLACES, y: 1 - high, width: 1 / PLACES, height: high, fill: cssColour(colourOfShare(i / (PLACES - 1))) }))
+				bar.setAttribute(name, value);
+			return [bar];
+		}));
 	}
 
 	row({ i, pid, rank, objects, share, busy }, nameOf) {
