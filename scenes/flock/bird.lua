@@ -1,5 +1,6 @@
 -- Steering as Reynolds has it ("Flocks, herds and schools", 1987): with the neighbours, towards them, not into them.
 local sight, room, cruise = 2.5, .9, 4
+local turn <const>, damped <const> = .8, .25 -- N m, N m s, for each kg
 
 local calm, flushed = "#3f7cac", "#e4572e"
 
@@ -29,8 +30,18 @@ function on_step(dt)
 	local a = math.sqrt(ax * ax + ay * ay + az * az)
 	local most = a > 12 and 12 / a or 1
 	self:force(mass * ax * most, mass * ay * most, mass * (az * most + 9.81))
+
+	-- the beak goes ahead, and the back to the side from which its weight and the turn are carried
+	local fx, fy, fz = self:turned(1, 0, 0)
+	local ux, uy, uz = self:turned(0, 0, 1)
 	local wx, wy, wz = self:spin()
-	self:torque(-.02 * mass * wx, -.02 * mass * wy, -.02 * mass * wz)
+	local v = math.sqrt(vx * vx + vy * vy + vz * vz) + 1e-9
+	local lift = math.sqrt(ax * ax + ay * ay + 9.81 * 9.81)
+	local hx, hy, hz = vx / v, vy / v, vz / v
+	local lx, ly, lz = ax / lift, ay / lift, 9.81 / lift
+	self:torque(mass * (turn * (fy * hz - fz * hy + uy * lz - uz * ly) - damped * wx),
+	            mass * (turn * (fz * hx - fx * hz + uz * lx - ux * lz) - damped * wy),
+	            mass * (turn * (fx * hy - fy * hx + ux * ly - uy * lx) - damped * wz))
 end
 
 function on_contact(other, impulse, point)
