@@ -1,7 +1,9 @@
 -- A flock of birds that keep together and apart, circle a tower, bank as they turn, flush red where they touch something; and
 -- a fountain whose drops are made and taken away while the run goes on. A bird is a compound: its trunk, two wings and a
 -- tail collide as they look. Best seen live: obsim serve scenes/flock.lua
+--   -D wings=false      capsules in place of birds, as the one ODE world (--arch monolith) has no compounds
 local n = param("n", 60, { min = 1, max = 2000 })
+local wings = param("wings", true)
 
 scene { title = "Flock", duration = 20, seed = 7, room = 80 }
 sky { top = "#5b8fc7", horizon = "#f4e7d3" }
@@ -49,10 +51,17 @@ end
 
 for i = 1, n do
 	local angle, r = 2 * math.pi * i / n, random(5, 9)
-	compound { name = "bird " .. i, parts = bird, at = { r * math.cos(angle), r * math.sin(angle), random(2, 5) },
-	           rotation = { axis = { 0, 0, 1 }, degrees = 360 * i / n + 90 },
-	           velocity = { -3 * math.sin(angle), 3 * math.cos(angle), 0 }, material = "feathers",
-	           colour = "#3f7cac", script = "flock/bird.lua", state = { height = random(2, 5) } }
+	local one = { name = "bird " .. i, at = { r * math.cos(angle), r * math.sin(angle), random(2, 5) },
+	              rotation = { axis = { 0, 0, 1 }, degrees = 360 * i / n + 90 },
+	              velocity = { -3 * math.sin(angle), 3 * math.cos(angle), 0 }, material = "feathers",
+	              colour = "#3f7cac", script = "flock/bird.lua", state = { height = random(2, 5) } }
+	if wings then
+		one.parts = bird
+		compound(one)
+	else
+		one.radius, one.length = .12, .3
+		capsule(one)
+	end
 end
 
 cylinder { name = "fountain", radius = .5, length = .4, at = { 7, -3, .2 }, static = true, material = "stone",

@@ -22,6 +22,7 @@ class Driver:
 	"""chromedriver: opens browsers."""
 
 	def __init__(self):
+		self.open = set() # browsers, which would outlive the driver
 		self.dir = tempfile.mkdtemp(prefix="obsim-browser-")
 		self.log = os.path.join(self.dir, "log")
 		with open(self.log, "wb") as log:
@@ -48,6 +49,8 @@ class Driver:
 			raise RuntimeError(json.load(error)["value"]["message"]) from None
 
 	def end(self):
+		for b in list(self.open):
+			b.close()
 		self.process.terminate()
 		self.process.wait(PATIENCE)
 		shutil.rmtree(self.dir, ignore_errors=True)
@@ -63,6 +66,7 @@ class Browser:
 		session = driver.ask("POST", "/session", {"capabilities": {"alwaysMatch": {"browserName": "chrome",
 			"goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}}}})
 		self.path = "/session/" + session["sessionId"]
+		driver.open.add(self)
 
 	def ask(self, method, path, body=None):
 		return self.driver.ask(method, self.path + path, body)
@@ -129,4 +133,6 @@ class Browser:
 			if entry["level"] in ("SEVERE", "WARNING")]
 
 	def close(self):
-		self.ask("DELETE", "")
+		if self in self.driver.open:
+			self.driver.open.discard(self)
+			self.ask("DELETE", "")

@@ -521,7 +521,7 @@ box { name = "it", size = { .4, .4, .4 }, at = { 0, 0, 1.2 }, mass = 1, script =
 
 	def test_monolith_population(self):
 		"""Objects come and go; the run is the same each time, in a thread or a process."""
-		found = [program.report(*self.FLOCK[:1], "-D", "n=30", "--duration", "2", *ROOMY, *MONOLITH, *more)
+		found = [program.report(*self.FLOCK[:1], "-D", "n=30", "-D", "wings=false", "--duration", "2", *ROOMY, *MONOLITH, *more)
 			for more in ([], [], ["--isolation", "process"])]
 		self.assertGreater(found[0]["objects"], 40)
 		self.assertEqual(len({r["state_hash"] for r in found}), 1)

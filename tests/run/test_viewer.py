@@ -248,6 +248,7 @@ class Viewer(server.Case):
 		self.assertLess(height(end), 5.5) # it has fallen
 		self.assertEqual(b.run("return obsim.universe.objects.size"), objects)
 		self.assertGreater(b.run("return obsim.universe.simulators.size"), 0)
+		self.assertEqual(b.run("return [obsim.workers.list.length, document.querySelector('#colours [value=worker]').hidden]"), [2, False])
 		self.assertIsNone(height(begin))
 		self.keep(b, "session.png")
 		self.assertEqual(b.console(), [])
@@ -390,6 +391,40 @@ controls { key = "w", label = "Ahead", sends = "go", values = { 1 } }
 		b.wait("obsim.universe.time > 1.98")
 		self.assertEqual(b.run("return obsim.camera.target"), still)
 		self.assertEqual(b.console(), [])
+		self.end()
+
+	def test_attends(self):
+		"""The first viewpoint goes with the only mover beside boxes at rest, above the ground; a shared one is another's."""
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("ground {}\ncamera 'main' { from = { -.5, -.8, .17 }, fov = 30 }\nfor i = 0, 5 do box { size = { .5, .5, .5 }, at = { -4 + .7 * i, 0, .25 } } end\n"
+				"sphere { name = 'mover', radius = .3, at = { 0, 1, .3 }, velocity = { 2, 0, 0 }, spin = { 0, 2 / .3, 0 } }\n")
+		self.serve_file(self.path("scene.lua"), "--paused", "--listen", "127.0.0.1:0")
+		b = self.open()
+		self.assertNotIn("0 frames", b.run("return document.querySelector('#speed').textContent"))
+		seen = """const c = obsim.camera, o = [...obsim.universe.objects.values()].find((o) => o.name === 'mover'), p = obsim.universe.pose(o).p;
+			const way = p.map((x, k) => x - c.eye[k]), far = Math.hypot(...way);
+			return { x: p[0], height: c.eye[2], off: Math.acos(way.reduce((s, x, k) => s + x * c.forward[k], 0) / far) };"""
+		for second in range(1, 5):
+			b.run("obsim.universe.send({ do: 'step', steps: 60 })")
+			b.wait(f"obsim.universe.time > {second} - .01")
+			self.still(b)
+			found = b.run(seen)
+			self.assertGreater(found["height"], .1)
+			self.assertLess(found["off"], .48) # rad: within the picture
+		self.assertGreater(found["x"], 7)
+		self.keep(b, "attends.png")
+		b.run("obsim.pick([...obsim.universe.objects.values()].find((o) => o.name === 'box#1').id)")
+		b.wait("document.querySelector('#details dl').textContent.includes('none: it rests')")
+		b.pointer(("move", 480, 300), ("down", 0), ("move", 520, 330), ("up", 0)) # this viewpoint stays
+		b.run("document.querySelector('[data-do=link]').click()")
+		other = browser.Browser(self.driver)
+		self.addCleanup(other.close)
+		other.go(b.run("return location.href"))
+		other.wait(SEEN)
+		eye = "return [...obsim.camera.eye, ...obsim.camera.forward]"
+		for x, y in zip(b.run(eye), other.run(eye)):
+			self.assertAlmostEqual(x, y, delta=2e-3)
+		self.assertEqual(b.console() + other.console(), [])
 		self.end()
 
 	def test_clock(self):

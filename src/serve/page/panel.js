@@ -193,7 +193,7 @@ export class Panel extends EventTarget {
 			facts.push(['mass', `${number(d.mass, 4)} kg`], ['friction', number(d.friction)], ['restitution', number(d.restitution)],
 				['position', `${vector(d.p)} m`], ['velocity', `${vector(d.v)} m/s`], ['rotation', `${vector(d.w)} rad/s`]);
 		if (!d.gone && d.mass > 0 && d.island !== undefined)
-			facts.push(['island of', d.island], ['substeps', d.substeps || 'none: it rests']);
+			facts.push(...(this.free ? [] : [['island of', d.island], ['substeps', d.substeps || 'none: it rests']]));
 		if (d.script)
 			facts.push(['script', d.script]);
 		if (d.home !== undefined)

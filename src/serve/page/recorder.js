@@ -27,6 +27,8 @@ export class Recorder extends EventTarget {
 		super();
 		this.universe = universe;
 		this.page = null; // the last record: a promise of its text
+		this.workers = null; // rows of the last message of them
+		universe.addEventListener('workers', (e) => { this.workers = e.detail; });
 	}
 
 	get on() { return this.universe.tap !== null; }
@@ -74,7 +76,8 @@ export class Recorder extends EventTarget {
 		const meshes = await Promise.all(welcome.meshes.map(async (path) => (await fetched(path)).arrayBuffer()));
 		const looksOnly = { ...welcome, role: 'watch', look_only: true, meshes: [], controls: [], params: [] };
 		const film = { begin, end, interval: welcome.step_length, created: new Date().toISOString(), version: welcome.version, commit: '', objects: [], events: [], gaps: true };
-		const head = [JSON.stringify({ welcome: looksOnly }), JSON.stringify({ film }), ...meshes].flatMap(framed);
+		const workers = this.workers ? [JSON.stringify({ workers: this.workers })] : [];
+		const head = [JSON.stringify({ welcome: looksOnly }), JSON.stringify({ film }), ...workers, ...meshes].flatMap(framed);
 		const text = await base64(new Blob([...head, ...messages]));
 		return (await (await fetched('player.html')).text()).replace(EMPTY, () => EMPTY.replace('><', `>${text}<`));
 	}

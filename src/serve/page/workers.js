@@ -20,11 +20,17 @@ export class Workers extends EventTarget {
 
 	show(on) { $('#workers').hidden = !on; }
 
-	// A recording does not hold where simulators ran.
+	// A recording holds where simulators ran only if it is a viewer's own.
 	film() {
-		for (const option of $('#colours').options)
-			option.hidden = ['worker', 'process', 'rank'].includes(option.value);
+		this.filmed = true;
+		this.offer(false);
 		$('#workers table').hidden = true;
+	}
+
+	// Offers colours by workers, or hides them.
+	offer(on) {
+		for (const value of ['worker', 'process', 'rank'])
+			$(`#colours [value=${value}]`).hidden = !on;
 	}
 
 	hear(rows, nameOf, now = performance.now() / 1000) {
@@ -36,6 +42,8 @@ export class Workers extends EventTarget {
 				Object.assign(mark, { at: now, share: Math.max(0, cpu - mark.cpu) / span, cpu });
 			return { pid, rank, objects, cpu, busy, share: mark.share };
 		});
+		if (this.filmed)
+			this.offer(true);
 		if ($('#workers').hidden)
 			return;
 		const rowsShown = this.list.map((w, i) => ({ ...w, i }));
