@@ -427,6 +427,28 @@ controls { key = "w", label = "Ahead", sends = "go", values = { 1 } }
 		self.assertEqual(b.console() + other.console(), [])
 		self.end()
 
+	def test_rest(self):
+		"""A universe at rest is not drawn again while time goes on, and has all pixels; without a GPU, fewer while it moves."""
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("ground {}\nbox { size = { 1, 1, 1 }, at = { 0, 0, .5 } }\n")
+		self.serve_file(self.path("scene.lua"))
+		b = self.open()
+		b.run("const d = obsim.drawing(), draw = d.draw; window.drawn = 0; d.draw = (...words) => { window.drawn++; draw.apply(d, words); }")
+		full = lambda: b.run("const c = document.querySelector('#picture'); return [c.width, c.height, c.clientWidth, c.clientHeight]")
+		def stands():
+			b.run("window.drawn = 0")
+			told = b.run("return obsim.universe.time")
+			b.wait(f"obsim.universe.time > {told} + 1")
+			return b.run("return window.drawn") == 0
+		self.assertTrue(program.wait_until(stands))
+		width, height, *client = full()
+		self.assertEqual([width, height], client)
+		b.key("t")
+		b.wait("window.drawn > 3")
+		self.assertLessEqual(full()[0], width)
+		self.assertEqual(b.console(), [])
+		self.end()
+
 	def test_clock(self):
 		"""Pause, a step and the pace, by their buttons."""
 		self.serve()

@@ -12,6 +12,7 @@ import { Hand } from './hand.js';
 import { Explore } from './explore.js';
 import { Recorder } from './recorder.js';
 import { Offers } from './offers.js';
+import { Sharpness } from './sharpness.js';
 
 const THROWN = 12; // m/s
 const PICKED = [1, 0.7, 0.33, 1];
@@ -24,8 +25,8 @@ const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const recording = document.querySelector('meta[name=recording]').content;
-const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), recorder = new Recorder(universe);
-let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '';
+const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), recorder = new Recorder(universe), sharpness = new Sharpness();
+let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '', shownShare = 1;
 
 // ---- the picture
 
@@ -35,7 +36,7 @@ function bodies() {
 		const pose = universe.pose(o);
 		const mesh = drawing.looks.get(o.mesh);
 		if (pose)
-			out.push({ id: o.id, name: o.id === avatar?.id ? look.avatar : o.name, attention: universe.attention(o), shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour && !others, meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, kind: o.motion.kind, shown: colourBy(key, o, universe.simulators.get(o.id), workers.list),
+			out.push({ id: o.id, name: o.id === avatar?.id ? look.avatar : o.name, attention: universe.attention(o), shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour && !others, meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, rests: universe.rests(o), kind: o.motion.kind, shown: colourBy(key, o, universe.simulators.get(o.id), workers.list),
 				roughness: o.roughness, metal: o.metal, ...pose });
 	}
 	return out;
@@ -70,13 +71,17 @@ function accompany(list, seconds) {
 	panel.follows(camera.holds);
 }
 
+function draw(list, view, width, height) {
+	if (canvas.width !== width || canvas.height !== height)
+		[canvas.width, canvas.height] = [width, height];
+	drawing.draw(list, view, look, overlay(list, view));
+}
+
 let before = performance.now();
 function frame(now) {
 	const seconds = Math.min(0.25, (now - before) / 1000), scale = Math.min(2, devicePixelRatio || 1);
 	const width = Math.max(1, Math.round(canvas.clientWidth * scale)), height = Math.max(1, Math.round(canvas.clientHeight * scale));
 	before = now;
-	if (canvas.width !== width || canvas.height !== height)
-		[canvas.width, canvas.height] = [width, height];
 	universe.advance(seconds);
 	offers.look();
 	const list = bodies();
@@ -86,12 +91,13 @@ function frame(now) {
 		camera.go(list);
 	accompany(list, seconds);
 	const view = camera.view(width, height);
-	// An unchanged picture is not drawn again: a paused universe costs nothing.
-	const { on } = panel, seen = [universe.time, universe.news, drawing.looks.size, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
+	// An unchanged picture is not drawn again: a universe that is paused or at rest costs nothing.
+	const { on } = panel, seen = [list.every((b) => b.rests) || universe.time, universe.news, drawing.looks.size, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
 		on.contacts, on.joints, on.simulators, workers.key, read, hand.held?.target].join();
-	if (seen !== shown)
-		drawing.draw(list, view, look, overlay(list, view));
-	shown = seen;
+	const share = drawing.software && !explore.recorder ? sharpness.next(seconds, seen !== shown) : 1;
+	if (seen !== shown || share !== shownShare)
+		draw(list, view, Math.round(width * share), Math.round(height * share));
+	[shown, shownShare] = [seen, share];
 	panel.clock(universe.time, universe.rate, universe.paused);
 	frames++;
 	requestAnimationFrame(frame);
@@ -260,7 +266,11 @@ offers.addEventListener('control', ({ detail: { to, text } }) => {
 		universe.send({ do: 'message', id: o.id, generation: o.generation, text });
 });
 explore.addEventListener('pick', (e) => pick(e.detail));
-panel.addEventListener('picture', () => explore.picture(canvas));
+panel.addEventListener('picture', () => {
+	const scale = Math.min(2, devicePixelRatio || 1), size = [canvas.clientWidth, canvas.clientHeight].map((x) => Math.max(1, Math.round(x * scale)));
+	draw(bodies(), camera.view(...size), ...size); // in full resolution
+	explore.picture(canvas);
+});
 panel.addEventListener('video', () => document.querySelector('[data-do=video]').setAttribute('aria-pressed', explore.video(canvas)));
 // Begins a record, with joints and with who simulates what, or ends it.
 function record() {
@@ -438,6 +448,7 @@ universe.addEventListener('close', (e) => {
 
 async function begin() {
 	drawing = new Drawing(canvas, asked.get('light'));
+	document.body.classList.toggle('software', drawing.software);
 	await drawing.load();
 	await new Promise((resolve, reject) => {
 		universe.addEventListener('welcome', resolve, { once: true });

@@ -2,7 +2,8 @@
 import { STANDS, SWINGS, TURNS, normalize, poseAt } from './motion.js';
 import { isHulled, radiusOf } from './shapes.js';
 
-const DELAY = 0.05; // s of wall time by which the shown time lags, so that messages arrive before they are needed
+const DELAY_LEAST = 0.02, DELAY_MOST = 0.1; // s of wall time by which the shown time lags, so that messages arrive before
+const DELAY_GAPS = 1.25, GAP_FADE = 1;      // they are needed: in gaps between messages, the longest of the last second
 const PULL = 5; // 1/s: rate at which its clock approaches the universe's
 const LOST = 0.5, SETTLED = 1e-4; // s: from this difference on, the clock is set; below that, it stands
 const MOTIONS = 1, CONTACTS = 2, MESH = 3, SIMULATORS = 4, JOINTS = 5, VOID = 1, PAUSED = 2, FREE_RUN = 1; // of a message
@@ -12,6 +13,7 @@ const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
 const BLEND = 0.08; // s, simulated, to blend a prediction into a new motion
 const ATTENTION_FADE = 1, ATTENTION_LEAST = 0.05, ATTENTION_GAP = 1; // s, share, s: as in src/render/draw_list.c
+const ATTENTION_UNSEEN = 1e-3; // share that the viewpoint does not wait for
 
 class Reader {
 	constructor(buffer) {
@@ -51,6 +53,7 @@ export class Universe extends EventTarget {
 		this.simulators = new Map(); // by id: { home: worker, -1 unknown, island, substeps, state, lead: s, NaN in lockstep }
 		this.told = 0; // s: newest received time
 		this.toldAt = 0; // s of wall time of its arrival
+		this.gap = 0; // s of wall time between messages: the longest, which fades
 		this.speed = 0; // simulated seconds a second, measured
 		this.time = 0; // s: the shown time
 		this.rate = 1;
@@ -203,6 +206,8 @@ export class Universe extends EventTarget {
 	// The clock follows received times, at any rate.
 	follow(time) {
 		const now = performance.now() / 1000, since = now - this.toldAt;
+		if (this.toldAt > 0)
+			this.gap = Math.max(Math.min(since, DELAY_MOST), this.gap * Math.exp(-since / GAP_FADE));
 		if (since > 1e-4 && this.toldAt > 0) {
 			const share = Math.min(1, since * 4);
 			this.speed += share * ((time - this.told) / since - this.speed);
@@ -214,7 +219,8 @@ export class Universe extends EventTarget {
 	// Advances the shown time; call it once a frame.
 	advance(seconds) {
 		const speed = this.paused || this.ended ? 0 : this.speed;
-		const goal = this.told + speed * Math.min(performance.now() / 1000 - this.toldAt - DELAY, 0.25);
+		const delay = Math.max(DELAY_LEAST, Math.min(DELAY_MOST, DELAY_GAPS * this.gap));
+		const goal = this.told + speed * Math.min(performance.now() / 1000 - this.toldAt - delay, 0.25);
 		const off = goal - this.time;
 		if (Math.abs(off) > LOST * Math.max(1, speed) || (speed === 0 && Math.abs(off) < SETTLED))
 			this.time = goal;
@@ -228,9 +234,13 @@ export class Universe extends EventTarget {
 		const rests = body.motion.kind === STANDS && !body.fixed, goal = rests ? ATTENTION_LEAST : 1, at = body.attended;
 		const goesOn = at && this.time >= at.time && this.time - at.time <= ATTENTION_GAP;
 		const from = goesOn ? at.level : 1, since = goesOn ? this.time - at.time : Math.max(0, this.time - body.motion.t0);
-		body.attended = { time: this.time, level: goal + (from - goal) * Math.exp(-since / ATTENTION_FADE) };
+		const left = (from - goal) * Math.exp(-since / ATTENTION_FADE);
+		body.attended = { time: this.time, level: Math.abs(left) < ATTENTION_UNSEEN ? goal : goal + left };
 		return body.attended.level;
 	}
+
+	// True if a body stands, and will until there is news of it.
+	rests(body) { return body.fixed || (body.motion.kind === STANDS && this.time > body.motion.t0 + BLEND); }
 
 	// Pose of a body at that time; null: not received yet.
 	pose(body, t = this.time) {

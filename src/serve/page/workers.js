@@ -3,7 +3,7 @@ import { colourOfNumber, colourOfShare, cssColour, shareOfLead } from './colouri
 
 const SPAN = 1; // s over which a share of CPU is taken: the host refreshes CPU times twice a second
 const MOST = 16; // rows: beyond that, the workers with the most CPU
-const PLACES = 128; // of the ribbon of own times: simulators at one place share a line
+const PLACES = 128; // in the ribbon of own times: simulators at one place share a line
 const SVG = 'http://www.w3.org/2000/svg';
 
 const $ = (selector) => document.querySelector(selector);
