@@ -140,8 +140,8 @@ class Viewer(server.Case):
 		b.wait("document.querySelector('#details dl').textContent.includes('reads')")
 		pictures.append(self.still(b))
 		self.assertEqual(len(set(pictures)), 4)
-		b.run("document.querySelector('[data-do=restart]').click()")
-		b.wait("obsim.universe.told < 1")
+		told = b.run("document.querySelector('[data-do=restart]').click(); return obsim.universe.told")
+		b.wait(f"obsim.universe.told < {told} - .5")
 		b.wait("obsim.universe.told > .5")
 		b.run("document.querySelector('[data-do=kill]').click()") # while boxes land
 		b.wait("document.querySelector('#notice').textContent.includes('SIGKILL')")
