@@ -3,7 +3,7 @@ import { STANDS, SWINGS, TURNS, normalize, poseAt } from './motion.js';
 import { isHulled, radiusOf } from './shapes.js';
 
 const DELAY_LEAST = 0.02, DELAY_MOST = 0.1; // s of wall time by which the shown time lags, so that messages arrive before
-const DELAY_GAPS = 1.25, GAP_FADE = 1;      // they are needed: in gaps between messages, the longest of the last second
+const DEVIATIONS = 2, MEMORY = 16; // they are needed: mean gap between messages, and its mean deviation, of about so many
 const PULL = 5; // 1/s: rate at which its clock approaches the universe's
 const LOST = 0.5, SETTLED = 1e-4; // s: from this difference on, the clock is set; below that, it stands
 const MOTIONS = 1, CONTACTS = 2, MESH = 3, SIMULATORS = 4, JOINTS = 5, VOID = 1, PAUSED = 2, FREE_RUN = 1; // of a message
@@ -53,7 +53,7 @@ export class Universe extends EventTarget {
 		this.simulators = new Map(); // by id: { home: worker, -1 unknown, island, substeps, state, lead: s, NaN in lockstep }
 		this.told = 0; // s: newest received time
 		this.toldAt = 0; // s of wall time of its arrival
-		this.gap = 0; // s of wall time between messages: the longest, which fades
+		this.gap = this.deviation = 0; // s of wall time between messages: means
 		this.speed = 0; // simulated seconds a second, measured
 		this.time = 0; // s: the shown time
 		this.rate = 1;
@@ -206,8 +206,11 @@ export class Universe extends EventTarget {
 	// The clock follows received times, at any rate.
 	follow(time) {
 		const now = performance.now() / 1000, since = now - this.toldAt;
-		if (this.toldAt > 0)
-			this.gap = Math.max(Math.min(since, DELAY_MOST), this.gap * Math.exp(-since / GAP_FADE));
+		if (this.toldAt > 0) {
+			const off = Math.min(since, DELAY_MOST) - this.gap;
+			this.gap += off / MEMORY;
+			this.deviation += (Math.abs(off) - this.deviation) / MEMORY;
+		}
 		if (since > 1e-4 && this.toldAt > 0) {
 			const share = Math.min(1, since * 4);
 			this.speed += share * ((time - this.told) / since - this.speed);
@@ -219,7 +222,7 @@ export class Universe extends EventTarget {
 	// Advances the shown time; call it once a frame.
 	advance(seconds) {
 		const speed = this.paused || this.ended ? 0 : this.speed;
-		const delay = Math.max(DELAY_LEAST, Math.min(DELAY_MOST, DELAY_GAPS * this.gap));
+		const delay = Math.max(DELAY_LEAST, Math.min(DELAY_MOST, this.gap + DEVIATIONS * this.deviation));
 		const goal = this.told + speed * Math.min(performance.now() / 1000 - this.toldAt - delay, 0.25);
 		const off = goal - this.time;
 		if (Math.abs(off) > LOST * Math.max(1, speed) || (speed === 0 && Math.abs(off) < SETTLED))
