@@ -76,7 +76,7 @@ int main(int argc, char **argv)
 	if (!kind)
 		return misused("no engine", argv[2]);
 	bench_order o = { .scene = scene, .duration = scene->of.duration, .settings = kind->usual, .workers = 1 };
-	o.settings.step_length = scene->of.step;
+	o.settings.step_length = ob_case_step;
 	o.settings.sleeping = scene->sleeping;
 	for (int i = 4; i < argc; i++)
 		if (!set(&o, argv[i]))

@@ -31,7 +31,7 @@ uint32_t bench_bodies(const ob_world *w)
 void bench_build(const bench_order *o, ob_world *w)
 {
 	*w = (ob_world){ .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
-	o->scene->of.build(w, 0);
+	o->scene->of.build(w, 0, o->scene->of.variant);
 	for (uint32_t id = 0; id < w->objects; id++) {
 		ob_passport *p = &w->passport[id];
 		if (!(p->flags & OB_OBJECT_STATIC))

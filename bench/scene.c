@@ -14,37 +14,35 @@ static bench_scene scene;
 
 // ---- worlds of any number of bodies
 
-static void build_falling(ob_world *w, uint32_t run)
+static void build_falling(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_falling(w, scene.bodies, 100 + run);
 }
 
-static void build_cylinders(ob_world *w, uint32_t run)
+static void build_cylinders(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_falling_solids(w, OB_SHAPE_CYLINDER, scene.bodies, 100 + run);
 }
 
-static void build_capsules(ob_world *w, uint32_t run)
+static void build_capsules(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_falling_solids(w, OB_SHAPE_CAPSULE, scene.bodies, 100 + run);
 }
 
-static void build_sparse(ob_world *w, uint32_t run)
+static void build_sparse(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_sparse(w, scene.bodies, 200 + run);
 }
 
-static void build_balls(ob_world *w, uint32_t run)
+static void build_balls(ob_world *w, uint32_t run, const double *variant)
 {
-	(void)run;
 	ob_world_balls(w, scene.bodies);
 }
 
 static void judge_crowd(ob_case_run_state *t)
 {
 	ob_heap_judge(t);
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_fail_below(t);
 }
 
 static void observe_balls(ob_case_run_state *t)
@@ -60,13 +58,12 @@ static void observe_balls(ob_case_run_state *t)
 
 static void judge_balls(ob_case_run_state *t)
 {
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_fail_below(t);
 }
 
 // clang-format off
 #define CROWD \
-	.step = 1. / 60, .runs = 1, .figures = OB_HEAP_FIGURES, .observe = ob_heap_observe, .judge = judge_crowd, \
+	.figures = OB_HEAP_FIGURES, .observe = ob_heap_observe, .judge = judge_crowd, \
 	.figure = { { .name = "resting mean penetration", .unit = "mm" }, \
 		    { .name = "resting worst penetration", .unit = "mm" }, \
 		    { .name = "worst penetration at any moment", .unit = "mm" }, \
@@ -80,8 +77,6 @@ static const bench_scene families[] = {
 	{ .of = { .name = "sparse-", .duration = 10, .build = build_sparse, CROWD }, .sleeping = true },
 	{ .of = { .name = "balls-",
 		  .duration = 20,
-		  .step = 1. / 60,
-		  .runs = 1,
 		  .figures = 2,
 		  .figure = { { .name = "error of energy", .unit = "1" },
 			      { .name = "mean squared error of energy", .unit = "J^2" } },

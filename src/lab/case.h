@@ -38,19 +38,27 @@ typedef struct ob_case {
 	const char *name; // as on the command line: "stack-10"
 	const char *title; // "Stack of 10"
 	const char *setup; // one or two sentences for the reader of the report
-	const char *others; // figures seen with other engines
-	bool quick; // belongs to the subset that runs with the tests
+	const char *others; // figures seen with other engines; NULL: not measured elsewhere
+	bool slow; // too slow for the subset that runs with the tests
 	bool compared; // its cost at equal error is tabulated
 	bool sleeps; // bodies at rest may sleep, whatever the settings
-	double duration, step; // s
-	uint32_t runs;
+	double duration; // s
+	uint32_t runs; // 0: one
 	uint32_t figures; // plots show the first
 	ob_figure_def figure[OB_FIGURES];
 	unsigned averaged; // bit per figure: the mean over the runs counts, not the worst (a share)
-	void (*build)(ob_world *w, uint32_t run); // uses ob_world_* of world/world.h
+	double variant[3]; // for build: what tells it from a case beside it
+	void (*build)(ob_world *w, uint32_t run, const double *variant); // uses ob_world_* of world/world.h
 	void (*observe)(ob_case_run_state *t); // after each frame, and once before the first; NULL = nothing
 	void (*judge)(ob_case_run_state *t); // at the end of each run
 } ob_case;
+
+static const double ob_case_step = 1. / 60; // s: length of a frame
+
+static inline uint32_t ob_case_runs(const ob_case *c)
+{
+	return c->runs ? c->runs : 1;
+}
 
 extern const ob_case *const ob_cases[]; // in the order of their rows; ends with NULL
 const ob_case *ob_case_find(const char *name);

@@ -34,7 +34,7 @@ static void add_configuration(ob_chart *c, const ob_lab_analysis *d, const ob_ca
 {
 	char *to = c->subtitle;
 	size_t room = sizeof c->subtitle;
-	append(to, room, "%sframes of 1/%.0f s", *to ? " \u00b7 " : "", of ? 1 / of->step : 60);
+	append(to, room, "%sframes of 1/60 s", *to ? " \u00b7 " : "");
 	bool obsim = false; // its variants count alike here
 	for (size_t i = 0; i < d->engines; i++) {
 		const ob_engine_kind *k = d->engine[i];

@@ -6,10 +6,8 @@ enum { MEMORY_SUM, MEMORY_FRAMES, MEMORY_START, MEMORY_LOWEST }; // resting pene
 
 void ob_heap_observe(ob_case_run_state *t)
 {
-	ob_penetration p;
 	double energy = ob_look_energy(t), *memory = t->memory;
-	ob_measure_penetration(&t->now, &p);
-	ob_look_keep(&t->figure[OB_HEAP_WORST], 1e3 * p.max_m);
+	const ob_penetration p = ob_look_penetration(t, &t->figure[OB_HEAP_WORST]);
 	if (t->time > t->of->duration - 1) {
 		memory[MEMORY_SUM] += p.mean_m;
 		memory[MEMORY_FRAMES]++;
@@ -19,8 +17,7 @@ void ob_heap_observe(ob_case_run_state *t)
 		memory[MEMORY_START] = memory[MEMORY_LOWEST] = energy;
 	memory[MEMORY_LOWEST] = fmin(memory[MEMORY_LOWEST], energy);
 	ob_look_keep(&t->figure[OB_HEAP_GROWTH], (energy - memory[MEMORY_LOWEST]) / memory[MEMORY_START]);
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_fail_below(t);
 }
 
 void ob_heap_judge(ob_case_run_state *t)

@@ -72,7 +72,7 @@ bool ob_lab_read_configuration(const char *text, const ob_case *c, const ob_engi
 	if (!*k)
 		return ob_fail(e, "this program has no engine '%s'", name);
 	*s = (*k)->usual;
-	s->step_length = c->step;
+	s->step_length = ob_case_step;
 	s->tolerance = 0;
 	s->substeps = s->iterations = s->lag = 0;
 	for (char *word; (word = strsep(&rest, " "));) {
@@ -214,7 +214,7 @@ ob_experiment ob_lab_experiment(const char *commit, double limit)
 static uint32_t count_bodies(const ob_case *c)
 {
 	ob_world w = { .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
-	c->build(&w, 0);
+	c->build(&w, 0, c->variant);
 	uint32_t bodies = w.objects;
 	ob_world_finish(&w);
 	return bodies;
@@ -225,7 +225,7 @@ static double guess(const ob_case *c, uint32_t bodies, const ob_run_settings *s)
 {
 	static const double start = .02, body_substep = 2e-6;
 	enum { SUBSTEPS_BY_TOLERANCE = 16 };
-	return start + body_substep * bodies * c->runs * c->duration / s->step_length *
+	return start + body_substep * bodies * ob_case_runs(c) * c->duration / s->step_length *
 			       (s->substeps ? s->substeps : SUBSTEPS_BY_TOLERANCE);
 }
 

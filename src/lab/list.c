@@ -45,7 +45,7 @@ bool ob_list_add_cases(ob_case_list *l, const char *word)
 
 static bool is_wanted(const ob_case *c, const char *quick)
 {
-	return c->quick || !quick;
+	return !c->slow || !quick;
 }
 
 void ob_list_add_all(ob_case_list *l, bool quick_only)
@@ -95,7 +95,7 @@ void ob_list_print(FILE *f, const ob_case_list *l)
 	fprintf(f, "Row  %-*s    %-*s  Target at 60 Hz\n", name, "Name", title, "Title");
 	for (size_t i = 0; i < l->count; i++) {
 		const ob_case *c = l->of[i];
-		fprintf(f, "%3d  %-*s %c  %-*s", c->row, name, c->name, c->quick ? '*' : ' ', title, c->title);
+		fprintf(f, "%3d  %-*s %c  %-*s", c->row, name, c->name, c->slow ? ' ' : '*', title, c->title);
 		int indent = 2; // indentation of a case's first target; each other has a line of its own
 		for (uint32_t j = 0; j < c->figures; j++) {
 			if (isnan(c->figure[j].target))

@@ -32,7 +32,15 @@ double ob_look_farthest(const ob_case_run_state *t)
 	return most;
 }
 
-bool ob_look_fell_through(const ob_case_run_state *t)
+ob_penetration ob_look_penetration(const ob_case_run_state *t, double *worst)
+{
+	ob_penetration p;
+	ob_measure_penetration(&t->now, &p);
+	ob_look_keep(worst, 1e3 * p.max_m);
+	return p;
+}
+
+bool ob_look_fail_below(ob_case_run_state *t)
 {
 	double ground = INFINITY, lowest = INFINITY;
 	for (uint32_t id = 0; id < t->world->objects; id++) {
@@ -41,7 +49,10 @@ bool ob_look_fell_through(const ob_case_run_state *t)
 		else if (ob_look_moves(t, id))
 			lowest = fmin(lowest, t->now.motion[id].p.z);
 	}
-	return isfinite(ground) && lowest < ground - 1;
+	const bool fell = isfinite(ground) && lowest < ground - 1;
+	if (fell)
+		t->failed = "fell through the ground";
+	return fell;
 }
 
 double ob_look_gravity(const ob_case_run_state *t)

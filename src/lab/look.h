@@ -1,5 +1,4 @@
-// Observations of cases in a trial: bodies now and at the start, the energy, the worst so far. Only ob_look_keep and
-// ob_look_keep_all modify their arguments.
+// Observations of cases in a trial: bodies now and at the start, the energy, the worst so far.
 #ifndef OB_LAB_LOOK_H
 #define OB_LAB_LOOK_H
 
@@ -10,8 +9,10 @@ ob_vec3 ob_look_moved(const ob_case_run_state *t, uint32_t id); // m, since the 
 bool ob_look_moves(const ob_case_run_state *t, uint32_t id); // unaffected bodies (static, kinematic): false
 double ob_look_energy(const ob_case_run_state *t); // J; potential energy is 0 at z = 0
 double ob_look_farthest(const ob_case_run_state *t); // m: largest distance of a body from its start
-// True if a centre is a metre below the level ground: through it, not just deep in it.
-bool ob_look_fell_through(const ob_case_run_state *t);
+// Fails the trial, and returns true, if a centre is a metre below the level ground: through it, not just deep in it.
+bool ob_look_fail_below(ob_case_run_state *t);
+// Penetrations now; keeps the worst (mm).
+ob_penetration ob_look_penetration(const ob_case_run_state *t, double *worst);
 double ob_look_gravity(const ob_case_run_state *t); // m/s^2, magnitude
 
 // Sets the figure to the larger of the two. NaN counts as the largest, and stays.

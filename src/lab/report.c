@@ -276,7 +276,8 @@ static void write_setup(ob_page *p, const void *with)
 
 static void write_others(ob_page *p, const void *with)
 {
-	ob_page_text(p, ((const report_case *)with)->of->others);
+	const char *others = ((const report_case *)with)->of->others;
+	ob_page_text(p, others ? others : "not measured elsewhere");
 }
 
 // Chart of a case: error over cost, or over delay in the case of late partners.

@@ -146,7 +146,7 @@ size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_ki
 	if (late != (strcmp(c->name, "lag") == 0))
 		return 0;
 	ob_run_settings usual = k->usual;
-	usual.step_length = c->step;
+	usual.step_length = ob_case_step;
 	collection all = { to, 0 };
 	const ob_sweep *sweep = s->own ? sensible() : s;
 	if (late) {

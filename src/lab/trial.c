@@ -100,7 +100,7 @@ static void add_figures(const ob_case *c, double *sum, const double *figure)
 {
 	for (uint32_t i = 0; i < c->figures; i++) {
 		if (c->averaged >> i & 1)
-			sum[i] += figure[i] / c->runs;
+			sum[i] += figure[i] / ob_case_runs(c);
 		else
 			ob_look_keep(&sum[i], figure[i]);
 	}
@@ -115,9 +115,9 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 		ob_case_result *out, tally *failures, ob_error *e)
 {
 	ob_world w = { .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
-	c->build(&w, number);
+	c->build(&w, number, c->variant);
 	ob_case_run_state t = { .of = c, .run = number, .world = &w, .settings = *s };
-	t.settings.step_length = s->step_length > 0 ? s->step_length : c->step;
+	t.settings.step_length = s->step_length > 0 ? s->step_length : ob_case_step;
 	t.settings.sleeping |= c->sleeps;
 	t.now = (ob_snapshot){ .count = w.objects, .passport = w.passport, .hulls = w.hulls };
 	t.now.motion = calloc(w.objects, sizeof *t.now.motion);
@@ -158,7 +158,7 @@ bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_sett
 	*out = (ob_case_result){ 0 };
 	for (int i = 0; i < OB_CONSERVED; i++)
 		out->conserved[i] = NAN;
-	for (uint32_t i = 0; i < c->runs; i++)
+	for (uint32_t i = 0; i < ob_case_runs(c); i++)
 		if (!run(c, i, kind, s, out, &failures, e))
 			return false;
 	if (failures.failed && c->runs > 1)

@@ -15,8 +15,8 @@ static void test_metadata(const ob_case *c)
 	CHECK(c->name && *c->name && c->name[strspn(c->name, "abcdefghijklmnopqrstuvwxyz0123456789-")] == 0);
 	CHECK(ob_case_find(c->name) == c);
 	CHECK(strlen(c->title) > 4 && strlen(c->title) < 40);
-	CHECK(strlen(c->setup) > 20 && strlen(c->others) > 5);
-	CHECK(c->duration > 0 && c->step == 1. / 60 && c->runs >= 1);
+	CHECK(strlen(c->setup) > 20 && (!c->others || strlen(c->others) > 5));
+	CHECK(c->duration > 0);
 	CHECK(c->figures >= 1 && c->figures <= OB_FIGURES);
 	CHECK(c->build && c->judge);
 	int promised = 0;
@@ -37,7 +37,7 @@ static ob_case_result outcome(const ob_case *c, const ob_engine_kind *kind)
 {
 	ob_case_result out;
 	ob_error e = { "" };
-	ob_run_settings s = { .step_length = c->step, .substeps = 1, .iterations = 1 };
+	ob_run_settings s = { .step_length = ob_case_step, .substeps = 1, .iterations = 1 };
 	CHECK(ob_case_run(c, kind, &s, &out, &e));
 	return out;
 }
@@ -165,7 +165,7 @@ static void test_start(const ob_case *c)
 	ob_case start = *c;
 	start.observe = look_at_start;
 	start.judge = accept;
-	start.duration = c->step;
+	start.duration = ob_case_step;
 	deepest_at_start = 0;
 	outcome(&start, &frozen_engine);
 	if (!(deepest_at_start <= 50e-6))
@@ -293,11 +293,11 @@ static void test_quick_list(int argc, char **argv)
 {
 	int quick = 0;
 	for (const ob_case *const *c = ob_cases; *c; c++)
-		quick += (*c)->quick;
+		quick += !(*c)->slow;
 	CHECK(argc - 1 == quick);
 	for (int i = 1; i < argc; i++) {
 		const ob_case *c = ob_case_find(argv[i]);
-		CHECK(c && c->quick);
+		CHECK(c && !c->slow);
 		for (int k = 1; k < i; k++)
 			CHECK(strcmp(argv[i], argv[k]));
 	}

@@ -44,7 +44,7 @@ static ob_result *add(const ob_case *c, int kind, uint32_t substeps, double figu
 {
 	ob_result *r = &results[made.count++];
 	*r = (ob_result){ .of = c, .engine = &kinds[kind], .settings = kinds[kind].usual, .repeats = 1 };
-	r->settings.step_length = c->step;
+	r->settings.step_length = ob_case_step;
 	r->settings.substeps = substeps;
 	r->outcome = (ob_case_result){ .cpu_s = cost * 10, .wall_s = cost * 10, .body_seconds = 10 };
 	for (uint32_t i = 0; i < c->figures; i++)

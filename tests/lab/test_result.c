@@ -98,7 +98,7 @@ static void test_records(void)
 	CHECK(!strcmp(late->outcome.failed, "fell"));
 	CHECK(pile->repeats == 2 && pile->outcome.cpu_s == 1.5 && pile->outcome.figure[0] == 2 &&
 	      !*pile->outcome.failed);
-	CHECK(pile->settings.step_length == pile->of->step && pile->settings.substeps == 8);
+	CHECK(pile->settings.step_length == ob_case_step && pile->settings.substeps == 8);
 	ob_results_finish(&r);
 	add_record(&from, "pillow", "obsim", 0, OB_FAILURE_NONE);
 	CHECK(!ob_lab_results(&from, &r, &e) && strstr(e.text, "no case 'pillow'"));
@@ -113,7 +113,7 @@ static void test_configuration(void)
 	ob_run_settings s = own->usual, back;
 	char text[OB_CONFIGURATION_KEY];
 	ob_error e;
-	s.step_length = c->step;
+	s.step_length = ob_case_step;
 	s.tolerance = 5e-4 / 3;
 	ob_lab_print_configuration(text, sizeof text, own, &s);
 	CHECK(ob_lab_read_configuration(text, c, &k, &back, &e));

@@ -6,11 +6,13 @@
 
 enum { MEMORY_LAST, MEMORY_BOUNCES, MEMORY_APEX }; // body 1's state in ob_case_run_state.memory
 
-static void build_ball(ob_world *w, double radius, double e)
+enum { RADIUS, RESTITUTION }; // variant: m
+
+static void build_ball(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_ground(w);
-	ob_world_sphere(w, 1, radius, ob_v3(0, 0, 1 + radius));
-	ob_world_material(w, .5, e);
+	ob_world_sphere(w, 1, variant[RADIUS], ob_v3(0, 0, 1 + variant[RADIUS]));
+	ob_world_material(w, .5, variant[RESTITUTION]);
 }
 
 // Counts the turns of body 1 from falling to rising.
@@ -24,15 +26,8 @@ static int bounces(ob_case_run_state *t)
 
 static void fail_without_bounces(ob_case_run_state *t)
 {
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
-	else if (t->memory[MEMORY_BOUNCES] < 1)
+	if (!ob_look_fail_below(t) && t->memory[MEMORY_BOUNCES] < 1)
 		t->failed = "never bounced";
-}
-
-static void build_bounce(ob_world *w, uint32_t run)
-{
-	build_ball(w, .5, 1);
 }
 
 static void observe_bounce(ob_case_run_state *t)
@@ -56,25 +51,18 @@ const ob_case ob_case_bounce = {
 	.title = "Bouncing ball, e = 1",
 	.setup = "A sphere of radius .5 m is dropped from 1 m on a fixed ground and bounces a hundred times.",
 	.others = "ODE loses 62 % at 240 Hz",
-	.quick = true,
 	.compared = true,
 	.duration = 90, // the hundredth comes after 199 sqrt(2 h / g) = 89.9 s
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 2,
 	.figure = { { "error of energy", "1", 1e-12, "energy at the start, over that of the drop" },
 		    { "bounces too many or too few", "1", 0, "drop and rebound take 2 sqrt(2 h / g) (Galilei 1638)" } },
-	.build = build_bounce,
+	.build = build_ball,
+	.variant = { .5, 1 },
 	.observe = observe_bounce,
 	.judge = judge_bounce,
 };
 
 enum { APEXES = 4 };
-
-static void build_apexes(ob_world *w, uint32_t run)
-{
-	build_ball(w, .1, .8);
-}
 
 // Apex of each flight, from its highest frame: the rest of the rise is v^2 / 2 g.
 static void observe_apexes(ob_case_run_state *t)
@@ -101,18 +89,16 @@ const ob_case ob_case_apexes = {
 	.title = "Heights of a ball, e = .8",
 	.setup = "A sphere of radius .1 m is dropped from 1 m with restitution .8; its next four highest points.",
 	.others = "-12 % to +81 %",
-	.quick = true,
 	.duration = 2.5, // the fifth impact comes at 2.58 s
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 1,
 	.figure = { { "worst error of height", "m", 1e-9, "h e^(2 k) (Newton 1687)" } },
-	.build = build_apexes,
+	.build = build_ball,
+	.variant = { .1, .8 },
 	.observe = observe_apexes,
 	.judge = judge_apexes,
 };
 
-static void build_bouncing_49(ob_world *w, uint32_t run)
+static void build_bouncing_49(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_balls(w, 49);
 }
@@ -123,8 +109,7 @@ static void observe_bouncing_49(ob_case_run_state *t)
 	bounces(t);
 	if (t->frame)
 		t->figure[0] += (error * error - t->figure[0]) / t->frame; // mean over the frames
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_fail_below(t);
 }
 
 const ob_case ob_case_bouncing_49 = {
@@ -134,10 +119,7 @@ const ob_case ob_case_bouncing_49 = {
 	.setup = "7 x 7 elastic spheres of radius .1 m and 10 kg, 2 m apart, fall from a height of 5 m without "
 		 "friction; 20 s.",
 	.others = "at 1 ms: RaiSim .019 J^2, ODE 185 J^2",
-	.quick = true,
 	.duration = 20,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 1,
 	.figure = { { "mean squared error of energy", "J^2", 1e-8, "49 m g h (Kang and Hwangbo 2018)" } },
 	.build = build_bouncing_49,

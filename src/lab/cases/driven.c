@@ -2,6 +2,7 @@
 // rest.
 #include "base/random.h"
 #include "lab/cases/cases.h"
+#include "lab/cases/stand.h"
 #include "lab/heap.h"
 #include "lab/look.h"
 #include "measure/measure.h"
@@ -20,7 +21,7 @@ static double frequency(double g)
 }
 
 // Table i is body 2 i, its block the one after.
-static void build_shaking(ob_world *w, uint32_t run)
+static void build_shaking(ob_world *w, uint32_t run, const double *variant)
 {
 	for (int i = 0; i < TABLES; i++) {
 		ob_world_body table = ob_world_box(w, 0, ob_v3(2, 1, .1), ob_v3(0, 4 * i, -.1));
@@ -58,11 +59,7 @@ const ob_case ob_case_shaking_tables = {
 		"Boxes of 10 kg on six tables that go to and fro by .1 m at up to .4 g; friction of .1, .2, .3 and .39 "
 		"(they slide, and stop), .41 and .8 (they stick); the largest displacement that is missed at any "
 		"moment, against the largest way; 5 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 5,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 1,
 	.figure = { { "error of the displacement", "1", .01, "each phase in closed form (Coulomb 1785)" } },
 	.build = build_shaking,
@@ -77,7 +74,7 @@ static const double belt_speed[BELTS] = { .5, 1, 2, 3 }; // m/s
 static const double mu = .3;
 
 // Belt i is body 2 i, its box the one after.
-static void build_belts(ob_world *w, uint32_t run)
+static void build_belts(ob_world *w, uint32_t run, const double *variant)
 {
 	for (int i = 0; i < BELTS; i++) {
 		ob_world_box(w, 0, ob_v3(6, .5, .1), ob_v3(4, 3 * i, -.1)).passport->surface_velocity =
@@ -119,11 +116,7 @@ const ob_case ob_case_belts = {
 	.setup = "Boxes are put down on four belts of .5 to 3 m/s, friction .3; when they have the belt's speed, and "
 		 "their "
 		 "way; 2 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 2,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 2,
 	.figure = { { "error of the time to the belt's speed", "1", .01, "v / (mu g) (Coulomb 1785)" },
 		    { "error of the way", "1", .01, "v t - v^2 / (2 mu g)" } },
@@ -143,7 +136,7 @@ static double share(uint32_t i) // relative to the limit
 }
 
 // Turntable i is body 2 i, its box the one after.
-static void build_turntables(ob_world *w, uint32_t run)
+static void build_turntables(ob_world *w, uint32_t run, const double *variant)
 {
 	const double limit = ob_reference_turntable_radius(rate, .5, -w->gravity.z);
 	for (uint32_t i = 0; i < TURNTABLES; i++) {
@@ -185,11 +178,7 @@ const ob_case ob_case_turntables = {
 	.setup = "Boxes ride on turntables of 2 rad/s, from .9525 to 1.0525 of the radius at which friction of .5 "
 		 "holds them, "
 		 "each on its own; the radius from which they are thrown off, and the creep of those that stay; 6 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 6,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 2,
 	.figure = { { "error of the limit", "1", .01, "mu g = rate^2 r (Coulomb 1785, Huygens 1673)" },
 		    { "creep of what stays", "mm", .01, "none" } },
@@ -200,8 +189,6 @@ const ob_case ob_case_turntables = {
 // ---- shaken stacks and piles
 
 enum { SEEDS = 5 }; // a run for each
-enum { STACK_WORST, STACK_CREEP, STACK_FALLEN, STACK_MEAN, STACK_FIGURES };
-enum { MEMORY_SUM, MEMORY_FRAMES }; // m: sum of the mean penetrations so far
 
 // A table with its top at z = 0 swings along x, starting at rest at one end. It is body 0.
 static void build_shaken_table(ob_world *w, double half, double acceleration)
@@ -210,7 +197,7 @@ static void build_shaken_table(ob_world *w, double half, double acceleration)
 	ob_world_swing(w, table, ob_v3(amplitude, 0, 0), sqrt(acceleration / amplitude), acos(0));
 }
 
-static void build_shaken_stack(ob_world *w, uint32_t run)
+static void build_shaken_stack(ob_world *w, uint32_t run, const double *variant)
 {
 	uint64_t seed = 4200 + run;
 	build_shaken_table(w, 2, -.3 * w->gravity.z);
@@ -222,27 +209,8 @@ static void build_shaken_stack(ob_world *w, uint32_t run)
 
 static void observe_shaken_stack(ob_case_run_state *t)
 {
-	ob_penetration p;
-	ob_measure_penetration(&t->now, &p);
-	ob_look_keep(&t->figure[STACK_WORST], 1e3 * p.max_m);
-	t->memory[MEMORY_SUM] += p.mean_m;
-	t->memory[MEMORY_FRAMES]++;
 	const double f = ob_world_path(t->world, 0)->frequency;
-	const ob_vec3 told = ob_v3(amplitude * (cos(f * t->time) - 1), 0, 0);
-	double fallen = 0;
-	for (uint32_t id = 0; id < t->world->objects; id++) {
-		ob_vec3 off = ob_sub(ob_look_moved(t, id), told);
-		ob_look_keep(&t->figure[STACK_CREEP], 1e3 * hypot(off.x, off.y));
-		fallen += ob_norm(off) > .25;
-	}
-	t->figure[STACK_FALLEN] = fallen;
-	if (fallen > 0)
-		t->failed = "fell";
-}
-
-static void judge_shaken_stack(ob_case_run_state *t)
-{
-	t->figure[STACK_MEAN] = 1e3 * t->memory[MEMORY_SUM] / t->memory[MEMORY_FRAMES];
+	ob_stand_observe_at(t, ob_v3(amplitude * (cos(f * t->time) - 1), 0, 0));
 }
 
 const ob_case ob_case_shaken_stack = {
@@ -252,23 +220,20 @@ const ob_case ob_case_shaken_stack = {
 	.setup = "Ten slabs of 1 x 1 x .25 m and 250 kg, each up to 10 mm off the axis, friction .5, ride on a table "
 		 "that goes to and fro by .1 m at up to .3 g; nothing slips or tips, and nothing ever rests; 20 s; the "
 		 "worst of five such.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.compared = true,
 	.duration = 20,
-	.step = 1. / 60,
 	.runs = SEEDS,
-	.figures = STACK_FIGURES,
+	.figures = OB_STAND_FIGURES,
 	.figure = { { "worst penetration", "mm", .5, "no penetration" },
 		    { "creep", "mm", 1, "it rides along: farthest that a body is aside of where the table takes it" },
 		    { "bodies that fell", "1", 0, "none: friction and width hold all of it" },
 		    { "mean penetration", "mm", NAN, "no penetration; over contacts and time" } },
 	.build = build_shaken_stack,
 	.observe = observe_shaken_stack,
-	.judge = judge_shaken_stack,
+	.judge = ob_stand_judge,
 };
 
-static void build_shaken_pile(ob_world *w, uint32_t run)
+static void build_shaken_pile(ob_world *w, uint32_t run, const double *variant)
 {
 	uint64_t seed = 4250 + run;
 	build_shaken_table(w, 15, -.6 * w->gravity.z);
@@ -283,13 +248,12 @@ static void build_shaken_pile(ob_world *w, uint32_t run)
 const ob_case ob_case_shaken_pile = {
 	.row = 42,
 	.name = "shaken-pile",
+	.slow = true,
 	.title = "Shaken pile of 64",
 	.setup = "64 boxes of .5 m in a loose grid, slightly turned, drop half a metre on a table that goes to and fro "
 		 "by .1 m at up to .6 g; friction .5, so that they slip all the time; 10 s; the worst of five such.",
-	.others = "not measured elsewhere",
 	.compared = true,
 	.duration = 10,
-	.step = 1. / 60,
 	.runs = SEEDS,
 	.figures = OB_HEAP_GROWTH,
 	.figure = { { "mean penetration in the last second", "mm", .5, "no penetration" },

@@ -12,7 +12,7 @@ static const double drift = -4e-4; // m/s
 
 // The first three spin about an axis towards the ball, but for a fifth; the last is slender, and its ends pass the
 // ball. The balls drift nearer by 8 mm.
-static void build_near(ob_world *w, uint32_t run)
+static void build_near(ob_world *w, uint32_t run, const double *variant)
 {
 	static const ob_shape shape[SPINNERS] = { OB_SHAPE_BOX, OB_SHAPE_CYLINDER, OB_SHAPE_CAPSULE, OB_SHAPE_BOX };
 	static const ob_vec3 size[SPINNERS] = { { .2, .15, .1 }, { .1, .2, 0 }, { .1, .2, 0 }, { .02, .03, .4 } };
@@ -60,14 +60,10 @@ static void judge_near(ob_case_run_state *t)
 const ob_case ob_case_near_spin = {
 	.row = 33,
 	.name = "near-spin",
-	.quick = true,
 	.title = "Fast spin beside a ball",
 	.setup = "Two boxes, a cylinder and a capsule spin at 50 rad/s, each 10 mm from a ball that they "
 		 "never touch, and that drifts by 8 mm towards them; in free space, 20 s.",
-	.others = "not measured elsewhere",
 	.duration = 20,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 3,
 	.figure = { { "error of angular momentum", "1", 1e-12, "that at the start, as a vector" },
 		    { "error of energy", "1", 1e-9, "energy at the start" },
@@ -84,7 +80,7 @@ enum { RODS = 12, DEPTH = 0, GAIN, ANGULAR, ROD_FIGURES };
 enum { ROD_RUNS = 3 };
 static const double apart = 40, rod_rate[ROD_RUNS] = { 30, 60, 30 }; // m, rad/s
 
-static void build_rods(ob_world *w, uint32_t run)
+static void build_rods(ob_world *w, uint32_t run, const double *variant)
 {
 	uint64_t seed = 33 + run;
 	w->gravity = ob_v3(0, 0, 0);
@@ -124,9 +120,7 @@ static ob_vec3 momentum_of(const ob_case_run_state *t, uint32_t first)
 // In memory: each pair's angular momentum at the start
 static void observe_rods(ob_case_run_state *t)
 {
-	ob_penetration p;
-	ob_measure_penetration(&t->now, &p);
-	ob_look_keep(&t->figure[DEPTH], 1e3 * p.max_m);
+	ob_look_penetration(t, &t->figure[DEPTH]);
 	if (!t->frame)
 		t->memory[0] = ob_look_energy(t);
 	ob_look_keep(&t->figure[GAIN], ob_look_energy(t) / t->memory[0] - 1);
@@ -153,13 +147,12 @@ static void judge_rods(ob_case_run_state *t)
 const ob_case ob_case_spinning_rods = {
 	.row = 33,
 	.name = "spinning-rods",
+	.slow = true,
 	.title = "Rods that spin into a box",
 	.setup = "Twelve rods of 1 m x 60 mm spin at 30 and 60 rad/s about oblique axes, each beside a box, free or "
 		 "fixed, "
 		 "that it hits; restitution 0, .5 and 1, friction .3; in free space.",
-	.others = "not measured elsewhere",
 	.duration = 1.5,
-	.step = 1. / 60,
 	.runs = ROD_RUNS,
 	.figures = ROD_FIGURES,
 	.figure = { { "worst penetration", "mm", 1, "no penetration" },

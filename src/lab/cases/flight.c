@@ -4,7 +4,7 @@
 #include "reference/mechanics.h"
 #include "world/world.h"
 
-static void build_projectile(ob_world *w, uint32_t run)
+static void build_projectile(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_body b = ob_world_box(w, 48, ob_v3(.3, .2, .1), ob_v3(0, 0, 5));
 	b.state->v = ob_v3(10, 0, 10);
@@ -31,10 +31,7 @@ const ob_case ob_case_projectile = {
 	.setup = "A box of .6 x .4 x .2 m is thrown at (10, 0, 10) m/s, tumbling at (1, 2, 3) rad/s, and watched for "
 		 "2 s.",
 	.others = "MuJoCo with Runge-Kutta 4: 1e-10 m; Box3D 41 mm; Jolt, Bullet and ODE 163 mm",
-	.quick = true,
 	.duration = 2,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 1,
 	.figure = { { "worst error of position", "m", 1e-12, "parabola (Galilei 1638)" } },
 	.build = build_projectile,

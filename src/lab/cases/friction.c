@@ -6,23 +6,19 @@
 
 static const double mu = .5;
 
-static void build_block(ob_world *w, double angle)
+// Slope of a case, as a share of the angle of friction.
+static double slope_of(const double *variant)
 {
-	ob_world_body s = ob_world_slope(w, angle);
+	return variant[0] * ob_reference_friction_angle(mu);
+}
+
+static void build_block(ob_world *w, uint32_t run, const double *variant)
+{
+	ob_world_body s = ob_world_slope(w, slope_of(variant));
 	ob_quat q = s.state->pose.q;
 	ob_mat3 r = ob_quat_matrix(q);
 	ob_world_box(w, 500, ob_v3(.5, .5, .25), ob_scale(ob_column(&r, 2), .25)).state->pose.q = q;
 	ob_world_material(w, mu, 0);
-}
-
-static void build_stick(ob_world *w, uint32_t run)
-{
-	build_block(w, .99 * ob_reference_friction_angle(mu));
-}
-
-static void build_slide(ob_world *w, uint32_t run)
-{
-	build_block(w, 1.01 * ob_reference_friction_angle(mu));
 }
 
 // Displacement (m) of the block along the slope, downwards and sideways.
@@ -54,20 +50,18 @@ const ob_case ob_case_incline_stick = {
 	.title = "Block sticks on a slope",
 	.setup = "A box of 1 x 1 x .5 m on a slope of .99 of the angle of friction, friction .5; 10 s.",
 	.others = "ODE creeps 1.5 mm",
-	.quick = true,
 	.duration = 10,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 1,
 	.figure = { { "creep", "mm", .01, "none (Coulomb 1785)" } },
-	.build = build_stick,
+	.build = build_block,
+	.variant = { .99 },
 	.observe = observe_stick,
 	.judge = judge_stick,
 };
 
 static void judge_slide(ob_case_run_state *t)
 {
-	double angle = 1.01 * ob_reference_friction_angle(mu), down, aside;
+	double angle = slope_of(t->of->variant), down, aside;
 	double exact = .5 * ob_reference_incline(ob_look_gravity(t), angle, mu) * t->time * t->time;
 	crept(t, &down, &aside);
 	t->figure[0] = hypot(down - exact, aside) / exact;
@@ -81,13 +75,11 @@ const ob_case ob_case_incline_slide = {
 	.title = "Block slides down a slope",
 	.setup = "A box of 1 x 1 x .5 m on a slope of 1.01 of the angle of friction, friction .5; its way after 4 s.",
 	.others = "ODE +7.3 %",
-	.quick = true,
 	.duration = 4,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 1,
 	.figure = { { "error of the way", "1", .003, "g (sin - mu cos) t^2 / 2 (Coulomb 1785)" } },
-	.build = build_slide,
+	.build = build_block,
+	.variant = { 1.01 },
 	.judge = judge_slide,
 };
 
@@ -96,7 +88,7 @@ static const double speed = 3; // m/s
 
 // All in one world, 4 m apart. Headings 15 degrees apart, every other one reversed: along both axes and both diagonals,
 // and into every quadrant.
-static void build_sliding(ob_world *w, uint32_t run)
+static void build_sliding(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_ground(w);
 	for (int i = 0; i < HEADINGS; i++) {
@@ -132,8 +124,7 @@ static void judge_sliding(ob_case_run_state *t)
 		most = fmax(most, went);
 	}
 	t->figure[2] = (most - least) / way;
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_fail_below(t);
 }
 
 const ob_case ob_case_sliding = {
@@ -142,10 +133,7 @@ const ob_case ob_case_sliding = {
 	.title = "Sliding in all directions",
 	.setup = "Twelve boxes of 1 x 1 x .5 m start at 3 m/s in as many directions; friction .5; 1 s.",
 	.others = "Box3D -.4 %; ODE -31 % along the diagonal",
-	.quick = true,
 	.duration = 1,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 3,
 	.figure = { { "worst error of the way", "1", 1e-3, "v^2 / (2 mu g) (Coulomb 1785)" },
 		    { "worst error of the time", "1", 1e-3, "v / (mu g) (Coulomb 1785)" },

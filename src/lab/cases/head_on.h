@@ -14,8 +14,8 @@ typedef struct ob_head_on {
 } ob_head_on;
 
 ob_head_on ob_head_on_of(uint32_t run);
-// Adds the pair to a world without gravity: both are 1 m wide, and the first comes in at 1 m/s along x.
-void ob_head_on_build(ob_world *w, uint32_t run, ob_vec3 at);
+// Adds the pair to a world without gravity: both are 1 m wide, and the first comes in at 1 m/s along x. at: its x (m).
+void ob_head_on_build(ob_world *w, uint32_t run, const double *at);
 // Error (m/s) of the velocities of bodies "first" and first + 1 against Newton's; the scene's scale is 1 m/s.
 double ob_head_on_error(const ob_case_run_state *t, uint32_t first);
 // True if they passed through each other, or never touched.

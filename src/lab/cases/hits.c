@@ -36,7 +36,7 @@ static void build_bricks(ob_world *w)
 	}
 }
 
-static void build_hits(ob_world *w, uint32_t run)
+static void build_hits(ob_world *w, uint32_t run, const double *variant)
 {
 	uint64_t seed = 25 + run;
 	uint32_t aim[BRICKS];
@@ -64,10 +64,8 @@ static double energy_of(const ob_case_run_state *t)
 
 static void observe_hits(ob_case_run_state *t)
 {
-	ob_penetration p;
 	double energy = energy_of(t), fallen = 0;
-	ob_measure_penetration(&t->now, &p);
-	ob_look_keep(&t->figure[WORST], 1e3 * p.max_m);
+	ob_look_penetration(t, &t->figure[WORST]);
 	if (!t->frame)
 		t->memory[MEMORY_LOWEST] = energy;
 	t->memory[MEMORY_LOWEST] = fmin(t->memory[MEMORY_LOWEST], energy);
@@ -99,10 +97,8 @@ const ob_case ob_case_hit_wall = {
 		 "five "
 		 "such.",
 	.others = "not measured by others",
-	.quick = true,
 	.compared = true,
 	.duration = 10,
-	.step = 1. / 60,
 	.runs = SEEDS,
 	.figures = FIGURES,
 	.figure = { { "worst penetration", "mm", .5, "no penetration" },

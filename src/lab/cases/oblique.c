@@ -81,7 +81,7 @@ static hit draw(uint32_t run, uint32_t i)
 }
 
 // Body i of the first HITS is the sphere of hit i, body HITS + i its target (a plane: body HITS, for all).
-static void build_oblique(ob_world *w, uint32_t run)
+static void build_oblique(ob_world *w, uint32_t run, const double *variant)
 {
 	w->gravity = ob_v3(0, 0, 0);
 	for (uint32_t i = 0; i < HITS; i++) {
@@ -136,14 +136,11 @@ static void judge_oblique(ob_case_run_state *t)
 const ob_case ob_case_oblique = {
 	.row = 30,
 	.name = "oblique",
-	.quick = true,
 	.title = "Ten thousand oblique hits",
 	.setup = "A spinning sphere hits a sphere, a fixed box, a fixed capsule, a plane, each 2500 times: sizes, "
 		 "masses, "
 		 "velocities, restitution 0 to 1 and friction 0 to 1.2 drawn by lot; in free space.",
-	.others = "not measured elsewhere",
 	.duration = .2,
-	.step = 1. / 60,
 	.runs = PARTNERS,
 	.figures = PARTNERS,
 	.figure = { { "worst error, on spheres", "1", 1e-9, ROUTH },

@@ -18,7 +18,7 @@ static void tilt(ob_world_body b, double half, double x)
 enum { BLOCKS = 3, CYLINDERS = 2 };
 static const double slenderness[BLOCKS] = { 2, 4, 10 };
 
-static void build_blocks(ob_world *w, uint32_t run)
+static void build_blocks(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_ground(w);
 	for (int i = 0; i < BLOCKS; i++) {
@@ -29,7 +29,7 @@ static void build_blocks(ob_world *w, uint32_t run)
 	ob_world_material(w, rough, 0);
 }
 
-static void build_cylinders(ob_world *w, uint32_t run)
+static void build_cylinders(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_ground(w);
 	for (int i = 0; i < CYLINDERS; i++) {
@@ -86,8 +86,7 @@ static void judge_rockers(ob_case_run_state *t)
 	for (uint32_t id = 1; id < t->world->objects; id++)
 		if (t->body_memory[8 * id + MEMORY_HITS] < 1)
 			t->failed = "never hit";
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_fail_below(t);
 }
 
 static void observe_blocks(ob_case_run_state *t)
@@ -109,14 +108,12 @@ static void observe_cylinders(ob_case_run_state *t)
 const ob_case ob_case_rocking_blocks = {
 	.row = 31,
 	.name = "rocking-blocks",
+	.slow = true,
 	.title = "Rocking blocks",
 	.setup = "Blocks of 1 m, 2, 4 and 10 times as high as wide, start at rest on an edge, tilted by half of the "
 		 "angle "
 		 "at which they would topple, and hit three times; friction 2, no restitution.",
-	.others = "not measured elsewhere",
 	.duration = 2.5,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 2 * BLOCKS + 1,
 	.figure = { { "error of a quarter period, 2 : 1", "1", 5e-4, QUARTER },
 		    { "error of a quarter period, 4 : 1", "1", 5e-4, QUARTER },
@@ -133,13 +130,11 @@ const ob_case ob_case_rocking_blocks = {
 const ob_case ob_case_rocking_cylinders = {
 	.row = 31,
 	.name = "rocking-cylinders",
+	.slow = true,
 	.title = "Rocking cylinders",
 	.setup = "Cylinders of 1 m, 2 and 4 times as high as wide, start at rest on their rim as the blocks, and hit "
 		 "once.",
-	.others = "not measured elsewhere",
 	.duration = .6,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 2 * CYLINDERS + 1,
 	.figure = { { "error of a quarter period, 2 : 1", "1", 5e-4, QUARTER },
 		    { "error of a quarter period, 4 : 1", "1", 5e-4, QUARTER },
@@ -156,7 +151,7 @@ const ob_case ob_case_rocking_cylinders = {
 static const double radius = .5, half_thick = .025, lean = 10 * M_PI / 180; // m, rad
 enum { MEMORY_AZIMUTH, MEMORY_TURNED, MEMORY_ENERGY };
 
-static void build_disk(ob_world *w, uint32_t run)
+static void build_disk(ob_world *w, uint32_t run, const double *variant)
 {
 	double turn = ob_reference_disk_precession(radius, half_thick, lean, OB_WORLD_GRAVITY);
 	double spin = ob_reference_disk_spin(radius, half_thick, lean, OB_WORLD_GRAVITY);
@@ -187,21 +182,16 @@ static void judge_disk(ob_case_run_state *t)
 	double exact = ob_reference_disk_precession(radius, half_thick, lean, ob_look_gravity(t));
 	t->figure[0] = fabs(t->memory[MEMORY_TURNED] / t->time / exact - 1);
 	t->figure[1] = fabs(1 - (ob_look_energy(t) - lying) / t->memory[MEMORY_ENERGY]) / t->time;
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_fail_below(t);
 }
 
 const ob_case ob_case_rolling_disk = {
 	.row = 32,
 	.name = "rolling-disk",
-	.quick = true,
 	.title = "Disk that rolls on its rim",
 	.setup = "A disk of 1 m x 50 mm rolls on its rim for 3 s, at 10 degrees to the ground, its centre at rest; "
 		 "friction .5.",
-	.others = "not measured elsewhere",
 	.duration = 3,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 3,
 	.figure = { { "error of the precession", "1", 1e-3,
 		      "steady rolling without slip (Moffatt 2000, with thickness)" },

@@ -7,26 +7,17 @@
 enum { BOX = 1, BALL = 2, BALLS = 25 };
 static const double push = 150; // N
 
-static void build_push(ob_world *w, ob_vec3 direction)
+// variant: the direction, along x and y
+static void build_push(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_ground(w).passport->friction = .2; // with the box's .8: .4
 	ob_world_body box = ob_world_box(w, 10, ob_v3(10, 10, .5), ob_v3(0, 0, .5 - 2e-5));
 	box.passport->friction = .8;
-	box.passport->force = ob_scale(direction, push);
+	box.passport->force = ob_scale(ob_v3(variant[0], variant[1], 0), push);
 	for (int i = 0; i < BALLS; i++) {
 		ob_vec3 p = ob_v3(2 * (i / 5) - 4, 2 * (i % 5) - 4, 1.5 - 6e-5);
 		ob_world_sphere(w, 1, .5, p).passport->friction = .8;
 	}
-}
-
-static void build_rolling_diagonal(ob_world *w, uint32_t run)
-{
-	build_push(w, ob_v3(.5, sqrt(.75), 0));
-}
-
-static void build_rolling_y(ob_world *w, uint32_t run)
-{
-	build_push(w, ob_v3(0, 1, 0));
 }
 
 static double squared_error(const ob_case_run_state *t, uint32_t id, double acceleration)
@@ -65,14 +56,12 @@ const ob_case ob_case_rolling_diagonal = {
 	.title = "Rolling, pushed aslant",
 	.setup = PUSH_SETUP "(1/2, sqrt(3)/2).",
 	.others = "Jolt 9e-4; Box3D 1e-6 at 240 Hz; ODE 3.1: nothing moves",
-	.quick = true,
 	.compared = true,
 	.duration = 4,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 1,
 	.figure = PUSH_FIGURE,
-	.build = build_rolling_diagonal,
+	.build = build_push,
+	.variant = { .5, .86602540378443865 },
 	.observe = observe_push,
 	.judge = judge_push,
 };
@@ -83,18 +72,16 @@ const ob_case ob_case_rolling_y = {
 	.title = "Rolling, pushed along y",
 	.setup = PUSH_SETUP "y.",
 	.others = "Jolt 9e-4; Box3D 1e-6 at 240 Hz",
-	.quick = true,
 	.duration = 4,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 1,
 	.figure = PUSH_FIGURE,
-	.build = build_rolling_y,
+	.build = build_push,
+	.variant = { 0, 1 },
 	.observe = observe_push,
 	.judge = judge_push,
 };
 
-static void build_slip_to_roll(ob_world *w, uint32_t run)
+static void build_slip_to_roll(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_ground(w);
 	ob_world_sphere(w, 10, .5, ob_v3(0, 0, .5)).state->v.x = 7;
@@ -118,8 +105,7 @@ static void judge_slip_to_roll(ob_case_run_state *t)
 	double g = ob_look_gravity(t);
 	t->figure[0] = fabs(ob_look_at(t, 1).v.x / ob_reference_roll_speed(7) - 1);
 	t->figure[1] = fabs(t->memory[MEMORY_ROLLS] / ob_reference_roll_time(7, .2, g) - 1);
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_fail_below(t);
 }
 
 const ob_case ob_case_slip_to_roll = {
@@ -127,11 +113,7 @@ const ob_case ob_case_slip_to_roll = {
 	.name = "slip-to-roll",
 	.title = "From slipping to rolling",
 	.setup = "A sphere is set down at 7 m/s without spin; friction .2; 3 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 3,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 2,
 	.figure = { { "error of the final speed", "1", 1e-3, "5/7 v (Routh 1905)" },
 		    { "error of the time when it rolls", "1", 1e-3, "2 v / (7 mu g) (Routh 1905)" } },
@@ -142,22 +124,13 @@ const ob_case ob_case_slip_to_roll = {
 
 static const double slope = 20 * M_PI / 180; // rad
 
-static void build_ball_on_slope(ob_world *w, double mu)
+// variant: friction, relative to what rolling needs
+static void build_ball_on_slope(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_body s = ob_world_slope(w, slope);
 	ob_mat3 r = ob_quat_matrix(s.state->pose.q);
 	ob_world_sphere(w, 10, .5, ob_scale(ob_column(&r, 2), .5));
-	ob_world_material(w, mu, 0);
-}
-
-static void build_ball_rolls(ob_world *w, uint32_t run)
-{
-	build_ball_on_slope(w, 1.1 * ob_reference_ball_grip(slope));
-}
-
-static void build_ball_slips(ob_world *w, uint32_t run)
-{
-	build_ball_on_slope(w, .9 * ob_reference_ball_grip(slope));
+	ob_world_material(w, variant[0] * ob_reference_ball_grip(slope), 0);
 }
 
 static void judge_ball_on_slope(ob_case_run_state *t)
@@ -174,15 +147,12 @@ const ob_case ob_case_sphere_incline_roll = {
 	.name = "sphere-incline-roll",
 	.title = "Sphere rolls down a slope",
 	.setup = "A sphere on a slope of 20 degrees, friction 10 % above 2/7 tan(20); 2 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 2,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 2,
 	.figure = { { "error of the speed", "1", 1e-3, "5/7 g sin t (Routh 1905)" },
 		    { "error of the way", "1", 1e-3, "5/14 g sin t^2 (Routh 1905)" } },
-	.build = build_ball_rolls,
+	.build = build_ball_on_slope,
+	.variant = { 1.1 },
 	.judge = judge_ball_on_slope,
 };
 
@@ -191,14 +161,11 @@ const ob_case ob_case_sphere_incline_slip = {
 	.name = "sphere-incline-slip",
 	.title = "Sphere slips down a slope",
 	.setup = "A sphere on a slope of 20 degrees, friction 10 % below 2/7 tan(20); 2 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 2,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 2,
 	.figure = { { "error of the speed", "1", 1e-3, "g (sin - mu cos) t (Routh 1905)" },
 		    { "error of the way", "1", 1e-3, "g (sin - mu cos) t^2 / 2 (Routh 1905)" } },
-	.build = build_ball_slips,
+	.build = build_ball_on_slope,
+	.variant = { .9 },
 	.judge = judge_ball_on_slope,
 };

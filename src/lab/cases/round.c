@@ -11,7 +11,7 @@ static const ob_vec3 onto_side = { M_PI_2, 0, 0 }; // turns the axis from z to y
 
 // ---- at rest
 
-static void build_resting(ob_world *w, uint32_t run)
+static void build_resting(ob_world *w, uint32_t run, const double *variant)
 {
 	static const struct {
 		ob_world_body (*add)(ob_world *w, double mass, double radius, double half, ob_vec3 p);
@@ -39,19 +39,16 @@ static void build_resting(ob_world *w, uint32_t run)
 const ob_case ob_case_round_rest = {
 	.row = 37,
 	.name = "round-rest",
-	.quick = true,
 	.title = "Cylinders and capsules at rest",
 	.setup = "Cylinders of three proportions stand, a cylinder and a capsule lie on their sides, on a plane and on "
 		 "boxes; "
 		 "friction .5; 20 s, awake.",
-	.others = "not measured elsewhere",
 	.figure = OB_STAND_FIGURE(.1, .1),
 	.build = build_resting,
-	.runs = 1,
 	OB_STAND_CASE,
 };
 
-static void build_stack(ob_world *w, uint32_t run)
+static void build_stack(ob_world *w, uint32_t run, const double *variant)
 {
 	uint64_t seed = 37 + run;
 	ob_world_ground(w);
@@ -64,12 +61,10 @@ static void build_stack(ob_world *w, uint32_t run)
 const ob_case ob_case_cylinder_stack = {
 	.row = 37,
 	.name = "cylinder-stack",
-	.quick = true,
 	.title = "Stack of 10 cylinders",
 	.setup = "Ten cylinders of 1 m and 785 kg, each up to 10 mm off the axis, friction .5, stand for 20 s, awake; "
 		 "the "
 		 "worst of three such.",
-	.others = "not measured elsewhere",
 	.figure = OB_STAND_FIGURE(.5, 1),
 	.build = build_stack,
 	.runs = 3,
@@ -81,7 +76,7 @@ const ob_case ob_case_cylinder_stack = {
 static const double slope = 20 * M_PI / 180; // rad
 enum { CYLINDER = 1, CAPSULE, ROLLERS }; // ids on the plane; the same on the box
 
-static void build_rolling(ob_world *w, uint32_t run)
+static void build_rolling(ob_world *w, uint32_t run, const double *variant)
 {
 	static const double radius = .2, half = .4;
 	ob_quat tilt = ob_world_slope(w, slope).state->pose.q;
@@ -124,15 +119,11 @@ static void judge_rolling(ob_case_run_state *t)
 const ob_case ob_case_round_incline = {
 	.row = 37,
 	.name = "round-incline",
-	.quick = true,
 	.title = "Cylinders and capsules roll down",
 	.setup = "Cylinders and capsules of .2 m radius roll down a slope of 20 degrees, a plane and a box, friction "
 		 ".5; "
 		 "1.5 s.",
-	.others = "not measured elsewhere",
 	.duration = 1.5,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = 4,
 	.figure = { { "error of the way, cylinder on a plane", "1", 1e-3, ROUND_ROLL },
 		    { "error of the way, capsule on a plane", "1", 1e-3, ROUND_ROLL },
@@ -158,8 +149,12 @@ static ob_world_body build_any(ob_world *w, int kind, ob_vec3 p)
 	}
 }
 
-static void build_mixture(ob_world *w, int count, int side, uint64_t seed)
+enum { COUNT, SIDE, FIRST_SEED }; // variant
+
+static void build_mixture(ob_world *w, uint32_t run, const double *variant)
 {
+	const int count = (int)variant[COUNT], side = (int)variant[SIDE];
+	uint64_t seed = (uint64_t)variant[FIRST_SEED] + run;
 	const double apart = .6; // m: the longest are .54 m, and are drawn up to .02 m off
 	ob_world_ground(w);
 	for (int i = 0; i < count; i++) {
@@ -171,49 +166,35 @@ static void build_mixture(ob_world *w, int count, int side, uint64_t seed)
 	}
 }
 
-static void build_mixed_pile(ob_world *w, uint32_t run)
-{
-	build_mixture(w, 200, 6, 200 + run);
-}
-
 const ob_case ob_case_mixed_pile = {
 	.row = 37,
 	.name = "mixed-pile",
+	.slow = true,
 	.title = "Pile of 200 of all shapes",
 	.setup = "200 boxes, cylinders, spheres and capsules of .24 to .5 m, turned at random, drop in a loose grid; "
 		 "friction "
 		 ".5, no restitution; 5 s.",
-	.others = "not measured elsewhere",
 	.duration = 5,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = OB_HEAP_FIGURES,
 	.figure = { { "settled mean penetration", "mm", .5, "no penetration; in the last second" },
 		    { "settled worst penetration", "mm", 1, "no penetration; in the last second" },
 		    { "worst penetration at any moment", "mm", 1, "no penetration" },
 		    { "growth of energy", "1", 1e-5,
 		      "none: largest rise from its lowest so far, over that at the start" } },
-	.build = build_mixed_pile,
+	.build = build_mixture,
+	.variant = { 200, 6, 200 },
 	.observe = ob_heap_observe,
 	.judge = ob_heap_judge,
 };
 
 // ---- many small ones: frequency of meeting the tolerance
 
-static void build_random_heap(ob_world *w, uint32_t run)
-{
-	build_mixture(w, 24, 3, 3800 + run);
-}
-
 enum { KEPT, WORST };
 
 static void observe_random_heap(ob_case_run_state *t)
 {
-	ob_penetration p;
-	ob_measure_penetration(&t->now, &p);
-	ob_look_keep(&t->figure[WORST], 1e3 * p.max_m);
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_penetration(t, &t->figure[WORST]);
+	ob_look_fail_below(t);
 }
 
 static void judge_random_heap(ob_case_run_state *t)
@@ -228,19 +209,19 @@ static void judge_random_heap(ob_case_run_state *t)
 const ob_case ob_case_random_heaps = {
 	.row = 38,
 	.name = "random-heaps",
+	.slow = true,
 	.title = "A hundred random heaps",
 	.setup = "24 boxes, cylinders, spheres and capsules at random drop on the ground, a hundred times; friction "
 		 ".5, no "
 		 "restitution; 2 s each. Of engines without a tolerance 1 mm is asked.",
-	.others = "not measured elsewhere",
 	.duration = 2,
-	.step = 1. / 60,
 	.runs = 100,
 	.figures = 2,
 	.averaged = 1u << 0,
 	.figure = { { "share above the tolerance", "1", .01, "none: deepest that two bodies ever are in each other" },
 		    { "worst penetration at any moment", "mm", NAN, "no penetration" } },
-	.build = build_random_heap,
+	.build = build_mixture,
+	.variant = { 24, 3, 3800 },
 	.observe = observe_random_heap,
 	.judge = judge_random_heap,
 };

@@ -14,7 +14,7 @@ static void build_lanes(ob_world *w)
 			ob_world_box(w, 0, ob_v3(.5 * tile, .6, .1), ob_v3(tile * (i - .5), 2 * lane, -.1));
 }
 
-static void build_sliders(ob_world *w, uint32_t run)
+static void build_sliders(ob_world *w, uint32_t run, const double *variant)
 {
 	build_lanes(w);
 	for (int lane = 0; lane < LANES; lane++) {
@@ -27,7 +27,7 @@ static void build_sliders(ob_world *w, uint32_t run)
 }
 
 // Round bodies lie with their axes across the lane, and roll from the start.
-static void build_rollers(ob_world *w, uint32_t run)
+static void build_rollers(ob_world *w, uint32_t run, const double *variant)
 {
 	static const double radius = .1;
 	build_lanes(w);
@@ -92,11 +92,10 @@ static void judge_rollers(ob_case_run_state *t)
 
 #define LEVEL "none: the floor is level"
 #define ROLLS "v t: it rolls on (Newton 1687)"
-#define SEAM_CASE .row = 34, .others = "not measured elsewhere", .step = 1. / 60, .runs = 1
+#define SEAM_CASE .row = 34
 
 const ob_case ob_case_seams_slide = {
 	.name = "seams-slide",
-	.quick = true,
 	.title = "Boxes slide over ten seams",
 	.setup = "Boxes of two sizes, turned by three angles, slide at 5 m/s over fixed boxes of .25 m side by side "
 		 "until "
@@ -113,7 +112,6 @@ const ob_case ob_case_seams_slide = {
 
 const ob_case ob_case_seams_roll = {
 	.name = "seams-roll",
-	.quick = true,
 	.title = "Round ones roll over ten seams",
 	.setup = "Spheres, cylinders and capsules of .1 m radius roll at 5 m/s over fixed boxes of .25 m side by side; "
 		 "friction .5; .5 s.",

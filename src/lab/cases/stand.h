@@ -18,12 +18,12 @@ enum { OB_STAND_WORST, OB_STAND_DRIFT, OB_STAND_FALLEN, OB_STAND_MEAN, OB_STAND_
 	}
 
 // The rest of such a case: 20 s, awake.
-#define OB_STAND_CASE \
-	.duration = 20, .step = 1. / 60, .figures = OB_STAND_FIGURES, .observe = ob_stand_observe, \
-	.judge = ob_stand_judge
+#define OB_STAND_CASE .duration = 20, .figures = OB_STAND_FIGURES, .observe = ob_stand_observe, .judge = ob_stand_judge
 
 // Fails the trial when a body is more than a quarter of a metre from its place.
 void ob_stand_observe(ob_case_run_state *t);
+// Same where the support has been carried so far (m).
+void ob_stand_observe_at(ob_case_run_state *t, ob_vec3 carried);
 void ob_stand_judge(ob_case_run_state *t);
 
 #endif

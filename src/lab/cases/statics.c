@@ -15,8 +15,7 @@ static const double fallen = .05; // m
 static void observe_side(ob_case_run_state *t)
 {
 	ob_look_keep(&t->figure[MOVED], 1e3 * ob_look_farthest(t));
-	if (ob_look_fell_through(t))
-		t->failed = "fell through the ground";
+	ob_look_fail_below(t);
 }
 
 static void judge_stands(ob_case_run_state *t)
@@ -35,27 +34,17 @@ static void judge_falls(ob_case_run_state *t)
 
 enum { BRICKS = 4 };
 
-// They balance on the edge. A rounding error grows e-fold three times a second; in 3 s it stays invisible. "more":
-// share of the reach by which every brick is farther out than balance allows
-static void build_bricks(ob_world *w, double more)
+// They balance on the edge. A rounding error grows e-fold three times a second; in 3 s it stays invisible. variant: share
+// of the reach by which every brick is farther out than balance allows
+static void build_bricks(ob_world *w, uint32_t run, const double *variant)
 {
 	ob_world_box(w, 0, ob_v3(2, .5, .5), ob_v3(-2, 0, -.5)); // the table: its edge at x = 0
 	ob_world_ground(w).state->pose.p.z = -4;
 	double x = -.5;
 	for (int i = 0; i < BRICKS; i++) {
-		x += (1 + more) * ob_reference_overhang_shift(BRICKS - i);
+		x += (1 + variant[0]) * ob_reference_overhang_shift(BRICKS - i);
 		ob_world_box(w, 1, ob_v3(.5, .25, .1), ob_v3(x, 0, .1 + .2 * i));
 	}
-}
-
-static void build_overhang(ob_world *w, uint32_t run)
-{
-	build_bricks(w, 0);
-}
-
-static void build_overhang_over(ob_world *w, uint32_t run)
-{
-	build_bricks(w, .01);
 }
 
 #define HARMONIC "sum of L / 2 k (Johnson 1955)"
@@ -65,14 +54,10 @@ const ob_case ob_case_overhang = {
 	.name = "overhang",
 	.title = "Bricks at the full overhang",
 	.setup = "Four bricks reach 25/24 of their length over a table's edge, the most that can stand; 3 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 3,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = SIDE_FIGURES,
 	.figure = SIDE_FIGURE(HARMONIC),
-	.build = build_overhang,
+	.build = build_bricks,
 	.observe = observe_side,
 	.judge = judge_stands,
 };
@@ -82,24 +67,21 @@ const ob_case ob_case_overhang_over = {
 	.name = "overhang-over",
 	.title = "Bricks 1 % over the overhang",
 	.setup = "As before, every brick 1 % farther out: they must topple within 3 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 3,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = SIDE_FIGURES,
 	.figure = SIDE_FIGURE(HARMONIC),
-	.build = build_overhang_over,
+	.build = build_bricks,
+	.variant = { .01 },
 	.observe = observe_side,
 	.judge = judge_falls,
 };
 
-// Cards of 1 m x 1 m x 20 mm that lean at 30 degrees to the vertical; their inner upper edges touch at x = 0. "share"
-// is relative to the friction that they need on the ground; the cards' own contact is rough.
-static void build_cards(ob_world *w, double share)
+// Cards of 1 m x 1 m x 20 mm that lean at 30 degrees to the vertical; their inner upper edges touch at x = 0. variant:
+// friction on the ground, relative to what they need; the cards' own contact is rough.
+static void build_cards(ob_world *w, uint32_t run, const double *variant)
 {
 	const double angle = M_PI / 6, length = 1, thickness = .02, rough = 2;
-	double mu = share * ob_reference_cards_grip(angle, length, thickness);
+	double mu = variant[0] * ob_reference_cards_grip(angle, length, thickness);
 	// axes of the left one
 	ob_vec3 along = ob_v3(sin(angle), 0, cos(angle)), inner = ob_v3(cos(angle), 0, -sin(angle));
 	ob_vec3 edge = ob_add(ob_scale(along, .5 * length), ob_scale(inner, .5 * thickness));
@@ -114,16 +96,6 @@ static void build_cards(ob_world *w, double share)
 	w->passport[0].friction = mu * mu / rough; // with a card's: mu
 }
 
-static void build_a_frame_stands(ob_world *w, uint32_t run)
-{
-	build_cards(w, 1.02);
-}
-
-static void build_a_frame_slides(ob_world *w, uint32_t run)
-{
-	build_cards(w, .98);
-}
-
 #define CARDS "mu >= (tan(angle) - d / l) / 2, by the balance of moments"
 
 const ob_case ob_case_a_frame_stands = {
@@ -132,14 +104,11 @@ const ob_case ob_case_a_frame_stands = {
 	.title = "Two cards that lean and stand",
 	.setup = "Two boxes of 1 x 1 x .02 m lean on each other at 30 degrees to the vertical, with 2 % more "
 		 "friction on the ground than they need; 60 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 60,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = SIDE_FIGURES,
 	.figure = SIDE_FIGURE(CARDS),
-	.build = build_a_frame_stands,
+	.build = build_cards,
+	.variant = { 1.02 },
 	.observe = observe_side,
 	.judge = judge_stands,
 };
@@ -149,25 +118,22 @@ const ob_case ob_case_a_frame_slides = {
 	.name = "a-frame-slides",
 	.title = "Two cards that lean and slide",
 	.setup = "As before, with 2 % less friction than they need: they must slide down within 60 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 60,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = SIDE_FIGURES,
 	.figure = SIDE_FIGURE(CARDS),
-	.build = build_a_frame_slides,
+	.build = build_cards,
+	.variant = { .98 },
 	.observe = observe_side,
 	.judge = judge_falls,
 };
 
 enum { VOUSSOIRS = 20 };
 
-// "share" is relative to the least stable thickness.
-static void build_arch(ob_world *w, double share)
+// variant: thickness, relative to the least stable one
+static void build_arch(ob_world *w, uint32_t run, const double *variant)
 {
 	static const double radius = 5, half_depth = .5; // m
-	const double half = .5 * share * ob_reference_arch_thickness(VOUSSOIRS, radius);
+	const double half = .5 * variant[0] * ob_reference_arch_thickness(VOUSSOIRS, radius);
 	ob_world_ground(w);
 	for (int i = 0; i < VOUSSOIRS; i++) {
 		ob_vec3 corner[8];
@@ -180,16 +146,6 @@ static void build_arch(ob_world *w, double share)
 	ob_world_material(w, .9, 0);
 }
 
-static void build_arch_stands(ob_world *w, uint32_t run)
-{
-	build_arch(w, 1.001);
-}
-
-static void build_arch_falls(ob_world *w, uint32_t run)
-{
-	build_arch(w, .999);
-}
-
 #define THRUST "a line of thrust within all joints (Heyman 1969)"
 
 const ob_case ob_case_arch_stands = {
@@ -199,14 +155,11 @@ const ob_case ob_case_arch_stands = {
 	.setup =
 		"Twenty voussoirs in a half circle of 5 m without mortar, .1 % thicker than they must be; friction .9; "
 		"20 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 20,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = SIDE_FIGURES,
 	.figure = SIDE_FIGURE(THRUST),
-	.build = build_arch_stands,
+	.build = build_arch,
+	.variant = { 1.001 },
 	.observe = observe_side,
 	.judge = judge_stands,
 };
@@ -216,14 +169,11 @@ const ob_case ob_case_arch_falls = {
 	.name = "arch-falls",
 	.title = "An arch that just falls",
 	.setup = "As before, .1 % thinner than they must be: it must fall within 20 s.",
-	.others = "not measured elsewhere",
-	.quick = true,
 	.duration = 20,
-	.step = 1. / 60,
-	.runs = 1,
 	.figures = SIDE_FIGURES,
 	.figure = SIDE_FIGURE(THRUST),
-	.build = build_arch_falls,
+	.build = build_arch,
+	.variant = { .999 },
 	.observe = observe_side,
 	.judge = judge_falls,
 };

@@ -39,7 +39,7 @@ enum { WALL_SPEEDS = 5, MEMORY_HIT = 0, MEMORY_PASSED };
 static const double wall_speed[WALL_SPEEDS] = { 10, 30, 100, 300, 1000 }; // m/s
 static const double wall_half = 4; // m
 
-static void build_thin_wall(ob_world *w, uint32_t run)
+static void build_thin_wall(ob_world *w, uint32_t run, const double *variant)
 {
 	uint64_t seed = 18 + run;
 	w->gravity = ob_v3(0, 0, 0);
@@ -77,7 +77,7 @@ static double count(const ob_case_run_state *t, int what)
 	return sum;
 }
 
-static void judge_thin_wall(ob_case_run_state *t)
+static void judge_shots(ob_case_run_state *t)
 {
 	double passed = count(t, MEMORY_PASSED), missed = AIMS - count(t, MEMORY_HIT);
 	t->figure[t->run] = fmax(passed, missed);
@@ -98,15 +98,13 @@ const ob_case ob_case_thin_wall = {
 	.setup = "Boxes of .2 m fly at a fixed wall of 20 mm, turned and aimed at random: 100 aims at each of 10, "
 		 "30, 100, 300 and 1000 m/s.",
 	.others = "ODE 77 to 100 of 100",
-	.quick = true,
 	.duration = .6,
-	.step = 1. / 60,
 	.runs = WALL_SPEEDS,
 	.figures = WALL_SPEEDS,
 	.figure = { PASSES("10"), PASSES("30"), PASSES("100"), PASSES("300"), PASSES("1000") },
 	.build = build_thin_wall,
 	.observe = observe_thin_wall,
-	.judge = judge_thin_wall,
+	.judge = judge_shots,
 };
 
 // ---- row 19: the pair is bodies 2 i, from -x, and 2 i + 1
@@ -114,7 +112,7 @@ const ob_case ob_case_thin_wall = {
 enum { BULLET_SPEEDS = 3 };
 static const double bullet_speed[BULLET_SPEEDS] = { 200, 500, 1000 }; // m/s
 
-static void build_bullets(ob_world *w, uint32_t run)
+static void build_bullets(ob_world *w, uint32_t run, const double *variant)
 {
 	uint64_t seed = 19 + run;
 	double speed = bullet_speed[run];
@@ -144,11 +142,6 @@ static void observe_bullets(ob_case_run_state *t)
 	}
 }
 
-static void judge_bullets(ob_case_run_state *t)
-{
-	judge_thin_wall(t);
-}
-
 const ob_case ob_case_bullets = {
 	.row = 19,
 	.name = "bullets",
@@ -156,13 +149,11 @@ const ob_case ob_case_bullets = {
 	.setup = "Boxes of .2 m fly at each other, turned and aimed at random: 100 pairs at each of +-200, 500 and "
 		 "1000 m/s.",
 	.others = "Box3D 75 to 100 of 100, Jolt 2 to 100",
-	.quick = true,
 	.duration = .15,
-	.step = 1. / 60,
 	.runs = BULLET_SPEEDS,
 	.figures = BULLET_SPEEDS,
 	.figure = { PASSES("200"), PASSES("500"), PASSES("1000") },
 	.build = build_bullets,
 	.observe = observe_bullets,
-	.judge = judge_bullets,
+	.judge = judge_shots,
 };
