@@ -77,6 +77,12 @@ typedef struct ob_joint_passport {
 	char name[OB_NAME_MAX]; // as the scene has it, or of its kind and number: "hinge#3"; ends with 0
 } ob_joint_passport;
 
+// False of a passport between two objects that are the same: no joint has this number.
+static inline bool ob_joint_exists(const ob_joint_passport *j)
+{
+	return j->object[0] != j->object[1];
+}
+
 // Action of a joint on its first object, world frame, mean over the last step; on its second object the same acts the other
 // way round. A joint that has broken keeps what it broke by: the mean over that substep.
 typedef struct ob_joint_load {

@@ -70,6 +70,10 @@ static inline bool ob_equal(ob_vec3 a, ob_vec3 b)
 {
 	return a.x == b.x && a.y == b.y && a.z == b.z;
 }
+static inline bool ob_is_finite(ob_vec3 a)
+{
+	return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
+}
 static inline double ob_norm(ob_vec3 a)
 {
 	return sqrt(ob_dot(a, a));
@@ -87,6 +91,11 @@ static inline ob_quat ob_quat_mul(ob_quat a, ob_quat b)
 		a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
 		a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
 	};
+}
+// The inverse rotation
+static inline ob_quat ob_quat_conjugate(ob_quat q)
+{
+	return (ob_quat){ q.w, -q.x, -q.y, -q.z };
 }
 static inline ob_quat ob_quat_normalize(ob_quat q)
 {

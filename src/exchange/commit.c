@@ -9,6 +9,7 @@
 #include "schedule/pair_checks.h"
 #include "schedule/work.h"
 #include "table/home.h"
+#include "table/layout.h"
 
 enum { NONE = UINT32_MAX };
 
@@ -90,16 +91,9 @@ static void give_scripts(ob_committer *c, const ob_universe *u)
 	}
 }
 
-static bool finite3(ob_vec3 v)
-{
-	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
-}
-
 static bool is_sound(const ob_motion *m, const ob_universe *u)
 {
-	const double norm = m->q.w * m->q.w + m->q.x * m->q.x + m->q.y * m->q.y + m->q.z * m->q.z;
-	return isfinite(m->t0) && !isnan(m->valid_until) && finite3(m->p) && finite3(m->v) && finite3(m->w) &&
-	       finite3(m->a) && norm > .9 && norm < 1.1 && isfinite(m->path) && m->reach >= 0 && isfinite(m->reach) &&
+	return ob_motion_makes_sense(m) && isfinite(m->path) && m->reach >= 0 && isfinite(m->reach) &&
 	       m->rest_time >= 0 && isfinite(m->rest_time) && m->step == ob_step_count(u) + 1 &&
 	       m->island < ob_universe_ids(u) && m->substeps < 1 << OB_SUBSTEP_CHOICES && !(m->flags >> 8) &&
 	       !(m->flags & OB_MOTION_SWINGS);
@@ -259,7 +253,7 @@ static const char *commit_joint(ob_committer *c, ob_universe *u, const ob_mail_r
 			 solves(c, u, from->worker, j->object[side]);
 	if (!given || !ob_joint_holds(u, j))
 		return "has found a joint of bodies that it was not given";
-	if (r->broke > 1 || !finite3(r->force) || !finite3(r->torque) || !isfinite(r->along))
+	if (r->broke > 1 || !ob_is_finite(r->force) || !ob_is_finite(r->torque) || !isfinite(r->along))
 		return "has found a load of a joint that makes no sense";
 	ob_write_joint(u, r);
 	return NULL;
@@ -272,7 +266,8 @@ static const char *commit_touch(ob_committer *c, ob_universe *u, const ob_mail_r
 	if (from->bytes != sizeof *r || r->id >= ob_universe_ids(u) || !data->script_of || !data->script_of[r->id] ||
 	    !solves(c, u, from->worker, r->id))
 		return "has felt for what it was not given";
-	if ((r->other >= ob_universe_ids(u) && r->other != OB_NO_OBJECT) || !isfinite(r->impulse) || !finite3(r->point))
+	if ((r->other >= ob_universe_ids(u) && r->other != OB_NO_OBJECT) || !isfinite(r->impulse) ||
+	    !ob_is_finite(r->point))
 		return "has felt what makes no sense";
 	ob_write_touch(u, r);
 	return NULL;
@@ -284,8 +279,8 @@ static bool is_sound_script(const ob_script_record *r, size_t bytes)
 	return bytes >= sizeof *r && r->state_bytes <= OB_SCRIPT_STATE_BYTES &&
 	       bytes == sizeof *r + ob_in_words(r->state_bytes) && r->outbox_bytes <= OB_SCRIPT_OUTBOX_BYTES &&
 	       r->outbox_bytes % 8 == 0 && !(r->flags & ~(uint32_t)FLAGS) && !(r->asks & ~(uint32_t)ASKS) &&
-	       finite3(r->force) && finite3(r->next_torque) && finite3(r->push) && finite3(r->twist) &&
-	       isfinite(r->colour[0] + r->colour[1] + r->colour[2] + r->colour[3]) &&
+	       ob_is_finite(r->force) && ob_is_finite(r->next_torque) && ob_is_finite(r->push) &&
+	       ob_is_finite(r->twist) && isfinite(r->colour[0] + r->colour[1] + r->colour[2] + r->colour[3]) &&
 	       memchr(r->error, 0, sizeof r->error);
 }
 

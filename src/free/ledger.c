@@ -182,7 +182,7 @@ static bool is_settled(const ob_account *own, const ob_free_seen *seen)
 // Turn, rad, from one attitude to another near it.
 static ob_vec3 turn_between(ob_quat from, ob_quat to)
 {
-	const ob_quat d = ob_quat_mul(to, (ob_quat){ from.w, -from.x, -from.y, -from.z });
+	const ob_quat d = ob_quat_mul(to, ob_quat_conjugate(from));
 	return ob_scale(ob_v3(d.x, d.y, d.z), d.w < 0 ? -2 : 2);
 }
 

@@ -43,7 +43,8 @@ void ob_joint_request_make(ob_request *r, const ob_joint_passport *j)
 static bool has_joint(const ob_universe *u, uint32_t object, uint32_t joint)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	return joint < ob_joints_end(data) && !ob_joint_is_free(data, joint) && data->joint[joint].object[0] == object;
+	return joint < ob_joints_end(data) && ob_joint_exists(&data->joint[joint]) &&
+	       data->joint[joint].object[0] == object;
 }
 
 static bool is_there(const ob_universe *u, uint32_t id, uint32_t generation)
@@ -165,9 +166,10 @@ static uint32_t find_same(const ob_universe *u, const ob_joint_passport *j)
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t end = ob_joints_end(data);
 	uint32_t i = 0;
-	while (i < end && (ob_joint_is_free(data, i) || memcmp(data->joint[i].object, j->object, sizeof j->object) ||
-			   memcmp(data->joint[i].generation, j->generation, sizeof j->generation) ||
-			   strncmp(data->joint[i].name, j->name, OB_NAME_MAX)))
+	while (i < end &&
+	       (!ob_joint_exists(&data->joint[i]) || memcmp(data->joint[i].object, j->object, sizeof j->object) ||
+		memcmp(data->joint[i].generation, j->generation, sizeof j->generation) ||
+		strncmp(data->joint[i].name, j->name, OB_NAME_MAX)))
 		i++;
 	return i < end ? i : UINT32_MAX;
 }

@@ -13,15 +13,10 @@ static const double hand_speed = 100; // m/s: the most at which a drag moves a b
 static const double spin_decay = 2; // 1/s, of a dragged body
 static const double frequency_least = .1, frequency_most = 50; // Hz
 
-static bool is_finite(ob_vec3 v)
-{
-	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
-}
-
 static bool check_point(const ob_pull *pull, const ob_passport *p, ob_error *e)
 {
 	const double most = 1.01 * ob_shape_radius((ob_shape)p->shape, p->size);
-	return (is_finite(pull->point) && ob_norm(pull->point) <= most) ||
+	return (ob_is_finite(pull->point) && ob_norm(pull->point) <= most) ||
 	       ob_fail(e, "point: expected one of the object, at most %g m from its centre", most);
 }
 

@@ -8,17 +8,12 @@
 // m/s and rad/s: faster than any motion in any case, including endless falls within its time.
 static const double absurd = 1e5;
 
-static bool finite_vector(ob_vec3 v)
-{
-	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
-}
-
 static const char *insane(const ob_case_run_state *t)
 {
 	for (uint32_t id = 0; id < t->world->objects; id++) {
 		ob_state s = ob_look_at(t, id);
 		ob_quat q = s.pose.q;
-		if (!finite_vector(s.pose.p) || !finite_vector(s.v) || !finite_vector(s.w) ||
+		if (!ob_is_finite(s.pose.p) || !ob_is_finite(s.v) || !ob_is_finite(s.w) ||
 		    !isfinite(q.w + q.x + q.y + q.z))
 			return "became not a number";
 		if (ob_norm(s.v) > absurd || ob_norm(s.w) > absurd)

@@ -45,7 +45,7 @@ const ob_hull *ob_snapshot_part(const ob_snapshot *s, uint32_t id, uint32_t part
 // True if there is a joint of this number; it may have broken.
 static inline bool ob_snapshot_has_joint(const ob_snapshot *s, uint32_t joint)
 {
-	return joint < s->joints && s->joint[joint].object[0] != s->joint[joint].object[1];
+	return joint < s->joints && ob_joint_exists(&s->joint[joint]);
 }
 // State of a present object at the snapshot's time: its motion may be older (asleep, static, in flight).
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id);

@@ -1,10 +1,5 @@
 #include <ob/hull.h>
 
-static bool finite3(ob_vec3 v)
-{
-	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
-}
-
 static bool is_length(double x)
 {
 	return x > 0 && isfinite(x);
@@ -17,7 +12,7 @@ static bool faces_make_sense(const ob_hull *h)
 	for (uint32_t f = 0; f < h->faces; f++) {
 		if (h->first[f + 1] < h->first[f] + 3 || h->first[f + 1] > 2 * h->edges)
 			return false;
-		if (!finite3(h->normal[f]) || !(h->is_part ? isfinite(h->offset[f]) : is_length(h->offset[f])) ||
+		if (!ob_is_finite(h->normal[f]) || !(h->is_part ? isfinite(h->offset[f]) : is_length(h->offset[f])) ||
 		    !(fabs(ob_norm2(h->normal[f]) - 1) < .1))
 			return false;
 	}
@@ -36,11 +31,11 @@ bool ob_hull_makes_sense(const ob_hull *h)
 	    h->is_part > 1 || (h->is_part && h->parts))
 		return false;
 	if (!is_length(h->radius) || !(h->is_part ? isfinite(h->inner) : is_length(h->inner)) ||
-	    !is_length(h->thickness) || !is_length(h->volume) || !finite3(h->inertia) || !finite3(h->centre) ||
-	    !(norm > .9 && norm < 1.1) || !faces_make_sense(h))
+	    !is_length(h->thickness) || !is_length(h->volume) || !ob_is_finite(h->inertia) ||
+	    !ob_is_finite(h->centre) || !(norm > .9 && norm < 1.1) || !faces_make_sense(h))
 		return false;
 	for (uint32_t k = 0; k < h->corners; k++)
-		if (!finite3(h->corner[k]))
+		if (!ob_is_finite(h->corner[k]))
 			return false;
 	for (uint32_t k = 0; k < h->edges; k++) {
 		const ob_hull_edge *e = &h->edge[k];

@@ -23,7 +23,7 @@ static ob_pose compose(ob_pose a, ob_pose b)
 static ob_pose inverse(ob_pose a)
 {
 	const ob_mat3 r = ob_quat_matrix(a.q);
-	return (ob_pose){ ob_scale(ob_rotate_back(&r, a.p), -1), { a.q.w, -a.q.x, -a.q.y, -a.q.z } };
+	return (ob_pose){ ob_scale(ob_rotate_back(&r, a.p), -1), ob_quat_conjugate(a.q) };
 }
 
 static ob_pose pose_of(dBodyID body)

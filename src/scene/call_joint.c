@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "base/spelling.h"
 #include "scene/builder.h"
 #include "scene/object_limits.h"
@@ -143,7 +144,7 @@ static void read_objects(lua_State *L, const ob_builder *b, const char *kind, ob
 	}
 	if (j->kind == OB_JOINT_APART && j->object[1] == OB_JOINT_WORLD)
 		ob_sandbox_fail(L, "%s: expected names of two objects", kind);
-	if (j->object[0] == j->object[1]) {
+	if (!ob_joint_exists(j)) {
 		lua_rawgeti(L, 1, 1);
 		ob_sandbox_fail(L, "%s: expected two different objects, got \"%s\" twice", kind, lua_tostring(L, -1));
 	}
@@ -171,7 +172,7 @@ static ob_pose in_object(const ob_joined *o, ob_pose frame)
 	if (o->id == OB_JOINT_WORLD)
 		return frame;
 	return (ob_pose){ ob_rotate_back(&r, ob_sub(frame.p, o->pose.p)),
-			  ob_quat_normalize(ob_quat_mul((ob_quat){ q.w, -q.x, -q.y, -q.z }, frame.q)) };
+			  ob_quat_normalize(ob_quat_mul(ob_quat_conjugate(q), frame.q)) };
 }
 
 // Attitude of a frame with its x axis along the first, and its y axis along the second, as far as that is across.
@@ -306,10 +307,8 @@ static void add(lua_State *L, ob_builder *b, const char *kind, const ob_joint_pa
 		ob_sandbox_fail(L, "%s: expected at most %d joints in a scene", kind, OB_SCENE_JOINTS_MAX);
 	if (s->joints == b->joints_room) {
 		const uint32_t room = b->joints_room ? 2 * b->joints_room : 64;
-		ob_joint_passport *more = realloc(s->joint, room * sizeof *more);
-		if (!more)
+		if (!OB_GROW(s->joint, room))
 			ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
-		s->joint = more;
 		b->joints_room = room;
 	}
 	s->joint[s->joints++] = *j;

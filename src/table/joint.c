@@ -83,7 +83,7 @@ void ob_joints_write(ob_universe *u, const ob_joint_passport *joint, uint32_t jo
 		write_passport(data, i, &joint[i]);
 	set_end(data, joints);
 	for (uint32_t i = joints; i-- > 0;)
-		if (!ob_joint_is_free(data, i))
+		if (ob_joint_exists(&joint[i]))
 			link_joint(data, i, true);
 }
 
@@ -92,7 +92,7 @@ uint32_t ob_joint_add(ob_universe *u, const ob_joint_passport *joint)
 	ob_step_data *data = &u->step_data;
 	const uint32_t end = ob_joints_end(data);
 	uint32_t i = 0;
-	while (i < end && !ob_joint_is_free(data, i))
+	while (i < end && ob_joint_exists(&data->joint[i]))
 		i++;
 	if (i == data->joints_max)
 		return UINT32_MAX;
@@ -110,7 +110,7 @@ uint32_t ob_joint_add(ob_universe *u, const ob_joint_passport *joint)
 void ob_joint_remove(ob_universe *u, uint32_t joint)
 {
 	ob_step_data *data = &u->step_data;
-	if (joint >= ob_joints_end(data) || ob_joint_is_free(data, joint))
+	if (joint >= ob_joints_end(data) || !ob_joint_exists(&data->joint[joint]))
 		return;
 	link_joint(data, joint, false);
 	write_passport(data, joint, &(ob_joint_passport){ 0 });
@@ -158,7 +158,7 @@ ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint)
 
 bool ob_joint_holds(const ob_universe *u, const ob_joint_passport *j)
 {
-	if (j->object[0] == j->object[1] || has_broken(u, (uint32_t)(j - u->step_data.joint)))
+	if (!ob_joint_exists(j) || has_broken(u, (uint32_t)(j - u->step_data.joint)))
 		return false;
 	for (int side = 0; side < 2; side++) {
 		if (j->object[side] == OB_JOINT_WORLD)
@@ -205,7 +205,7 @@ static bool pose_makes_sense(const ob_pose *p)
 
 bool ob_joint_makes_sense(const ob_joint_passport *j)
 {
-	return j->kind < OB_JOINT_KINDS && j->object[0] != j->object[1] && j->object[0] != OB_JOINT_WORLD &&
+	return j->kind < OB_JOINT_KINDS && ob_joint_exists(j) && j->object[0] != OB_JOINT_WORLD &&
 	       axis_makes_sense(&j->axis) && pose_makes_sense(&j->frame[0]) && pose_makes_sense(&j->frame[1]) &&
 	       j->breaks_force > 0 && j->breaks_torque > 0 && isfinite(j->length) && memchr(j->name, 0, sizeof j->name);
 }

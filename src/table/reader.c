@@ -197,15 +197,10 @@ static void copy_words(void *to, const void *from, size_t bytes)
 		((ob_word *)to)[i] = __atomic_load_n((const ob_word *)from + i, __ATOMIC_RELAXED);
 }
 
-static bool finite3(ob_vec3 v)
-{
-	return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
-}
-
 bool ob_passport_makes_sense(const ob_passport *p, uint32_t id)
 {
-	return p->id == id && p->shape < OB_SHAPE_KINDS && finite3(p->size) && finite3(p->inertia) &&
-	       finite3(p->force) && isfinite(p->mass) && p->mass >= 0 && isfinite(p->friction) &&
+	return p->id == id && p->shape < OB_SHAPE_KINDS && ob_is_finite(p->size) && ob_is_finite(p->inertia) &&
+	       ob_is_finite(p->force) && isfinite(p->mass) && p->mass >= 0 && isfinite(p->friction) &&
 	       isfinite(p->restitution) && memchr(p->name, 0, sizeof p->name);
 }
 
@@ -242,8 +237,8 @@ bool ob_universe_get_hull(const ob_universe *u, uint32_t hull, ob_hull *out)
 bool ob_motion_makes_sense(const ob_motion *m)
 {
 	double norm = m->q.w * m->q.w + m->q.x * m->q.x + m->q.y * m->q.y + m->q.z * m->q.z;
-	return isfinite(m->t0) && !isnan(m->valid_until) && finite3(m->p) && finite3(m->v) && finite3(m->w) &&
-	       finite3(m->a) && norm > .9 && norm < 1.1 &&
+	return isfinite(m->t0) && !isnan(m->valid_until) && ob_is_finite(m->p) && ob_is_finite(m->v) &&
+	       ob_is_finite(m->w) && ob_is_finite(m->a) && norm > .9 && norm < 1.1 &&
 	       (!(m->flags & OB_MOTION_SWINGS) || (m->frequency > 0 && isfinite(m->frequency)));
 }
 
@@ -310,7 +305,7 @@ static void turn(const ob_state_arrays *out, size_t row, const ob_passport *p, c
 static bool read_body(const ob_universe *u, uint32_t id, ob_passport *out)
 {
 	return ob_passport_read_body(u, id, out) && out->id == id && out->flags & OB_OBJECT_PRESENT &&
-	       finite3(out->inertia);
+	       ob_is_finite(out->inertia);
 }
 
 size_t ob_universe_get_states(const ob_universe *u, const ob_state_arrays *out, size_t max)
@@ -391,8 +386,7 @@ static bool newest_version(const ob_universe *u, const ob_pair_key *key, uint64_
 static bool point_makes_sense(const ob_contact_point *c)
 {
 	double n2 = ob_norm2(c->normal);
-	return isfinite(c->position.x) && isfinite(c->position.y) && isfinite(c->position.z) && n2 > .9 && n2 < 1.1 &&
-	       isfinite(c->impulse);
+	return ob_is_finite(c->position) && n2 > .9 && n2 < 1.1 && isfinite(c->impulse);
 }
 
 // Copies of all touching pairs, sorted by ids: their places depend on the run, and change after a restart from a file.

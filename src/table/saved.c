@@ -280,9 +280,8 @@ static bool joint_makes_sense(const ob_saved_joint *j, uint32_t ids, uint64_t st
 {
 	const ob_joint_state *s = &j->state;
 	const uint32_t *id = j->passport.object;
-	const bool free = id[0] == id[1];
-	bool sense = (free || (id[0] < ids && (id[1] < ids || id[1] == OB_JOINT_WORLD) &&
-			       ob_joint_makes_sense(&j->passport))) &&
+	bool sense = (!ob_joint_exists(&j->passport) || (id[0] < ids && (id[1] < ids || id[1] == OB_JOINT_WORLD) &&
+							 ob_joint_makes_sense(&j->passport))) &&
 		     s->broke <= step && !s->zero;
 	for (int i = 0; i < 2; i++)
 		sense = sense && s->stamp[i] <= step &&

@@ -254,7 +254,7 @@ typedef struct ob_step_data {
 	// 0 and NULL unless the universe has room for joints (joint.c).
 	uint32_t joints_max;
 	ob_joint_counts *joint_counts;
-	ob_joint_passport *joint; // [joints_max]; both objects the same: no joint has this number
+	ob_joint_passport *joint; // [joints_max]; those that exist
 	ob_joint_state *joint_state; // [joints_max]
 	uint32_t (*next_joint)[2]; // [joints_max]: 1 + the next one of either object; 0 ends
 	uint32_t *first_joint; // [object]: 1 + the first of its joints, ascending; 0: it has none
@@ -309,11 +309,6 @@ static inline uint32_t ob_joints_end(const ob_step_data *data)
 {
 	const uint32_t n = data->joints_max ? __atomic_load_n(&data->joint_counts->used, __ATOMIC_RELAXED) : 0;
 	return n < data->joints_max ? n : data->joints_max;
-}
-
-static inline bool ob_joint_is_free(const ob_step_data *data, uint32_t joint)
-{
-	return data->joint[joint].object[0] == data->joint[joint].object[1];
 }
 
 static inline uint32_t ob_checks_count(const ob_step_data *data)

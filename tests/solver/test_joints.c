@@ -88,11 +88,6 @@ static uint32_t add_body(mechanism *m, ob_shape shape, ob_vec3 size, double mass
 	return id;
 }
 
-static ob_quat turned_back(ob_quat q)
-{
-	return (ob_quat){ q.w, -q.x, -q.y, -q.z };
-}
-
 // Joins two bodies, or one and the world, in a frame of the world.
 static ob_joint_passport *join(mechanism *m, ob_joint_kind kind, uint32_t a, uint32_t b, ob_vec3 at, ob_quat q)
 {
@@ -108,7 +103,7 @@ static ob_joint_passport *join(mechanism *m, ob_joint_kind kind, uint32_t a, uin
 		}
 		const ob_mat3 r = ob_quat_matrix(m->motion[id].q);
 		j->frame[side] = (ob_pose){ ob_rotate_back(&r, ob_sub(at, m->motion[id].p)),
-					    ob_quat_mul(turned_back(m->motion[id].q), q) };
+					    ob_quat_mul(ob_quat_conjugate(m->motion[id].q), q) };
 	}
 	return j;
 }
