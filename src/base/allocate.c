@@ -1,6 +1,7 @@
 #include "base/allocate.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/log.h"
 
@@ -34,6 +35,30 @@ void *ob_allocate_aligned(size_t alignment, size_t bytes)
 void *ob_reallocate(void *old, size_t bytes)
 {
 	return check(realloc(old, bytes), bytes);
+}
+
+// array: the address of the pointer, of any type.
+bool ob_grow(void *array, size_t from, size_t count, size_t size)
+{
+	char *at;
+	memcpy(&at, array, sizeof at);
+	at = reallocarray(at, count, size);
+	if (!at)
+		return false;
+	memset(at + from * size, 0, (count - from) * size);
+	memcpy(array, &at, sizeof at);
+	return true;
+}
+
+bool ob_make_room(void *array, size_t count, size_t *max, size_t size)
+{
+	const size_t more = *max ? 2 * *max : 64;
+	if (count < *max)
+		return true;
+	if (!ob_grow(array, more, more, size))
+		return false;
+	*max = more;
+	return true;
 }
 
 void ob_allocate_or_else(void (*leave)(void))

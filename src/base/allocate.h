@@ -8,6 +8,7 @@
 #ifndef OB_BASE_ALLOCATE_H
 #define OB_BASE_ALLOCATE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 void *ob_allocate(size_t bytes) __attribute__((malloc, warn_unused_result));
@@ -16,6 +17,15 @@ void *ob_allocate_zeroed(size_t bytes) __attribute__((malloc, warn_unused_result
 void *ob_allocate_aligned(size_t alignment, size_t bytes) __attribute__((malloc, warn_unused_result));
 // Like realloc; keeps old unchanged if memory runs out.
 void *ob_reallocate(void *old, size_t bytes) __attribute__((warn_unused_result));
+
+// Grows an array to so many elements; those from a number on are cleared. Memory may run out: then the array stays as it is,
+// and false returns.
+#define OB_GROW(array, count) ob_grow(&(array), count, count, sizeof *(array))
+#define OB_GROW_CLEARED(array, from, count) ob_grow(&(array), from, count, sizeof *(array))
+bool ob_grow(void *array, size_t from, size_t count, size_t size);
+// Makes room for one more element than "count": at "max" the array grows to twice as many.
+#define OB_MAKE_ROOM(array, count, max) ob_make_room(&(array), count, &(max), sizeof *(array))
+bool ob_make_room(void *array, size_t count, size_t *max, size_t size);
 
 // Calls leave in this thread instead, from now on; leave must not return. NULL: back to the default.
 void ob_allocate_or_else(void (*leave)(void));

@@ -1,3 +1,4 @@
+#include "base/allocate.h"
 #include "cli/top.h"
 
 #include <math.h>
@@ -14,11 +15,8 @@ static bool grow(void **records, uint32_t *room, uint32_t n, size_t size)
 {
 	if (n <= *room)
 		return true;
-	char *larger = reallocarray(*records, n, size);
-	if (!larger)
+	if (!ob_grow(records, *room, n, size))
 		return false;
-	memset(larger + *room * size, 0, (n - *room) * size);
-	*records = larger;
 	*room = n;
 	return true;
 }

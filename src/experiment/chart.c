@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/allocate.h"
+
 enum { PATH = 4096 };
 #define PNG_ZOOM 2
 
@@ -55,15 +57,10 @@ static bool make_room(ob_chart *c)
 	if (c->points < c->points_max)
 		return true;
 	size_t max = c->points_max ? 2 * c->points_max : 64;
-	ob_plot_point *point = reallocarray(c->point, max, sizeof *point);
-	if (point)
-		c->point = point;
-	ob_chart_text *text = reallocarray(c->text, max, sizeof *text);
-	if (text)
-		c->text = text;
-	if (point && text)
-		c->points_max = max;
-	return point && text;
+	if (!OB_GROW(c->point, max) || !OB_GROW(c->text, max))
+		return false;
+	c->points_max = max;
+	return true;
 }
 
 ob_plot_point *ob_chart_add(ob_chart *c, double x, double y, const char *label, const char *hint)

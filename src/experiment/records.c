@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "base/csv.h"
 #include "experiment/experiment.h"
 #include "experiment/folder.h"
@@ -11,14 +12,8 @@
 
 bool ob_records_add(ob_records *r, const ob_record *one)
 {
-	if (r->count == r->max) {
-		size_t max = r->max ? 2 * r->max : 64;
-		ob_record *more = reallocarray(r->record, max, sizeof *more);
-		if (!more)
-			return false;
-		r->record = more;
-		r->max = max;
-	}
+	if (!OB_MAKE_ROOM(r->record, r->count, r->max))
+		return false;
 	r->record[r->count++] = *one;
 	return true;
 }

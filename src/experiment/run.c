@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/allocate.h"
 #include "base/clock.h"
 #include "experiment/experiment.h"
 #include "experiment/folder.h"
@@ -21,14 +22,8 @@ static const double worth_telling_s = 5; // shorter runs are over before their e
 
 bool ob_trials_add(ob_trials *s, const ob_trial *t)
 {
-	if (s->count == s->max) {
-		size_t max = s->max ? 2 * s->max : 64;
-		ob_trial *more = reallocarray(s->trial, max, sizeof *more);
-		if (!more)
-			return false;
-		s->trial = more;
-		s->max = max;
-	}
+	if (!OB_MAKE_ROOM(s->trial, s->count, s->max))
+		return false;
 	s->trial[s->count++] = *t;
 	return true;
 }

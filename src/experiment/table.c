@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "base/utf8.h"
 
 typedef struct cell {
@@ -47,14 +48,8 @@ void ob_table_free(ob_table *t)
 
 static void add_cell(ob_table *t, const char *format, va_list args)
 {
-	if (t->count == t->max) {
-		size_t max = t->max ? 2 * t->max : 64;
-		cell *more = reallocarray(t->cell, max, sizeof *more);
-		if (!more)
-			return;
-		t->cell = more;
-		t->max = max;
-	}
+	if (!OB_MAKE_ROOM(t->cell, t->count, t->max))
+		return;
 	cell *c = &t->cell[t->count++];
 	*c = (cell){ 0 };
 	if (vasprintf(&c->text, format, args) < 0)

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
+
 typedef struct pair {
 	uint32_t a, b;
 } pair;
@@ -28,10 +30,8 @@ static bool grow(void **array, size_t element, size_t count, size_t *max)
 {
 	if (count <= *max)
 		return true;
-	void *more = realloc(*array, 2 * count * element);
-	if (!more)
+	if (!ob_grow(array, 2 * count, 2 * count, element))
 		return false;
-	*array = more;
 	*max = 2 * count;
 	return true;
 }

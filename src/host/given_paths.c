@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "scene/object_limits.h"
 
 // Index of the path of an object, or where it would be.
@@ -29,16 +30,14 @@ static bool reserve(ob_given_paths *p, uint32_t count, uint32_t points)
 	if (count > OB_GIVEN_PATHS_MAX || points > OB_GIVEN_POINTS_MAX)
 		return false;
 	if (count > p->room) {
-		ob_given_path *more = realloc(p->at, 2 * (size_t)count * sizeof *more);
-		if (!more)
+		if (!OB_GROW(p->at, 2 * (size_t)count))
 			return false;
-		p->at = more, p->room = 2 * count;
+		p->room = 2 * count;
 	}
 	if (points > p->point_room) {
-		ob_path_point *more = realloc(p->point, 2 * (size_t)points * sizeof *more);
-		if (!more)
+		if (!OB_GROW(p->point, 2 * (size_t)points))
 			return false;
-		p->point = more, p->point_room = 2 * points;
+		p->point_room = 2 * points;
 	}
 	return true;
 }

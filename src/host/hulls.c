@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
+
 static const char full[] = "/dev/shm is full: no room for its hull";
 
 bool ob_hulls_init(ob_hulls *h, const ob_scene *scene, ob_universe *u, ob_error *e)
@@ -35,10 +37,8 @@ static bool append(ob_hulls *h, const ob_hull_corners *corners, const ob_hull *h
 		return ob_fail(e, "the one ODE world has no hulls");
 	if (h->count >= ob_universe_hulls(h->u))
 		return ob_fail(e, "there is no room for more than %u different hulls", ob_universe_hulls(h->u));
-	ob_hull_corners *grown = realloc(h->corners, (come + 1) * sizeof *grown);
-	if (!grown)
+	if (!OB_GROW(h->corners, come + 1))
 		return ob_fail(e, "out of memory");
-	h->corners = grown;
 	h->corners[come] = *corners;
 	if (!ob_write_hull(h->u, h->count, hull))
 		return ob_fail(e, "%s", full);

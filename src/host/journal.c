@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
+
 void ob_journal_finish(ob_journal *j)
 {
 	free(j->entry);
@@ -58,15 +60,9 @@ const ob_request *ob_journal_again(ob_journal *j, const ob_journal_place *at)
 
 void ob_journal_note(ob_journal *j, const ob_journal_place *at, const ob_request *r)
 {
-	if (j->count == j->room) {
-		const size_t room = 2 * j->room + 16;
-		ob_journal_entry *more = realloc(j->entry, room * sizeof *more);
-		if (!more) {
-			j->lost = true;
-			return;
-		}
-		j->entry = more;
-		j->room = room;
+	if (!OB_MAKE_ROOM(j->entry, j->count, j->room)) {
+		j->lost = true;
+		return;
 	}
 	j->entry[j->count++] = (ob_journal_entry){ *at, *r };
 	j->next = j->count;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"
 #include "step/now.h"
@@ -61,10 +62,8 @@ static bool reserve(ob_pulls *p, uint32_t count)
 	if (count <= p->room)
 		return true;
 	const uint32_t room = 2 * count;
-	ob_pull *more = count <= OB_PULLS_MAX ? realloc(p->at, room * sizeof *more) : NULL;
-	if (!more)
+	if (count > OB_PULLS_MAX || !OB_GROW(p->at, room))
 		return false;
-	p->at = more;
 	p->room = room;
 	return true;
 }

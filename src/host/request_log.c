@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/allocate.h"
 #include "base/file.h"
 #include "scene/object_limits.h"
 
@@ -102,14 +103,6 @@ bool ob_request_log_close(ob_request_log *l, ob_error *e)
 
 // ---- read
 
-static bool grown(void **array, size_t element, uint32_t n)
-{
-	void *more = realloc(*array, element * ((size_t)n + 1));
-	if (more)
-		*array = more;
-	return more;
-}
-
 static bool makes_sense(const ob_request *r)
 {
 	ob_error e;
@@ -127,17 +120,17 @@ static bool take(ob_logged_requests *l, const record *x)
 		l->states--; // a replay carries out all requests at this step before it compares
 	switch (x->kind) {
 	case A_REQUEST:
-		if (!makes_sense(&x->entry.request) || !grown((void **)&l->request, sizeof *l->request, l->requests))
+		if (!makes_sense(&x->entry.request) || !OB_GROW(l->request, (size_t)l->requests + 1))
 			return false;
 		l->request[l->requests++] = x->entry;
 		return true;
 	case A_FREEZE:
-		if (!grown((void **)&l->freeze, sizeof *l->freeze, l->freezes))
+		if (!OB_GROW(l->freeze, (size_t)l->freezes + 1))
 			return false;
 		l->freeze[l->freezes++] = (ob_logged_freeze){ step, x->id, x->generation };
 		return true;
 	case A_STATE:
-		if (!grown((void **)&l->state, sizeof *l->state, l->states))
+		if (!OB_GROW(l->state, (size_t)l->states + 1))
 			return false;
 		l->state[l->states++] = (ob_logged_state){ step, x->hash };
 		return true;

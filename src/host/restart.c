@@ -7,6 +7,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/allocate.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "host/accounting.h"
@@ -195,10 +196,8 @@ static bool add_freeze(ob_restart_state *r, ob_freeze f)
 			return true;
 	if (r->freezes == r->freezes_max) {
 		const uint32_t more = 2 * r->freezes_max + 16;
-		ob_freeze *larger = realloc(r->freeze, more * sizeof *larger);
-		if (!larger)
+		if (!OB_GROW(r->freeze, more))
 			return false;
-		r->freeze = larger;
 		r->freezes_max = more;
 	}
 	r->freeze[r->freezes++] = f;

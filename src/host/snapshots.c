@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "base/allocate.h"
 #include "base/log.h"
 #include "free/free.h"
 #include "host/host_state.h"
@@ -28,10 +29,8 @@ uint64_t ob_host_keep_snapshot(ob_host *h, ob_error *e)
 		return ob_fail(e,
 			       "the one ODE world has no snapshots, as ODE does not show its whole state: take object "
 			       "simulators");
-	ob_kept_snapshot *more = realloc(all->at, (all->count + 1) * sizeof *more);
-	if (!more)
+	if (!OB_GROW(all->at, all->count + 1))
 		return ob_fail(e, "no memory for another snapshot: forget some");
-	all->at = more;
 	ob_kept_snapshot s = { ob_checkpoint_create(h->u), ob_population_copy(h->population, NULL) };
 	if (!s.universe || !s.population || !ob_checkpoint_take(s.universe, h->u)) {
 		forget(&s);

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/allocate.h"
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "host/trace_file.h"
@@ -66,12 +67,10 @@ static void keep_waiting(ob_timeline *t, uint32_t ring, const ob_trace_event *e)
 	ring_state *r = &t->ring[ring];
 	if (r->count == r->room) {
 		uint32_t room = r->room ? 2 * r->room : 16;
-		ob_trace_event *more = realloc(r->waiting, room * sizeof *more);
-		if (!more) {
+		if (!OB_GROW(r->waiting, room)) {
 			t->lost++;
 			return;
 		}
-		r->waiting = more;
 		r->room = room;
 	}
 	r->waiting[r->count++] = *e;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "experiment/analysis.h"
 #include "lab/look.h"
 
@@ -58,14 +59,8 @@ ob_result *ob_results_find(const ob_results *r, const ob_case *c, const ob_engin
 
 bool ob_results_add(ob_results *r, const ob_result *one)
 {
-	if (r->count == r->max) {
-		size_t max = r->max ? 2 * r->max : 64;
-		ob_result *more = reallocarray(r->result, max, sizeof *more);
-		if (!more)
-			return false;
-		r->result = more;
-		r->max = max;
-	}
+	if (!OB_MAKE_ROOM(r->result, r->count, r->max))
+		return false;
 	size_t at = r->count++;
 	for (; at > 0 && ob_result_order(&r->result[at - 1], one) > 0; at--)
 		r->result[at] = r->result[at - 1];

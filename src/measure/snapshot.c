@@ -1,3 +1,4 @@
+#include "base/allocate.h"
 #include "measure/measure.h"
 
 #include <math.h>
@@ -66,12 +67,8 @@ static bool expect_hulls(ob_snapshot *s, uint64_t created, uint32_t hulls)
 	s->created = created;
 	if (s->hulls >= hulls)
 		return true;
-	ob_hull **grown = realloc(s->hull, hulls * sizeof *grown);
-	if (!grown)
+	if (!OB_GROW_CLEARED(s->hull, s->hulls, hulls))
 		return false;
-	for (uint32_t i = s->hulls; i < hulls; i++)
-		grown[i] = NULL;
-	s->hull = grown;
 	s->hulls = hulls;
 	return true;
 }
@@ -140,10 +137,8 @@ static bool grow_joints(ob_snapshot *s, uint32_t joints)
 {
 	if (joints <= s->joints_max)
 		return true;
-	ob_joint_passport *grown = realloc(s->joint, joints * sizeof *grown);
-	if (!grown)
+	if (!OB_GROW(s->joint, joints))
 		return false;
-	s->joint = grown;
 	s->joints_max = joints;
 	return true;
 }

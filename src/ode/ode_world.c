@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "base/allocate.h"
 #include "base/cpu.h"
 #include "ode/ode_body.h"
 #include "ode/ode_geom.h"
@@ -347,11 +348,7 @@ static struct contact_pair *next_pair(ob_ode_world *w)
 	if (w->pairs == w->pairs_max) {
 		size_t more = w->pairs_max ? 2 * w->pairs_max : 256;
 		bool allowed = w->setup.pairs_max == 0 || w->pairs < w->setup.pairs_max;
-		struct contact_pair *pair = allowed ? realloc(w->pair, more * sizeof *pair) : NULL;
-		w->pair = pair ? pair : w->pair;
-		struct contact_pair **order = pair ? realloc(w->order, more * sizeof *order) : NULL;
-		w->order = order ? order : w->order;
-		if (!order) {
+		if (!allowed || !OB_GROW(w->pair, more) || !OB_GROW(w->order, more)) {
 			w->full = true;
 			ob_ode_give_up();
 		}

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "plot/font.h"
 
 // Makes room for "more" elements in *array; returns false if memory runs out.
@@ -11,12 +12,10 @@ static bool reserve_elements(ob_drawing *d, void **array, size_t size, size_t co
 {
 	if (count + more > *max) {
 		size_t grown = (count + more) * 2;
-		void *moved = realloc(*array, grown * size);
-		if (!moved) {
+		if (!ob_grow(array, grown, grown, size)) {
 			d->out_of_memory = true;
 			return false;
 		}
-		*array = moved;
 		*max = grown;
 	}
 	return true;

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
+
 // ---- ticks
 
 static double transformed(ob_plot_scale scale, double v)
@@ -375,14 +377,8 @@ void ob_frame_place(ob_frame *f, ob_rect outer)
 
 bool ob_frame_take(ob_frame *f, ob_rect r)
 {
-	if (f->taken == f->taken_max) {
-		size_t max = f->taken_max * 2 + 64;
-		ob_rect *grown = realloc(f->take, max * sizeof *grown);
-		if (!grown)
-			return false;
-		f->take = grown;
-		f->taken_max = max;
-	}
+	if (!OB_MAKE_ROOM(f->take, f->taken, f->taken_max))
+		return false;
 	f->take[f->taken++] = r;
 	return true;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/allocate.h"
 #include "ranks/module.h"
 
 enum {
@@ -141,10 +142,8 @@ static bool make_room(char **room, size_t *max, size_t n)
 {
 	if (n <= *max)
 		return true;
-	char *larger = realloc(*room, 2 * n);
-	if (!larger)
+	if (!OB_GROW(*room, 2 * n))
 		return false;
-	*room = larger;
 	*max = 2 * n;
 	return true;
 }

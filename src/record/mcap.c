@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "base/clock.h"
 #include "shape/shape.h"
 
@@ -38,12 +39,10 @@ static void put(text *t, const void *bytes, size_t n)
 {
 	if (t->size + n > t->room) {
 		const size_t room = 2 * (t->size + n);
-		char *larger = realloc(t->bytes, room);
-		if (!larger) {
+		if (!OB_GROW(t->bytes, room)) {
 			t->failed = true;
 			return;
 		}
-		t->bytes = larger;
 		t->room = room;
 	}
 	memcpy(t->bytes + t->size, bytes, n);
@@ -274,14 +273,8 @@ static bool grow(writer *w, uint32_t ids)
 {
 	if (ids <= w->ids)
 		return true;
-	ob_passport *shown = realloc(w->shown, ids * sizeof *shown);
-	w->shown = shown ? shown : w->shown;
-	ob_pose *placed = shown ? realloc(w->placed, ids * sizeof *placed) : NULL;
-	w->placed = placed ? placed : w->placed;
-	if (!placed)
+	if (!OB_GROW_CLEARED(w->shown, w->ids, ids) || !OB_GROW_CLEARED(w->placed, w->ids, ids))
 		return false;
-	memset(w->shown + w->ids, 0, (ids - w->ids) * sizeof *w->shown);
-	memset(w->placed + w->ids, 0, (ids - w->ids) * sizeof *w->placed);
 	w->ids = ids;
 	return true;
 }

@@ -1,3 +1,4 @@
+#include "base/allocate.h"
 #include "record/part.h"
 
 #include <errno.h>
@@ -166,11 +167,8 @@ static bool write_fact(const objects *o, int i, char *buffer)
 // Adds columns without objects.
 static bool grow_objects(objects *o, uint32_t count)
 {
-	ob_passport *grown = realloc(o->written, count * sizeof *grown);
-	if (!grown)
+	if (!OB_GROW_CLEARED(o->written, o->count, count))
 		return false;
-	memset(grown + o->count, 0, (count - o->count) * sizeof *grown);
-	o->written = grown;
 	o->count = count;
 	bool ok = true;
 	for (int i = 0; i < FACTS && ok; i++)
@@ -499,19 +497,9 @@ static bool create_file(ob_recorder *r, const ob_record_facts *about)
 // Grows the arrays in memory to this number of ids.
 static bool make_room(ob_recorder *r, uint32_t count)
 {
-	double *numbers = realloc(r->numbers, count * 4 * sizeof *numbers);
-	r->numbers = numbers ? numbers : r->numbers;
-	uint8_t *asleep = realloc(r->asleep, count);
-	r->asleep = asleep ? asleep : r->asleep;
-	ob_record_motion *fresh = realloc(r->fresh, count * sizeof *fresh);
-	r->fresh = fresh ? fresh : r->fresh;
-	ob_record_event *event = realloc(r->event, 2 * count * sizeof *event);
-	r->event = event ? event : r->event;
-	ob_record_motion *known = realloc(r->known, count * sizeof *known);
-	r->known = known ? known : r->known;
-	if (!numbers || !asleep || !fresh || !event || !known)
+	if (!OB_GROW(r->numbers, 4 * (size_t)count) || !OB_GROW(r->asleep, count) || !OB_GROW(r->fresh, count) ||
+	    !OB_GROW(r->event, 2 * (size_t)count) || !OB_GROW_CLEARED(r->known, r->count, count))
 		return false;
-	memset(r->known + r->count, 0, (count - r->count) * sizeof *r->known);
 	r->count = count;
 	return true;
 }
@@ -605,11 +593,8 @@ static bool append_hulls(ob_recorder *r, const ob_snapshot *s)
 {
 	bool ok = true;
 	if (s->hulls > r->known_hulls) {
-		bool *grown = realloc(r->knows_hull, s->hulls * sizeof *grown);
-		if (!grown)
+		if (!OB_GROW_CLEARED(r->knows_hull, r->known_hulls, s->hulls))
 			return false;
-		memset(grown + r->known_hulls, 0, (s->hulls - r->known_hulls) * sizeof *grown);
-		r->knows_hull = grown;
 		r->known_hulls = s->hulls;
 	}
 	for (uint32_t i = 0; i < s->hulls && ok; i++) {
@@ -627,13 +612,8 @@ static bool make_room_for_joints(ob_recorder *r, uint32_t joints)
 {
 	if (joints <= r->known_joints)
 		return true;
-	ob_joint_passport *joint = realloc(r->joint, joints * sizeof *joint);
-	r->joint = joint ? joint : r->joint;
-	ob_record_joint *fresh = realloc(r->fresh_joint, 2 * joints * sizeof *fresh);
-	r->fresh_joint = fresh ? fresh : r->fresh_joint;
-	if (!joint || !fresh)
+	if (!OB_GROW_CLEARED(r->joint, r->known_joints, joints) || !OB_GROW(r->fresh_joint, 2 * (size_t)joints))
 		return false;
-	memset(r->joint + r->known_joints, 0, (joints - r->known_joints) * sizeof *r->joint);
 	r->known_joints = joints;
 	return true;
 }
@@ -653,7 +633,7 @@ static ob_joint_passport recorded_joint(const ob_snapshot *s, uint32_t joint)
 static bool is_same_joint(const ob_joint_passport *a, ob_joint_passport b)
 {
 	b.flags = (b.flags & ~(uint32_t)OB_JOINT_BROKEN) | (a->flags & OB_JOINT_BROKEN);
-	return a->object[0] != a->object[1] && memcmp(a, &b, sizeof b) == 0;
+	return ob_joint_exists(a) && memcmp(a, &b, sizeof b) == 0;
 }
 
 static void note_joint(ob_recorder *r, const ob_snapshot *s, ob_record_event_kind kind, uint32_t number,
@@ -671,9 +651,9 @@ static bool append_joints(ob_recorder *r, const ob_snapshot *s)
 		if (memcmp(known, &now, sizeof now) == 0)
 			continue;
 		const bool same = is_same_joint(known, now);
-		if (!same && known->object[0] != known->object[1])
+		if (!same && ob_joint_exists(known))
 			note_joint(r, s, OB_RECORD_REMOVED, i, known, &joints);
-		if (now.object[0] != now.object[1])
+		if (ob_joint_exists(&now))
 			note_joint(r, s, same ? OB_RECORD_CHANGED : OB_RECORD_CREATED, i, &now, &joints);
 		*known = now;
 	}

@@ -1,3 +1,4 @@
+#include "base/allocate.h"
 #include "record/part.h"
 
 #include <errno.h>
@@ -789,11 +790,7 @@ static bool make_room(ob_snapshot *s, uint32_t count)
 {
 	if (count > s->count_max) {
 		const uint32_t room = count > 2 * s->count_max ? count : 2 * s->count_max;
-		ob_passport *passport = realloc(s->passport, room * sizeof *passport);
-		s->passport = passport ? passport : s->passport;
-		ob_motion *motion = realloc(s->motion, room * sizeof *motion);
-		s->motion = motion ? motion : s->motion;
-		if (!passport || !motion)
+		if (!OB_GROW(s->passport, room) || !OB_GROW(s->motion, room))
 			return false;
 		s->count_max = room;
 	}
@@ -852,10 +849,8 @@ static bool make_room_for_joints(ob_snapshot *s, uint32_t joints)
 {
 	if (joints > s->joints_max) {
 		const uint32_t room = joints > 2 * s->joints_max ? joints : 2 * s->joints_max;
-		ob_joint_passport *grown = realloc(s->joint, room * sizeof *grown);
-		if (!grown)
+		if (!OB_GROW(s->joint, room))
 			return false;
-		s->joint = grown;
 		s->joints_max = room;
 	}
 	for (; s->joints < joints; s->joints++)

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "shape/shape.h"
 
 // ---- the view of a camera
@@ -102,15 +103,8 @@ static bool grow(ob_draw_list *b, uint32_t count)
 {
 	if (count <= b->capacity)
 		return true;
-	ob_draw_item *body = realloc(b->body, count * sizeof *body);
-	if (body)
-		b->body = body;
-	ob_attention *attention = realloc(b->attention, count * sizeof *attention);
-	if (attention)
-		b->attention = attention;
-	if (!body || !attention)
+	if (!OB_GROW(b->body, count) || !OB_GROW_CLEARED(b->attention, b->capacity, count))
 		return false;
-	memset(attention + b->capacity, 0, (count - b->capacity) * sizeof *attention);
 	b->capacity = count;
 	return true;
 }
@@ -374,10 +368,8 @@ static ob_instance instance_of(const ob_draw_list *b, const ob_draw_item *body, 
 static bool expect_meshes(ob_instances *out, uint32_t meshes)
 {
 	if (meshes > out->meshes_max) {
-		uint32_t *grown = realloc(out->first, (meshes + 1) * sizeof *grown);
-		if (!grown)
+		if (!OB_GROW(out->first, meshes + 1))
 			return false;
-		out->first = grown;
 		out->meshes_max = meshes;
 	}
 	out->meshes = meshes;
@@ -388,10 +380,8 @@ bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *
 		       const void *context)
 {
 	if (b->count > out->capacity) {
-		ob_instance *grown = realloc(out->instance, b->count * sizeof *grown);
-		if (!grown)
+		if (!OB_GROW(out->instance, b->count))
 			return false;
-		out->instance = grown;
 		out->capacity = b->count;
 	}
 	if (!expect_meshes(out, OB_MESHES + b->now->hulls + b->meshes))
@@ -440,10 +430,8 @@ static bool reserve_segments(ob_overlay *o, size_t count)
 	o->count = 0;
 	if (count <= o->capacity)
 		return true;
-	ob_segment *grown = realloc(o->segment, count * sizeof *grown);
-	if (!grown)
+	if (!OB_GROW(o->segment, count))
 		return false;
-	o->segment = grown;
 	o->capacity = count;
 	return true;
 }

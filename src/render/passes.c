@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "shaders.h"
 
 // ---- shader programs
@@ -445,10 +446,9 @@ bool ob_passes_take_hulls(ob_passes *p, const ob_snapshot *s)
 	const uint32_t known = known_hulls(s);
 	if (p->hulls == s->hulls && p->known_hulls == known && p->hulls_of == s->created)
 		return true;
-	uint32_t *first = realloc(p->hull_first, (s->hulls + 1) * sizeof *first), vertices = 0;
-	if (!first)
+	if (!OB_GROW(p->hull_first, s->hulls + 1))
 		return false;
-	p->hull_first = first;
+	uint32_t *first = p->hull_first, vertices = 0;
 	for (uint32_t i = 0; i < s->hulls; i++) {
 		first[i] = vertices;
 		vertices += mesh_of(s, i, NULL);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "base/spelling.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
@@ -69,11 +70,8 @@ int ob_scene_call_controls(lua_State *L)
 	control c = { .min = NAN, .max = NAN, .value = NAN };
 	ob_fields_read(L, 1, "controls", fields, sizeof fields / sizeof *fields, &c);
 	check(L, &c);
-	ob_control_def *more =
-		s->controls < OB_SCENE_CONTROLS_MAX ? realloc(s->control, (s->controls + 1) * sizeof *more) : NULL;
-	if (!more)
+	if (s->controls == OB_SCENE_CONTROLS_MAX || !OB_GROW(s->control, s->controls + 1))
 		ob_sandbox_fail(L, "controls: expected at most %d controls in a scene", OB_SCENE_CONTROLS_MAX);
-	s->control = more;
 	ob_control_def *d = &s->control[s->controls++];
 	*d = (ob_control_def){ .slider = !isnan(c.min), .min = c.min, .max = c.max };
 	snprintf(d->key, sizeof d->key, "%s", c.key ? c.key : "");

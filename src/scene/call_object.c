@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "base/spelling.h"
 #include "hull/hull.h"
 #include "scene/builder.h"
@@ -238,10 +239,8 @@ ob_object_def *ob_builder_add(lua_State *L, ob_builder *b, const char *kind, con
 		take_name(L, kind, name);
 	if (s->objects == b->objects_room) {
 		uint32_t room = b->objects_room ? 2 * b->objects_room : 64;
-		ob_object_def *more = realloc(s->object, room * sizeof *more);
-		if (!more)
+		if (!OB_GROW(s->object, room))
 			ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
-		s->object = more;
 		b->objects_room = room;
 	}
 	ob_object_def *o = &s->object[s->objects];

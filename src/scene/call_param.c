@@ -7,6 +7,7 @@
 
 #include <lauxlib.h>
 
+#include "base/allocate.h"
 #include "base/spelling.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
@@ -115,10 +116,8 @@ static void offer(lua_State *L, ob_scene *s, const char *name, const limits *l)
 	while (i < s->params && strcmp(s->param[i].name, name) != 0)
 		i++;
 	if (i == s->params) {
-		ob_param_def *more = realloc(s->param, (i + 1) * sizeof *more);
-		if (!more)
+		if (!OB_GROW(s->param, i + 1))
 			ob_sandbox_fail(L, "param.%s: no memory left on this machine", name);
-		s->param = more;
 		s->params++;
 	}
 	s->param[i] = (ob_param_def){

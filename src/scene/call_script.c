@@ -5,6 +5,7 @@
 
 #include <lauxlib.h>
 
+#include "base/allocate.h"
 #include "base/file.h"
 #include "base/spelling.h"
 #include "scene/builder.h"
@@ -71,14 +72,12 @@ uint32_t ob_builder_add_script(lua_State *L, ob_builder *b, const char *where, c
 			       size_t size)
 {
 	ob_scene *s = b->scene;
-	ob_script_def *grown = s->scripts < SCRIPTS_MAX ? realloc(s->script, (s->scripts + 1) * sizeof *grown) : NULL;
-	if (!grown || !text) {
+	if (!text || s->scripts == SCRIPTS_MAX || !OB_GROW(s->script, s->scripts + 1)) {
 		free(text);
 		if (s->scripts == SCRIPTS_MAX)
 			ob_sandbox_fail(L, "%s.script: expected at most %d scripts in a scene", where, SCRIPTS_MAX);
 		ob_sandbox_fail(L, "%s.script: no memory left on this machine", where);
 	}
-	s->script = grown;
 	ob_script_def *added = &s->script[s->scripts++];
 	*added = (ob_script_def){ .text = text, .size = (uint32_t)size };
 	snprintf(added->name, sizeof added->name, "%s", name);
@@ -151,10 +150,8 @@ uint32_t ob_builder_keep_state(lua_State *L, ob_builder *b, const unsigned char 
 	const uint32_t at = s->states_bytes;
 	if (at + size > b->states_room) {
 		const uint32_t room = 2 * (at + size);
-		unsigned char *grown = realloc(s->states, room);
-		if (!grown)
+		if (!OB_GROW(s->states, room))
 			ob_sandbox_fail(L, "state: no memory left on this machine");
-		s->states = grown;
 		b->states_room = room;
 	}
 	if (size)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "base/hash.h"
 #include "hull/hull.h"
 #include "scene/builder.h"
@@ -21,16 +22,7 @@ static void grow_hulls(lua_State *L, ob_builder *b, const char *kind, uint32_t m
 	if (s->hulls + more <= b->hulls_room)
 		return;
 	const uint32_t room = 2 * b->hulls_room + 1 + OB_HULL_PARTS_MAX;
-	ob_hull *hull = realloc(s->hull, room * sizeof *hull);
-	if (hull)
-		s->hull = hull;
-	ob_hull_corners *corners = realloc(s->hull_corners, room * sizeof *corners);
-	if (corners)
-		s->hull_corners = corners;
-	uint64_t *points = realloc(b->hull_points, room * sizeof *points);
-	if (points)
-		b->hull_points = points;
-	if (!hull || !corners || !points)
+	if (!OB_GROW(s->hull, room) || !OB_GROW(s->hull_corners, room) || !OB_GROW(b->hull_points, room))
 		ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
 	b->hulls_room = room;
 }

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
 
@@ -21,10 +22,8 @@ static void make_room(lua_State *L, ob_builder *b, const char *where)
 	if (s->meshes == OB_SCENE_MESHES_MAX)
 		ob_sandbox_fail(L, "%s.mesh: expected at most %d different meshes in a scene", where,
 				OB_SCENE_MESHES_MAX);
-	ob_mesh *mesh = realloc(s->mesh, (s->meshes + 1) * sizeof *mesh);
-	if (!mesh)
+	if (!OB_GROW(s->mesh, s->meshes + 1))
 		ob_sandbox_fail(L, "%s.mesh: no memory left on this machine", where);
-	s->mesh = mesh;
 }
 
 uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ob_mesh_source *source)

@@ -7,6 +7,7 @@
 
 #include <lauxlib.h>
 
+#include "base/allocate.h"
 #include "script/runner.h"
 
 #define FROZEN "script.frozen" // key in the registry: table -> its contents; weak in neither
@@ -91,10 +92,8 @@ static void watch(lua_State *L, ob_interpreter *p, int function, int upvalue)
 {
 	if (p->watched_count == p->watched_room) {
 		const uint32_t room = 2 * p->watched_room + 16;
-		ob_watched *grown = realloc(p->watched, room * sizeof *grown);
-		if (!grown)
+		if (!OB_GROW(p->watched, room))
 			ob_sandbox_fail(L, "no memory left on this machine");
-		p->watched = grown;
 		p->watched_room = room;
 	}
 	ob_watched *w = &p->watched[p->watched_count];

@@ -6,6 +6,7 @@
 
 #include <ob/motion.h>
 
+#include "base/allocate.h"
 #include "measure/colouring.h"
 #include "shape/shape.h"
 
@@ -154,7 +155,7 @@ static double off(const known *k, const ob_motion *m)
 	double s = m->t0 - sent->t0;
 	ob_vec3 p = ob_madd(ob_madd(sent->p, s, sent->v), .5 * s * s, sent->a);
 	ob_quat q = ob_quat_turn(sent->q, ob_scale(sent->w, s));
-	ob_quat turn = ob_quat_mul(m->q, (ob_quat){ q.w, -q.x, -q.y, -q.z });
+	ob_quat turn = ob_quat_mul(m->q, ob_quat_conjugate(q));
 	return ob_norm(ob_sub(m->p, p)) + 2 * k->radius * ob_norm(ob_v3(turn.x, turn.y, turn.z));
 }
 
@@ -303,12 +304,9 @@ static bool read_roster(ob_feed *f, size_t *entries)
 		*entries = f->source.list(f->source.of, f->entry, f->entry_room);
 		if (*entries <= f->entry_room)
 			return true;
-		size_t room = 2 * *entries;
-		ob_roster_entry *grown = realloc(f->entry, room * sizeof *grown);
-		if (!grown)
+		if (!OB_GROW(f->entry, 2 * *entries))
 			return false;
-		f->entry = grown;
-		f->entry_room = room;
+		f->entry_room = 2 * *entries;
 	}
 }
 
@@ -522,12 +520,9 @@ ob_message *ob_feed_contacts(ob_feed *f)
 {
 	size_t n = 0;
 	while (f->u && (n = ob_universe_get_contacts(f->u, f->contact, f->contact_room)) > f->contact_room) {
-		size_t room = 2 * n;
-		ob_contact_point *grown = realloc(f->contact, room * sizeof *grown);
-		if (!grown)
+		if (!OB_GROW(f->contact, 2 * n))
 			return NULL;
-		f->contact = grown;
-		f->contact_room = room;
+		f->contact_room = 2 * n;
 	}
 	ob_message *out = begin_aside(f, OB_FEED_CONTACTS, 0);
 	if (!out)

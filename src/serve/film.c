@@ -7,6 +7,7 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "base/allocate.h"
 #include "base/clock.h"
 #include "serve/facts.h"
 #include "serve/feed.h"
@@ -133,11 +134,8 @@ static bool note_population(film *f)
 	const ob_snapshot *s = ob_recording_state(f->recording);
 	const double begin = ob_recording_get_info(f->recording)->begin;
 	if (s->count > f->ids) {
-		ob_passport *grown = realloc(f->passport, s->count * sizeof *grown);
-		if (!grown)
+		if (!OB_GROW_CLEARED(f->passport, f->ids, s->count))
 			return false;
-		memset(grown + f->ids, 0, (s->count - f->ids) * sizeof *grown);
-		f->passport = grown;
 		f->ids = s->count;
 	}
 	for (uint32_t id = 0; id < f->ids; id++) {
@@ -162,11 +160,8 @@ static bool note_breaks(film *f)
 {
 	const ob_snapshot *s = ob_recording_state(f->recording);
 	if (s->joints > f->numbers) {
-		bool *grown = realloc(f->broke, s->joints * sizeof *grown);
-		if (!grown)
+		if (!OB_GROW_CLEARED(f->broke, f->numbers, s->joints))
 			return false;
-		memset(grown + f->numbers, 0, (s->joints - f->numbers) * sizeof *grown);
-		f->broke = grown;
 		f->numbers = s->joints;
 	}
 	for (uint32_t i = 0; i < s->joints; i++) {

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "base/utf8.h"
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "numbers are sent as they lie in memory");
@@ -35,12 +36,10 @@ static bool reserve(ob_message *m, size_t more)
 	if (m->size + more <= m->room)
 		return true;
 	size_t room = 2 * (m->size + more) + 256;
-	unsigned char *grown = realloc(m->bytes, room);
-	if (!grown) {
+	if (!OB_GROW(m->bytes, room)) {
 		m->failed = true;
 		return false;
 	}
-	m->bytes = grown;
 	m->room = room;
 	return true;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/allocate.h"
 #include "table/layout.h"
 
 // Bytes of the segment; begin and end on page borders.
@@ -61,10 +62,8 @@ static bool grow(void **array, size_t element, size_t needed, size_t *max)
 	if (needed <= *max)
 		return true;
 	size_t next = needed + needed / 2;
-	void *larger = realloc(*array, next * element);
-	if (!larger)
+	if (!ob_grow(array, next, next, element))
 		return false;
-	*array = larger;
 	*max = next;
 	return true;
 }

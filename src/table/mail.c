@@ -1,6 +1,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/allocate.h"
 #include "table/futex.h"
 #include "table/layout.h"
 #include "table/outbox.h"
@@ -31,11 +32,9 @@ static bool grow(ob_mail *m, size_t more)
 	if (!m->lost && m->used + more <= m->max)
 		return true;
 	const size_t max = 2 * (m->used + more);
-	char *larger = m->lost ? NULL : realloc(m->bytes, max);
-	m->lost = !larger;
+	m->lost = m->lost || !OB_GROW(m->bytes, max);
 	if (m->lost)
 		return false;
-	m->bytes = larger;
 	m->max = max;
 	return true;
 }
