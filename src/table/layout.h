@@ -17,74 +17,79 @@
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
 enum { OB_LAYOUT_VERSION = 42, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
 
-typedef enum ob_area {
-	OB_AREA_CONTROL,
-	OB_AREA_GATE,
-	OB_AREA_GATE_GROUP, // [workers / 64]
-	OB_AREA_GATE_CELL, // [workers]
-	OB_AREA_WORKER, // [workers]
-	OB_AREA_SLOT, // [capacity]
-	OB_AREA_PASSPORT, // [capacity]
-	OB_AREA_PASSPORT_EVEN, // [capacity]
-	OB_AREA_HULL, // [hulls]
-	OB_AREA_STEP_CLOCK,
-	OB_AREA_PIN, // [capacity] as ob_step_data.pin
-	OB_AREA_REQUERY, // [capacity] ids
-	OB_AREA_REQUERY_BIT, // [capacity / 64] ids that are on the list
-	OB_AREA_COUNTS, // from here on: ob_step_data
-	OB_AREA_SCHEDULE,
-	OB_AREA_BOUNDS,
-	OB_AREA_RESULT,
-	OB_AREA_EFFORT,
-	OB_AREA_HOME,
-	OB_AREA_RESULT_ISLAND,
-	OB_AREA_NEIGHBOURS,
-	OB_AREA_NEIGHBOUR_ID,
-	OB_AREA_CELL,
-	OB_AREA_BUCKET,
-	OB_AREA_OCCUPIED,
-	OB_AREA_PLANE,
-	OB_AREA_PAIR,
-	OB_AREA_PAIR_LINKS,
-	OB_AREA_FIRST_PAIR,
-	OB_AREA_SOLVE,
-	OB_AREA_SOLVE_64,
-	OB_AREA_SOLVE_4096,
-	OB_AREA_LOOK,
-	OB_AREA_LOOK_64,
-	OB_AREA_LOOK_4096,
-	OB_AREA_CHECK,
-	OB_AREA_RECORD,
-	OB_AREA_IMPULSE_B,
-	OB_AREA_RECORD_FREE,
-	OB_AREA_ISLAND,
-	OB_AREA_MEMBER,
-	OB_AREA_ISLAND_PAIR,
-	OB_AREA_CHUNK,
-	OB_AREA_SCRIPT_COUNTS, // these five empty unless the scene has scripts
-	OB_AREA_SCRIPT_OF, // [capacity]
-	OB_AREA_SCRIPT_TURN, // [script_cells]
-	OB_AREA_SCRIPT_CELL, // [script_cells]
-	OB_AREA_SCRIPT_DUE, // [script_cells]
-	OB_AREA_JOINT_COUNTS, // these five empty unless the universe has room for joints
-	OB_AREA_JOINT, // [joints]
-	OB_AREA_JOINT_STATE, // [joints]
-	OB_AREA_NEXT_JOINT, // [joints]
-	OB_AREA_FIRST_JOINT, // [capacity]
-	OB_AREA_SCRATCH,
-	OB_AREA_TASK_NS,
-	OB_AREA_SCRIPT_TEXT,
-	OB_AREA_OUTBOX, // per worker; empty unless simulators are contained
-	OB_AREA_FREE_CONTROL, // these five empty unless the run is free (free.h)
-	OB_AREA_FREE_CELL, // [capacity]
-	OB_AREA_FREE_GROUP, // [capacity / OB_FREE_GROUP]
-	OB_AREA_FREE_RING, // [capacity][history]
-	OB_AREA_FREE_LEDGER, // [capacity][ledgers]
-	OB_AREA_TRACE_RING, // from here on empty unless traced
-	OB_AREA_TRACE_EVENT, // rings of the workers, then of the host
-	OB_AREA_TRACE_SINCE, // [capacity] ns
-	OB_AREAS
-} ob_area;
+// Areas in their order: the name, the pointer of ob_universe to the first element, and the number of elements by the sizes s
+// (layout.c).
+// clang-format off
+#define OB_LAYOUT_AREAS(X) \
+	X(CONTROL, control, 1) \
+	X(GATE, gate, 1) \
+	X(GATE_GROUP, gate_group, groups(s->workers, 64)) \
+	X(GATE_CELL, gate_cell, s->workers) \
+	X(WORKER, worker, s->workers) \
+	X(SLOT, slot, s->capacity) \
+	X(PASSPORT, passport, s->capacity) \
+	X(PASSPORT_EVEN, passport_even, s->capacity) \
+	X(HULL, hull, s->hulls) \
+	X(STEP_CLOCK, step_clock, 1) \
+	X(PIN, step_data.pin, s->capacity) \
+	X(REQUERY, requery, s->capacity) /* ids */ \
+	X(REQUERY_BIT, requery_bit, groups(s->capacity, 64)) /* ids that are on the list */ \
+	X(COUNTS, step_data.count, 1) \
+	X(SCHEDULE, step_data.schedule, s->capacity) \
+	X(BOUNDS, step_data.bounds, s->capacity) \
+	X(RESULT, step_data.result, s->capacity) \
+	X(EFFORT, step_data.effort, s->capacity) \
+	X(HOME, step_data.home, s->capacity) \
+	X(RESULT_ISLAND, step_data.result_island, s->capacity) \
+	X(NEIGHBOURS, step_data.neighbours, s->capacity) \
+	X(NEIGHBOUR_ID, step_data.neighbour_id, s->neighbours_max) \
+	X(CELL, step_data.cell, s->capacity) \
+	X(BUCKET, step_data.bucket, s->buckets) \
+	X(OCCUPIED, step_data.occupied, s->buckets / 8) \
+	X(PLANE, step_data.plane, s->capacity) \
+	X(PAIR, step_data.pair, s->pairs_max) \
+	X(PAIR_LINKS, step_data.pair_links, s->pairs_max) \
+	X(FIRST_PAIR, step_data.first_pair, s->capacity) \
+	X(SOLVE, step_data.solve.one, s->capacity) \
+	X(SOLVE_64, step_data.solve.of_64, groups(s->capacity, 64)) \
+	X(SOLVE_4096, step_data.solve.of_4096, groups(s->capacity, 4096)) \
+	X(LOOK, step_data.look.one, s->pairs_max) \
+	X(LOOK_64, step_data.look.of_64, groups(s->pairs_max, 64)) \
+	X(LOOK_4096, step_data.look.of_4096, groups(s->pairs_max, 4096)) \
+	X(CHECK, step_data.check, s->pairs_max) \
+	X(RECORD, step_data.record, s->pairs_max) \
+	X(IMPULSE_B, step_data.impulse_b, s->pairs_max) \
+	X(RECORD_FREE, step_data.record_free, s->pairs_max) \
+	X(ISLAND, step_data.island, s->capacity) \
+	X(MEMBER, step_data.member, s->capacity) \
+	X(ISLAND_PAIR, step_data.island_pair, s->pairs_max) \
+	X(CHUNK, step_data.chunk, s->capacity + 1) \
+	X(SCRIPT_COUNTS, step_data.script_counts, s->script_cells > 0) /* these five empty unless the scene has scripts */ \
+	X(SCRIPT_OF, step_data.script_of, s->script_cells > 0 ? s->capacity : 0) \
+	X(SCRIPT_TURN, step_data.script_turn, s->script_cells) \
+	X(SCRIPT_CELL, step_data.script_cell, s->script_cells) \
+	X(SCRIPT_DUE, step_data.script_due, s->script_cells) \
+	X(JOINT_COUNTS, step_data.joint_counts, s->joints > 0) /* these five empty unless the universe has room for joints */ \
+	X(JOINT, step_data.joint, s->joints) \
+	X(JOINT_STATE, step_data.joint_state, s->joints) \
+	X(NEXT_JOINT, step_data.next_joint, s->joints) \
+	X(FIRST_JOINT, step_data.first_joint, s->joints > 0 ? s->capacity : 0) \
+	X(SCRATCH, step_data.scratch, 4 * (uint64_t)s->capacity) \
+	X(TASK_NS, step_data.task_ns, s->capacity) \
+	X(SCRIPT_TEXT, step_data.script_text, s->script_bytes) \
+	X(OUTBOX, outbox_area, (uint64_t)s->workers * s->outbox_bytes) /* per worker; empty unless simulators are contained */ \
+	X(FREE_CONTROL, free.control, free) /* these five empty unless the run is free (free.h) */ \
+	X(FREE_CELL, free.cell, free ? s->capacity : 0) \
+	X(FREE_GROUP, free.group, free ? groups(s->capacity, OB_FREE_GROUP) : 0) \
+	X(FREE_RING, free.ring, (uint64_t)s->capacity * s->history) \
+	X(FREE_LEDGER, free.ledger, (uint64_t)s->capacity * s->ledgers) \
+	X(TRACE_RING, trace_ring, traced ? s->workers + OB_TRACE_HOST_RINGS : 0) /* from here on empty unless traced */ \
+	X(TRACE_EVENT, trace_event, traced ? (uint64_t)s->workers * s->trace_events + OB_TRACE_HOST_RINGS * OB_TRACE_HOST_EVENTS : 0) /* rings of the workers, then of the host */ \
+	X(TRACE_SINCE, trace_since, traced ? s->capacity : 0) /* ns */
+// clang-format on
+
+#define OB_AREA_NAME(name, pointer, count) OB_AREA_##name,
+typedef enum ob_area { OB_LAYOUT_AREAS(OB_AREA_NAME) OB_AREAS } ob_area;
 
 typedef struct ob_layout_sizes {
 	uint32_t capacity, workers, pairs_max, buckets, neighbours_max;
