@@ -11,59 +11,73 @@
 #include "experiment/json.h"
 #include "table/table.h"
 
-// Numbers that were not measured are NaN.
+// Members of a report that are in its JSON, in this order: texts of so many bytes, counts, and real numbers, which are NaN if
+// they were not measured. The names are a stable interface for scripts.
+// clang-format off
+#define OB_REPORT_MEMBERS(TEXT, COUNT, REAL) \
+	TEXT(scene, PATH_MAX) \
+	TEXT(outcome, 16) /* "finished" | "interrupted" | "failed" */ \
+	TEXT(arch, 16) TEXT(isolation, 16) \
+	COUNT(workers) \
+	COUNT(objects) COUNT(bodies) /* present at the end: all; those that move */ \
+	REAL(step) COUNT(steps) \
+	COUNT(substeps) /* 0: chosen by a tolerance */ \
+	REAL(tolerance) REAL(error_reached) /* m */ \
+	REAL(depth_reached) REAL(creep_reached) REAL(bounce_reached) /* m, of error_reached, by cause */ \
+	REAL(deviation_reached) /* m, the largest estimate of the errors of motion in a second */ \
+	REAL(bounded_share) /* share of body-time in which that is within the tolerance */ \
+	COUNT(unbounded_steps) COUNT(estimates) /* of bodies: with more; steps with an estimate */ \
+	/* substeps of island-steps, if a tolerance chose; else 0 */ \
+	COUNT(substeps_min) COUNT(substeps_median) COUNT(substeps_max) \
+	COUNT(islands_redone) COUNT(islands_over) \
+	COUNT(verified_steps) COUNT(unverified_steps) /* of bodies, in the sample of --verify; too much work */ \
+	/* m: errors of those steps at surface points, in a step; and in a second if all errors add up */ \
+	REAL(verified_p50_m) REAL(verified_p90_m) REAL(verified_p99_m) REAL(verified_max_m) \
+	REAL(verified_second_p50_m) REAL(verified_second_p90_m) REAL(verified_second_p99_m) REAL(verified_second_max_m) \
+	REAL(verified_share) /* share of them whose error of a second is within the tolerance */ \
+	COUNT(iterations) TEXT(solver, 16) COUNT(lag) TEXT(integrator, 16) TEXT(narrow, 16) \
+	COUNT(load) COUNT(box_tests) /* numbers added up in each test of two boxes; number of tests */ \
+	COUNT(seed) \
+	REAL(simulated_s) \
+	REAL(resumed_s) /* s, simulated: start of a process that resumed the run; NaN = it began it */ \
+	REAL(wall_s) REAL(cpu_s) REAL(total_s) \
+	REAL(body_step_cpu_us) \
+	REAL(startup_s) REAL(step_p50_s) REAL(step_p90_s) REAL(step_p99_s) REAL(step_max_s) \
+	/* sums over all workers; NaN unless timed */ \
+	REAL(critical_s) REAL(critical_16_s) REAL(work_s) REAL(held_s) REAL(gate_s) REAL(gate_cpu_s) REAL(idle_s) \
+	REAL(elapsed_s) \
+	REAL(host_cpu_s) REAL(renderer_cpu_s) \
+	COUNT(switches) \
+	COUNT(deaths) COUNT(frozen) /* frozen: objects, because of deaths */ \
+	COUNT(scripts_stopped) COUNT(scripts_warned) /* objects at the end: failed; something in vain */ \
+	COUNT(faults) TEXT(fault_kinds, 160) /* injected; "kill 3, exit 1": by kind; "" = none */ \
+	COUNT(faults_overwritten) /* counters of faults that simulators have overwritten: there were more */ \
+	COUNT(worker_memory_bytes) COUNT(memory_bytes) \
+	TEXT(state_hash, 24) /* 16 hex digits */ \
+	REAL(energy_start) REAL(energy_end) REAL(energy_gain_max) \
+	REAL(energy_recovered) /* J */ \
+	REAL(momentum_error) \
+	REAL(penetration_max_m) REAL(penetration_mean_m) REAL(worst_penetration_m) REAL(worst_penetration_time_s) \
+	REAL(separation_max_m) REAL(separation_mean_m) \
+	COUNT(frames) REAL(frame_rate) REAL(fps) \
+	COUNT(checkpoints) COUNT(checkpoint_bytes) /* written; of the last */ \
+	REAL(checkpoint_s) /* s, wall: pauses for checkpoints; NaN = none requested */ \
+	COUNT(trace_events) COUNT(trace_lost) /* events of all; events that the file lacks */ \
+	/* of a free run; else "" and NaN */ \
+	TEXT(sync, 16) TEXT(coupling, 16) \
+	REAL(update_rate) REAL(max_lag) REAL(jitter) REAL(delay) /* Hz, s; max_lag NaN = no bound */ \
+	REAL(updates) REAL(waits) REAL(wait_s) /* sums over simulators */ \
+	REAL(lag_mean_s) REAL(lag_max_s) /* own time less that of the version read, over all readings */ \
+	TEXT(commit, 64)
+// clang-format on
+
+#define OB_REPORT_TEXT(name, bytes) char name[bytes];
+#define OB_REPORT_COUNT(name) uint64_t name;
+#define OB_REPORT_REAL(name) double name;
 typedef struct ob_report {
-	char scene[PATH_MAX];
-	char outcome[16]; // "finished" | "interrupted" | "failed"
-	char arch[16], isolation[16], solver[16], integrator[16], narrow[16];
-	char commit[64];
-	char state_hash[24]; // 16 hex digits
-	uint64_t objects, bodies; // present at the end: all; those that move
-	uint64_t steps, substeps, iterations, lag, seed, workers; // substeps 0: chosen by a tolerance
-	uint64_t load, box_tests; // numbers added up in each test of two boxes; number of tests
-	uint64_t frames;
-	uint64_t checkpoints, checkpoint_bytes; // written; of the last
-	uint64_t trace_events, trace_lost; // events of all; events that the file lacks
-	uint64_t memory_bytes;
-	uint64_t substeps_min, substeps_median, substeps_max; // substeps of island-steps, if a tolerance chose; else 0
-	uint64_t islands_redone, islands_over;
-	double tolerance, error_reached; // m
-	double depth_reached, creep_reached, bounce_reached; // m, of error_reached, by cause
-	double deviation_reached; // m, the largest estimate of the errors of motion in a second
-	double bounded_share; // share of body-time in which that is within the tolerance
-	uint64_t unbounded_steps, estimates; // of bodies: with more; steps with an estimate
-	uint64_t verified_steps, unverified_steps; // of bodies, in the sample of --verify; too much work
-	// m: errors of those steps at surface points, in a step; and in a second if all errors add up
-	double verified_p50_m, verified_p90_m, verified_p99_m, verified_max_m;
-	double verified_second_p50_m, verified_second_p90_m, verified_second_p99_m, verified_second_max_m;
-	double verified_share; // share of them whose error of a second is within the tolerance
-	double energy_recovered; // J
-	double step, simulated_s;
-	double resumed_s; // s, simulated: start of a process that resumed the run; NaN = it began it
-	double checkpoint_s; // s, wall: pauses for checkpoints; NaN = none requested
-	double wall_s, cpu_s, total_s;
-	double body_step_cpu_us;
-	double startup_s, step_p50_s, step_p90_s, step_p99_s, step_max_s;
-	// sums over all workers; NaN unless timed
-	double critical_s, critical_16_s, work_s, held_s, gate_s, gate_cpu_s, idle_s, elapsed_s;
-	double host_cpu_s, renderer_cpu_s;
-	char fault_kinds[160]; // "kill 3, exit 1": injected faults by kind; "" = none
-	uint64_t faults; // of all kinds
-	uint64_t faults_overwritten; // counters of faults that simulators have overwritten: there were more
-	uint64_t scripts_stopped, scripts_warned; // objects at the end: failed; something in vain
-	uint64_t switches, deaths, frozen, worker_memory_bytes; // frozen: objects, because of deaths
+	OB_REPORT_MEMBERS(OB_REPORT_TEXT, OB_REPORT_COUNT, OB_REPORT_REAL)
 	ob_death death[OB_DEATHS_KEPT]; // the last of them, oldest first
 	uint32_t deaths_told; // number of entries in death
-	double energy_start, energy_end, energy_gain_max;
-	double momentum_error;
-	double penetration_max_m, penetration_mean_m, worst_penetration_m, worst_penetration_time_s;
-	double separation_max_m, separation_mean_m;
-	double fps, frame_rate;
-	// of a free run; else "" and NaN
-	char sync[16], coupling[16];
-	double update_rate, max_lag, jitter, delay; // Hz, s; max_lag NaN = no bound
-	double updates, waits, wait_s; // sums over simulators
-	double lag_mean_s, lag_max_s; // own time less that of the version read, over all readings
 } ob_report;
 
 void ob_report_write_json(const ob_report *r, FILE *f);
