@@ -94,49 +94,35 @@ static bool find_joint(sending *s, const char *name, ob_error *e)
 			 : ob_fail(e, "universe \"%s\" has no joint \"%s\"", s->universe, name);
 }
 
-static bool unjoin(sending *s, ob_error *e)
+static bool read_colour(sending *s, ob_error *e)
 {
-	s->request.kind = OB_REQUEST_UNJOIN;
-	return find_joint(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+	return ob_scene_read_colour(s->word[1], s->request.colour) ||
+	       ob_fail(e, "colour: expected \"#rrggbb\", got \"%s\"", s->word[1]);
 }
 
-static bool motor(sending *s, ob_error *e)
+static bool read_values(sending *s, ob_error *e)
 {
-	char *end;
-	s->request.kind = OB_REQUEST_MOTOR;
-	s->request.motor = strtod(s->word[1], &end);
-	if (!*s->word[1] || *end)
-		return ob_fail(e, "motor: expected a number, got \"%s\"", s->word[1]);
-	return find_joint(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
-}
-
-// A request with an object alone.
-static bool send_object(sending *s, ob_request_kind kind, ob_error *e)
-{
-	s->request.kind = kind;
-	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
-}
-
-static bool remove_object(sending *s, ob_error *e)
-{
-	return send_object(s, OB_REQUEST_REMOVE, e);
-}
-
-static bool colour(sending *s, ob_error *e)
-{
-	s->request.kind = OB_REQUEST_COLOUR;
-	if (!ob_scene_read_colour(s->word[1], s->request.colour))
-		return ob_fail(e, "colour: expected \"#rrggbb\", got \"%s\"", s->word[1]);
-	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
-}
-
-static bool message(sending *s, ob_error *e)
-{
-	s->request.kind = OB_REQUEST_MESSAGE;
 	for (int i = 1; s->word[i]; i++)
 		if (!ob_scene_put_value(s->word[i], s->request.values, &s->request.bytes, sizeof s->request.values))
 			return ob_fail(e, "message: at most %zu bytes can be sent", sizeof s->request.values);
-	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+	return true;
+}
+
+static bool read_number(const sending *s, const char *verb, double *out, ob_error *e)
+{
+	char *end;
+	*out = strtod(s->word[1], &end);
+	return (*s->word[1] && !*end) || ob_fail(e, "%s: expected a number, got \"%s\"", verb, s->word[1]);
+}
+
+static bool read_motor(sending *s, ob_error *e)
+{
+	return read_number(s, "motor", &s->request.motor, e);
+}
+
+static bool read_friction(sending *s, ob_error *e)
+{
+	return read_number(s, "friction", &s->request.friction, e);
 }
 
 // Reads three numbers from word i on.
@@ -154,38 +140,26 @@ static bool read_vector(const sending *s, int i, ob_vec3 *out, ob_error *e)
 	return true;
 }
 
-// A request with an object, a vector and, if there are more words, a point of the object's body.
-static bool send_vector(sending *s, ob_request_kind kind, ob_vec3 *value, ob_error *e)
+// Reads a vector and, if there are more words, a point of the object's body.
+static bool read_pull(sending *s, ob_vec3 *value, ob_error *e)
 {
-	s->request.kind = kind;
-	return find_object(s, s->word[0], e) && read_vector(s, 1, value, e) &&
-	       (!s->word[4] || read_vector(s, 4, &s->request.point, e)) && ob_ask(s->u, &s->request, e);
+	return read_vector(s, 1, value, e) && (!s->word[4] || read_vector(s, 4, &s->request.point, e));
 }
 
-static bool force(sending *s, ob_error *e)
+static bool read_force(sending *s, ob_error *e)
 {
-	return send_vector(s, OB_REQUEST_FORCE, &s->request.force, e);
+	return read_pull(s, &s->request.force, e);
 }
 
-static bool kick(sending *s, ob_error *e)
+static bool read_twist(sending *s, ob_error *e)
 {
-	return send_vector(s, OB_REQUEST_KICK, &s->request.force, e);
+	return read_pull(s, &s->request.twist, e);
 }
 
-static bool torque(sending *s, ob_error *e)
-{
-	return send_vector(s, OB_REQUEST_TORQUE, &s->request.twist, e);
-}
-
-static bool push(sending *s, ob_error *e)
-{
-	return send_vector(s, OB_REQUEST_PUSH, &s->request.force, e);
-}
-
-static bool drag(sending *s, ob_error *e)
+static bool read_target(sending *s, ob_error *e)
 {
 	s->request.frequency = OB_PULL_FREQUENCY;
-	return send_vector(s, OB_REQUEST_DRAG, &s->request.target, e);
+	return read_pull(s, &s->request.target, e);
 }
 
 // A state that stays as it is, but for a part.
@@ -194,26 +168,16 @@ static ob_state same_state(void)
 	return (ob_state){ { { NAN, 0, 0 }, { NAN, 0, 0, 0 } }, { NAN, 0, 0 }, { NAN, 0, 0 } };
 }
 
-static bool place(sending *s, ob_error *e)
+static bool read_place(sending *s, ob_error *e)
 {
 	s->request.state = same_state();
-	return send_vector(s, OB_REQUEST_STATE, &s->request.state.pose.p, e);
+	return read_pull(s, &s->request.state.pose.p, e);
 }
 
-static bool velocity(sending *s, ob_error *e)
+static bool read_velocity(sending *s, ob_error *e)
 {
 	s->request.state = same_state();
-	return send_vector(s, OB_REQUEST_STATE, &s->request.state.v, e);
-}
-
-static bool friction(sending *s, ob_error *e)
-{
-	char *end;
-	s->request.kind = OB_REQUEST_FRICTION;
-	s->request.friction = strtod(s->word[1], &end);
-	if (!*s->word[1] || *end)
-		return ob_fail(e, "friction: expected a number, got \"%s\"", s->word[1]);
-	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+	return read_pull(s, &s->request.state.v, e);
 }
 
 // Reads a point of a path from one word: "T X Y Z", or "T X Y Z QW QX QY QZ", as the first one has it.
@@ -240,83 +204,56 @@ static bool read_point(const char *word, ob_request_path *path, ob_error *e)
 	return true;
 }
 
-static bool path(sending *s, ob_error *e)
+static bool read_path(sending *s, ob_error *e)
 {
-	s->request.kind = OB_REQUEST_PATH;
 	for (int i = 1; s->word[i]; i++) {
 		s->request.path.loop = !s->word[i + 1] && strcmp(s->word[i], "loop") == 0;
 		if (!s->request.path.loop && !read_point(s->word[i], &s->request.path, e))
 			return false;
 	}
-	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+	return true;
 }
 
-static bool release(sending *s, ob_error *e)
-{
-	return send_object(s, OB_REQUEST_RELEASE, e);
-}
-
-static bool kill_simulator(sending *s, ob_error *e)
-{
-	return send_object(s, OB_REQUEST_KILL, e);
-}
-
-static bool keep(sending *s, ob_error *e)
-{
-	s->request.kind = OB_REQUEST_KEEP;
-	return ob_ask(s->u, &s->request, e);
-}
-
-static bool return_to_kept(sending *s, ob_error *e)
-{
-	s->request.kind = OB_REQUEST_RETURN;
-	return ob_ask(s->u, &s->request, e);
-}
-
-static bool restart(sending *s, ob_error *e)
-{
-	s->request.kind = OB_REQUEST_RESTART;
-	return ob_ask(s->u, &s->request, e);
-}
-
-static bool move(sending *s, ob_error *e)
+static bool read_worker(sending *s, ob_error *e)
 {
 	char *end;
 	const unsigned long worker = strtoul(s->word[1], &end, 10);
 	if (strspn(s->word[1], "0123456789") == 0 || *end || worker >= UINT32_MAX)
 		return ob_fail(e, "move: expected the number of a worker, got \"%s\"", s->word[1]);
-	s->request.kind = OB_REQUEST_MOVE;
 	s->request.worker = (uint32_t)worker;
-	return find_object(s, s->word[0], e) && ob_ask(s->u, &s->request, e);
+	return true;
 }
 
 static const struct verb {
 	const char *name, *usage;
 	int words; // at least
 	int more; // than these, at most
-	bool (*send)(sending *s, ob_error *e);
+	ob_request_kind kind;
+	bool (*find)(sending *s, const char *word, ob_error *e); // whom the first word names; NULL: nobody
+	bool (*read)(sending *s, ob_error *e); // the other words; NULL: there are none
 } verbs[] = {
-	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", 1, 0, create },
-	{ "remove", "remove OBJECT", 1, 0, remove_object },
-	{ "colour", "colour OBJECT '#rrggbb'", 2, 0, colour },
-	{ "message", "message OBJECT VALUE ...", 1, INT_MAX - 1, message },
-	{ "force", "force OBJECT X Y Z", 4, 0, force },
-	{ "kick", "kick OBJECT X Y Z", 4, 0, kick },
-	{ "torque", "torque OBJECT X Y Z", 4, 0, torque },
-	{ "push", "push OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", 4, 3, push },
-	{ "drag", "drag OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", 4, 3, drag },
-	{ "release", "release OBJECT", 1, 0, release },
-	{ "place", "place OBJECT X Y Z", 4, 0, place },
-	{ "velocity", "velocity OBJECT X Y Z", 4, 0, velocity },
-	{ "path", "path OBJECT 'T X Y Z [QW QX QY QZ]' ... [loop]", 2, INT_MAX - 2, path },
-	{ "friction", "friction OBJECT NUMBER", 2, 0, friction },
-	{ "motor", "motor JOINT TARGET", 2, 0, motor },
-	{ "unjoin", "unjoin JOINT", 1, 0, unjoin },
-	{ "move", "move OBJECT WORKER", 2, 0, move },
-	{ "kill", "kill OBJECT", 1, 0, kill_simulator },
-	{ "keep", "keep", 0, 0, keep },
-	{ "return", "return", 0, 0, return_to_kept },
-	{ "restart", "restart", 0, 0, restart },
+	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", 1, 0, OB_REQUEST_ADD, NULL, NULL },
+	{ "remove", "remove OBJECT", 1, 0, OB_REQUEST_REMOVE, find_object, NULL },
+	{ "colour", "colour OBJECT '#rrggbb'", 2, 0, OB_REQUEST_COLOUR, find_object, read_colour },
+	{ "message", "message OBJECT VALUE ...", 1, INT_MAX - 1, OB_REQUEST_MESSAGE, find_object, read_values },
+	{ "force", "force OBJECT X Y Z", 4, 0, OB_REQUEST_FORCE, find_object, read_force },
+	{ "kick", "kick OBJECT X Y Z", 4, 0, OB_REQUEST_KICK, find_object, read_force },
+	{ "torque", "torque OBJECT X Y Z", 4, 0, OB_REQUEST_TORQUE, find_object, read_twist },
+	{ "push", "push OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", 4, 3, OB_REQUEST_PUSH, find_object, read_force },
+	{ "drag", "drag OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", 4, 3, OB_REQUEST_DRAG, find_object, read_target },
+	{ "release", "release OBJECT", 1, 0, OB_REQUEST_RELEASE, find_object, NULL },
+	{ "place", "place OBJECT X Y Z", 4, 0, OB_REQUEST_STATE, find_object, read_place },
+	{ "velocity", "velocity OBJECT X Y Z", 4, 0, OB_REQUEST_STATE, find_object, read_velocity },
+	{ "path", "path OBJECT 'T X Y Z [QW QX QY QZ]' ... [loop]", 2, INT_MAX - 2, OB_REQUEST_PATH, find_object,
+	  read_path },
+	{ "friction", "friction OBJECT NUMBER", 2, 0, OB_REQUEST_FRICTION, find_object, read_friction },
+	{ "motor", "motor JOINT TARGET", 2, 0, OB_REQUEST_MOTOR, find_joint, read_motor },
+	{ "unjoin", "unjoin JOINT", 1, 0, OB_REQUEST_UNJOIN, find_joint, NULL },
+	{ "move", "move OBJECT WORKER", 2, 0, OB_REQUEST_MOVE, find_object, read_worker },
+	{ "kill", "kill OBJECT", 1, 0, OB_REQUEST_KILL, find_object, NULL },
+	{ "keep", "keep", 0, 0, OB_REQUEST_KEEP, NULL, NULL },
+	{ "return", "return", 0, 0, OB_REQUEST_RETURN, NULL, NULL },
+	{ "restart", "restart", 0, 0, OB_REQUEST_RESTART, NULL, NULL },
 };
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
@@ -355,6 +292,15 @@ static void wait_for_start(const ob_universe *u)
 		 nanosleep(&(struct timespec){ .tv_nsec = 1000000 }, NULL) == 0);
 }
 
+// Reads and finds what the words mean, and asks for it.
+static bool send(sending *s, const struct verb *v, ob_error *e)
+{
+	if (v->kind == OB_REQUEST_ADD)
+		return create(s, e);
+	s->request.kind = v->kind;
+	return (!v->read || v->read(s, e)) && (!v->find || v->find(s, s->word[0], e)) && ob_ask(s->u, &s->request, e);
+}
+
 int ob_command_send(const ob_arguments *a)
 {
 	ob_error e;
@@ -372,7 +318,7 @@ int ob_command_send(const ob_arguments *a)
 	s.u = ob_universe_attach(s.universe, &e);
 	if (s.u)
 		wait_for_start(s.u);
-	const bool fine = s.u && v->send(&s, &e);
+	const bool fine = s.u && send(&s, v, &e);
 	ob_universe_detach(s.u);
 	return fine ? OB_EXIT_OK : ob_command_fail(OB_EXIT_FAILED, e.text);
 }
