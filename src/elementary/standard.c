@@ -7,29 +7,26 @@
 
 #pragma GCC visibility push(default)
 
-double sin(double x)
-{
-	return ob_sin(x);
-}
-double cos(double x)
-{
-	return ob_cos(x);
-}
+#define OF_ONE(name) \
+	double name(double x) \
+	{ \
+		return ob_##name(x); \
+	}
+OF_ONE(sin)
+OF_ONE(cos)
+OF_ONE(tan)
+OF_ONE(asin)
+OF_ONE(acos)
+OF_ONE(exp)
+OF_ONE(sinh)
+OF_ONE(cosh)
+OF_ONE(tanh)
+OF_ONE(log)
+OF_ONE(log2)
+OF_ONE(log10)
 void sincos(double x, double *sine, double *cosine)
 {
 	ob_sincos(x, sine, cosine);
-}
-double tan(double x)
-{
-	return ob_tan(x);
-}
-double asin(double x)
-{
-	return ob_asin(x);
-}
-double acos(double x)
-{
-	return ob_acos(x);
 }
 float asinf(float x)
 {
@@ -42,34 +39,6 @@ float acosf(float x)
 double atan2(double y, double x)
 {
 	return ob_atan2(y, x);
-}
-double exp(double x)
-{
-	return ob_exp(x);
-}
-double sinh(double x)
-{
-	return ob_sinh(x);
-}
-double cosh(double x)
-{
-	return ob_cosh(x);
-}
-double tanh(double x)
-{
-	return ob_tanh(x);
-}
-double log(double x)
-{
-	return ob_log(x);
-}
-double log2(double x)
-{
-	return ob_log2(x);
-}
-double log10(double x)
-{
-	return ob_log10(x);
 }
 double pow(double x, double y)
 {

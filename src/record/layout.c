@@ -10,16 +10,15 @@ static_assert(sizeof(ob_hull) == 7008, "members of /hulls");
 static_assert(sizeof(ob_joint_passport) == 304, "members of /joints");
 static_assert(sizeof(ob_camera_def) == 200 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
 
+// A brace that clang-format would spread over lines
+#define MEMBER(...) \
+	{ \
+		__VA_ARGS__ \
+	}
 #define COUNT(a) ((int)(sizeof(a) / sizeof *(a)))
 
-#define EVENT(name, type) \
-	{ \
-#name, type, offsetof(ob_record_event, name), 0 \
-	}
-#define PASSPORT(name, type) \
-	{ \
-#name, type, offsetof(ob_record_event, passport.name), 0 \
-	}
+#define EVENT(name, type) MEMBER(#name, type, offsetof(ob_record_event, name), 0)
+#define PASSPORT(name, type) MEMBER(#name, type, offsetof(ob_record_event, passport.name), 0)
 static const ob_record_member event_members[] = {
 	EVENT(step, OB_RECORD_U64),           EVENT(time, OB_RECORD_F64),          EVENT(kind, OB_RECORD_U32),
 	PASSPORT(id, OB_RECORD_U32),          PASSPORT(generation, OB_RECORD_U32), PASSPORT(flags, OB_RECORD_U32),
@@ -38,14 +37,9 @@ const ob_record_table ob_record_events = {
 	event_members,
 };
 
-#define JOINT(name, type) \
-	{ \
-#name, type, offsetof(ob_record_joint, name), 0 \
-	}
+#define JOINT(name, type) MEMBER(#name, type, offsetof(ob_record_joint, name), 0)
 #define JOINT_PASSPORT(name, member, type, length) \
-	{ \
-		name, type, offsetof(ob_record_joint, passport.member), length \
-	}
+	MEMBER(name, type, offsetof(ob_record_joint, passport.member), length)
 static const ob_record_member joint_members[] = {
 	JOINT(step, OB_RECORD_U64),
 	JOINT(time, OB_RECORD_F64),
@@ -69,10 +63,7 @@ const ob_record_table ob_record_joints = {
 	joint_members,
 };
 
-#define MOTION(name, type) \
-	{ \
-#name, type, offsetof(ob_record_motion, motion.name), 0 \
-	}
+#define MOTION(name, type) MEMBER(#name, type, offsetof(ob_record_motion, motion.name), 0)
 static const ob_record_member motion_members[] = {
 	{ "id", OB_RECORD_U32, offsetof(ob_record_motion, id), 0 },
 	{ "island", OB_RECORD_U32, offsetof(ob_record_motion, island), 0 },
@@ -99,14 +90,8 @@ const ob_record_table ob_record_motions = {
 	motion_members,
 };
 
-#define HULL(name, type) \
-	{ \
-#name, type, offsetof(ob_record_hull, hull.name), 0 \
-	}
-#define HULL_ARRAY(name, type) \
-	{ \
-#name, type, offsetof(ob_record_hull, hull.name), COUNT(((ob_hull *)NULL)->name) \
-	}
+#define HULL(name, type) MEMBER(#name, type, offsetof(ob_record_hull, hull.name), 0)
+#define HULL_ARRAY(name, type) MEMBER(#name, type, offsetof(ob_record_hull, hull.name), COUNT(((ob_hull *)NULL)->name))
 static const ob_record_member hull_members[] = {
 	{ "number", OB_RECORD_U32, offsetof(ob_record_hull, number), 0 },
 	HULL(corners, OB_RECORD_U32),
@@ -138,10 +123,7 @@ const ob_record_table ob_record_hulls = {
 	hull_members,
 };
 
-#define CAMERA(name, type) \
-	{ \
-#name, type, offsetof(ob_camera_def, name), 0 \
-	}
+#define CAMERA(name, type) MEMBER(#name, type, offsetof(ob_camera_def, name), 0)
 static const ob_record_member camera_members[] = {
 	CAMERA(name, OB_RECORD_NAME),     CAMERA(eye, OB_RECORD_VEC3),       CAMERA(target, OB_RECORD_VEC3),
 	CAMERA(velocity, OB_RECORD_VEC3), CAMERA(pan, OB_RECORD_F64),        CAMERA(tilt, OB_RECORD_F64),
@@ -157,10 +139,7 @@ const ob_record_table ob_record_cameras = {
 	camera_members,
 };
 
-#define LOOK(name, type) \
-	{ \
-#name, type, offsetof(ob_look_def, name), 0 \
-	}
+#define LOOK(name, type) MEMBER(#name, type, offsetof(ob_look_def, name), 0)
 static const ob_record_member look_members[] = {
 	LOOK(sky_top, OB_RECORD_RGB), LOOK(sky_horizon, OB_RECORD_RGB), LOOK(ground_colour, OB_RECORD_RGB),
 	LOOK(grid, OB_RECORD_FLAG),   LOOK(sun, OB_RECORD_VEC3),
@@ -172,10 +151,7 @@ const ob_record_table ob_record_look = {
 	look_members,
 };
 
-#define VERTEX(name, type) \
-	{ \
-#name, type, offsetof(ob_mesh_vertex, name), 0 \
-	}
+#define VERTEX(name, type) MEMBER(#name, type, offsetof(ob_mesh_vertex, name), 0)
 static const ob_record_member vertex_members[] = {
 	VERTEX(position, OB_RECORD_RGB), VERTEX(normal, OB_RECORD_RGB),   VERTEX(colour, OB_RECORD_RGB),
 	VERTEX(surface, OB_RECORD_F32),  VERTEX(texture, OB_RECORD_PAIR),
@@ -198,10 +174,7 @@ const ob_record_table ob_record_mesh_triangles = {
 	triangle_members,
 };
 
-#define PART(name, type, length) \
-	{ \
-#name, type, offsetof(ob_mesh_part, name), length \
-	}
+#define PART(name, type, length) MEMBER(#name, type, offsetof(ob_mesh_part, name), length)
 static const ob_record_member part_members[] = {
 	PART(indices, OB_RECORD_U32, 0),
 	PART(colour, OB_RECORD_U8, 0),
