@@ -48,14 +48,7 @@ const ob_configuration ob_configuration_table[OB_CONFIGURATIONS] = {
 					     NULL },
 };
 
-#define METRIC(id, key_, title_, unit_, scale_, group_, meaning_) \
-	[id] = { .key = key_, \
-		 .title = title_, \
-		 .unit = unit_, \
-		 .scale = scale_, \
-		 .target = NAN, \
-		 .group = group_, \
-		 .meaning = meaning_ }
+#define METRIC(id, key, title, unit, scale, group, meaning) [id] = { key, title, unit, scale, NAN, group, meaning }
 const ob_metric ob_compare_metric_table[OB_COMPARE_METRICS] = {
 	METRIC(OB_COMPARE_COST, "cpu_s_per_body_and_step", "CPU per body and step", "µs", 1e6, "Cost",
 	       "CPU time of all workers, spinning and waking included, over bodies and steps"),
@@ -293,13 +286,6 @@ char **ob_comparison_arguments(const ob_comparison *c, const ob_sweep_point *p, 
 	return argv;
 }
 
-void ob_comparison_free_arguments(char **argv)
-{
-	for (char **at = argv; at && *at; at++)
-		free(*at);
-	free(argv);
-}
-
 typedef struct job {
 	const ob_comparison *comparison;
 	const ob_sweep_point *point;
@@ -311,65 +297,53 @@ typedef struct job {
 static char *run_once(const ob_trial *t, bool timed, ob_error *e)
 {
 	const job *j = t->what;
-	ob_program_result r = { 0 };
-	char **argv = ob_comparison_arguments(j->comparison, j->point, j->id, j->kind, timed, t->seed);
-	bool fine = argv ? ob_program_run(argv, &r, e) : ob_fail(e, "out of memory");
-	if (fine && r.code != 0)
-		fine = ob_fail(e, "%s", *r.complaint ? r.complaint : "it died without a word");
-	else if (fine && !ob_json_find(r.out, "state_hash"))
-		fine = ob_fail(e, "its report cannot be read");
-	ob_comparison_free_arguments(argv);
-	if (fine)
-		return r.out;
-	free(r.out);
+	char *report =
+		ob_program_report(ob_comparison_arguments(j->comparison, j->point, j->id, j->kind, timed, t->seed), e);
+	if (!report || ob_json_find(report, "state_hash"))
+		return report;
+	ob_fail(e, "its report cannot be read");
+	free(report);
 	return NULL;
-}
-
-static double number(const char *report, const char *key)
-{
-	const char *at = ob_json_find(report, key);
-	char *end = NULL;
-	double x = at ? strtod(at, &end) : NAN;
-	return end != at ? x : NAN;
 }
 
 // Reads cost and final state from an undisturbed run.
 static void read_undisturbed(const char *r, double *m)
 {
-	double steps = number(r, "steps"), objects = number(r, "objects"), simulated = number(r, "simulated_s");
-	double worker_memory = number(r, "worker_memory_bytes");
-	m[OB_COMPARE_COST] = 1e-6 * number(r, "body_step_cpu_us");
-	m[OB_COMPARE_WALL] = number(r, "wall_s") / simulated;
-	m[OB_COMPARE_CPU] = number(r, "cpu_s") / simulated;
-	m[OB_COMPARE_P50] = number(r, "step_p50_s");
-	m[OB_COMPARE_P90] = number(r, "step_p90_s");
-	m[OB_COMPARE_P99] = number(r, "step_p99_s");
-	m[OB_COMPARE_LONGEST] = number(r, "step_max_s");
-	m[OB_COMPARE_PER_SIMULATOR] = number(r, "cpu_s") / simulated / objects;
-	m[OB_COMPARE_HOST] = number(r, "host_cpu_s") / simulated;
-	m[OB_COMPARE_SWITCHES] = number(r, "switches") / steps;
-	m[OB_COMPARE_STARTUP] = number(r, "startup_s");
-	m[OB_COMPARE_STARTUP_EACH] = number(r, "startup_s") / objects;
-	m[OB_COMPARE_MEMORY] = number(r, "memory_bytes");
-	m[OB_COMPARE_MEMORY_EACH] = number(r, "memory_bytes") / objects;
-	m[OB_COMPARE_MEMORY_WORKER] = worker_memory > 0 ? worker_memory / number(r, "workers") : NAN;
-	m[OB_COMPARE_PENETRATION] = number(r, "penetration_mean_m");
-	m[OB_COMPARE_SEPARATION] = number(r, "separation_mean_m");
+	double steps = ob_json_read_number(r, "steps"), objects = ob_json_read_number(r, "objects"),
+	       simulated = ob_json_read_number(r, "simulated_s");
+	double worker_memory = ob_json_read_number(r, "worker_memory_bytes");
+	m[OB_COMPARE_COST] = 1e-6 * ob_json_read_number(r, "body_step_cpu_us");
+	m[OB_COMPARE_WALL] = ob_json_read_number(r, "wall_s") / simulated;
+	m[OB_COMPARE_CPU] = ob_json_read_number(r, "cpu_s") / simulated;
+	m[OB_COMPARE_P50] = ob_json_read_number(r, "step_p50_s");
+	m[OB_COMPARE_P90] = ob_json_read_number(r, "step_p90_s");
+	m[OB_COMPARE_P99] = ob_json_read_number(r, "step_p99_s");
+	m[OB_COMPARE_LONGEST] = ob_json_read_number(r, "step_max_s");
+	m[OB_COMPARE_PER_SIMULATOR] = ob_json_read_number(r, "cpu_s") / simulated / objects;
+	m[OB_COMPARE_HOST] = ob_json_read_number(r, "host_cpu_s") / simulated;
+	m[OB_COMPARE_SWITCHES] = ob_json_read_number(r, "switches") / steps;
+	m[OB_COMPARE_STARTUP] = ob_json_read_number(r, "startup_s");
+	m[OB_COMPARE_STARTUP_EACH] = ob_json_read_number(r, "startup_s") / objects;
+	m[OB_COMPARE_MEMORY] = ob_json_read_number(r, "memory_bytes");
+	m[OB_COMPARE_MEMORY_EACH] = ob_json_read_number(r, "memory_bytes") / objects;
+	m[OB_COMPARE_MEMORY_WORKER] = worker_memory > 0 ? worker_memory / ob_json_read_number(r, "workers") : NAN;
+	m[OB_COMPARE_PENETRATION] = ob_json_read_number(r, "penetration_mean_m");
+	m[OB_COMPARE_SEPARATION] = ob_json_read_number(r, "separation_mean_m");
 }
 
 // Reads the shares of time from a run with clocks in the simulators.
 static void read_timed(const char *r, double *m)
 {
-	double steps = number(r, "steps"), workers = number(r, "workers");
-	m[OB_COMPARE_CRITICAL] = number(r, "critical_s") / steps;
-	m[OB_COMPARE_SPEEDUP] = number(r, "work_s") / number(r, "critical_16_s");
-	m[OB_COMPARE_WORK] = number(r, "work_s") / steps;
-	m[OB_COMPARE_GATE] = number(r, "gate_s") / steps / workers;
-	m[OB_COMPARE_GATE_CPU] = number(r, "gate_cpu_s") / steps;
-	m[OB_COMPARE_HELD] = number(r, "held_s") / steps;
-	m[OB_COMPARE_EXPLAINED] =
-		(number(r, "work_s") + number(r, "held_s") + number(r, "gate_s") + number(r, "idle_s")) /
-		(workers * number(r, "elapsed_s"));
+	double steps = ob_json_read_number(r, "steps"), workers = ob_json_read_number(r, "workers");
+	m[OB_COMPARE_CRITICAL] = ob_json_read_number(r, "critical_s") / steps;
+	m[OB_COMPARE_SPEEDUP] = ob_json_read_number(r, "work_s") / ob_json_read_number(r, "critical_16_s");
+	m[OB_COMPARE_WORK] = ob_json_read_number(r, "work_s") / steps;
+	m[OB_COMPARE_GATE] = ob_json_read_number(r, "gate_s") / steps / workers;
+	m[OB_COMPARE_GATE_CPU] = ob_json_read_number(r, "gate_cpu_s") / steps;
+	m[OB_COMPARE_HELD] = ob_json_read_number(r, "held_s") / steps;
+	m[OB_COMPARE_EXPLAINED] = (ob_json_read_number(r, "work_s") + ob_json_read_number(r, "held_s") +
+				   ob_json_read_number(r, "gate_s") + ob_json_read_number(r, "idle_s")) /
+				  (workers * ob_json_read_number(r, "elapsed_s"));
 }
 
 static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
@@ -385,17 +359,18 @@ static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
 		if (fine)
 			read_timed(timed, m);
 	} else if (fine && j->kind == OB_COMPARE_MEASURED) {
-		m[OB_COMPARE_WORST] = number(r, "worst_penetration_m");
-		m[OB_COMPARE_ENERGY] = number(r, "energy_gain_max");
-		m[OB_COMPARE_MOMENTUM] = number(r, "momentum_error");
+		m[OB_COMPARE_WORST] = ob_json_read_number(r, "worst_penetration_m");
+		m[OB_COMPARE_ENERGY] = ob_json_read_number(r, "energy_gain_max");
+		m[OB_COMPARE_MOMENTUM] = ob_json_read_number(r, "momentum_error");
 	} else if (fine) {
-		m[OB_COMPARE_RENDERER] = number(r, "renderer_cpu_s") / number(r, "simulated_s");
-		m[OB_COMPARE_FPS] = number(r, "fps");
+		m[OB_COMPARE_RENDERER] =
+			ob_json_read_number(r, "renderer_cpu_s") / ob_json_read_number(r, "simulated_s");
+		m[OB_COMPARE_FPS] = ob_json_read_number(r, "fps");
 	}
 	if (fine) {
-		m[OB_COMPARE_OBJECTS] = number(r, "objects");
-		m[OB_COMPARE_WORKERS] = number(r, "workers");
-		m[OB_COMPARE_STEPS] = number(r, "steps");
+		m[OB_COMPARE_OBJECTS] = ob_json_read_number(r, "objects");
+		m[OB_COMPARE_WORKERS] = ob_json_read_number(r, "workers");
+		m[OB_COMPARE_STEPS] = ob_json_read_number(r, "steps");
 		fine = ob_json_read_string(ob_json_find(r, "state_hash"), out->note, sizeof out->note) ||
 		       ob_fail(e, "its report cannot be read");
 	}

@@ -142,7 +142,6 @@ void ob_comparison_finish(ob_comparison *c);
 // Command line of one run, without the shell's quotes. Each string and the array malloc'd; NULL: out of memory.
 char **ob_comparison_arguments(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id,
 			       ob_compare_kind kind, bool timed, uint64_t seed);
-void ob_comparison_free_arguments(char **argv);
 // Configuration key of its records.
 void ob_configuration_key(ob_configuration_id id, ob_compare_kind kind, char to[OB_CONFIGURATION_KEY]);
 

@@ -8,6 +8,7 @@
 #include "compare/compare.h"
 #include "compare/table.h"
 #include "experiment/json.h"
+#include "experiment/process.h"
 
 enum { HASH_DIGITS = 8 };
 
@@ -274,7 +275,7 @@ static void write_command(const ob_comparison *c, const ob_sweep_point *p, ob_co
 	for (char **at = argv; at && *at; at++)
 		ob_json_string(j, NULL, *at);
 	ob_json_close_list(j);
-	ob_comparison_free_arguments(argv);
+	ob_program_free_arguments(argv);
 }
 
 static void write_configuration(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id, ob_json *j)

@@ -34,8 +34,7 @@ const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS] = {
 	LAGS(OB_SYNC_OWN, "own", "own"),
 };
 
-#define METRIC(id, key_, title_, unit_, scale_, meaning_) \
-	[id] = { .key = key_, .title = title_, .unit = unit_, .scale = scale_, .target = NAN, .meaning = meaning_ }
+#define METRIC(id, key, title, unit, scale, meaning) [id] = { key, title, unit, scale, NAN, NULL, meaning }
 const ob_metric ob_sync_metrics[OB_SYNC_METRICS] = {
 	METRIC(OB_SYNC_CPU, "cpu_s_per_body_and_simulated_s", "CPU, body and s", "ms", 1e3,
 	       "CPU time of all workers over moving bodies and simulated seconds"),
@@ -105,45 +104,31 @@ static char **arguments(const job *j, uint64_t seed)
 	return fine ? argv : NULL;
 }
 
-static double number(const char *report, const char *key)
-{
-	const char *at = ob_json_find(report, key);
-	char *end = NULL;
-	const double x = at ? strtod(at, &end) : NAN;
-	return end != at ? x : NAN;
-}
-
 static void read_report(const job *j, const char *r, double *m)
 {
 	const bool free = j->of->coupling != OB_SYNC_LOCKSTEP;
-	const double simulated = number(r, "simulated_s"), wall = number(r, "wall_s"),
-		     steps = number(r, "steps") * j->point->objects;
-	m[OB_SYNC_CPU] = number(r, "cpu_s") / simulated / j->point->objects;
+	const double simulated = ob_json_read_number(r, "simulated_s"), wall = ob_json_read_number(r, "wall_s"),
+		     steps = ob_json_read_number(r, "steps") * j->point->objects;
+	m[OB_SYNC_CPU] = ob_json_read_number(r, "cpu_s") / simulated / j->point->objects;
 	m[OB_SYNC_WALL] = wall / simulated;
-	m[OB_SYNC_UPDATES] = (free ? number(r, "updates") : steps) / wall;
-	m[OB_SYNC_LATENCY] = number(r, "lag_mean_s");
-	m[OB_SYNC_LATENCY_MOST] = number(r, "lag_max_s");
-	m[OB_SYNC_WORST] = number(r, "worst_penetration_m");
+	m[OB_SYNC_UPDATES] = (free ? ob_json_read_number(r, "updates") : steps) / wall;
+	m[OB_SYNC_LATENCY] = ob_json_read_number(r, "lag_mean_s");
+	m[OB_SYNC_LATENCY_MOST] = ob_json_read_number(r, "lag_max_s");
+	m[OB_SYNC_WORST] = ob_json_read_number(r, "worst_penetration_m");
 	m[OB_SYNC_SIZES] = m[OB_SYNC_WORST] / j->point->size;
-	m[OB_SYNC_ENERGY] = number(r, "energy_gain_max");
-	m[OB_SYNC_MOMENTUM] = number(r, "momentum_error");
-	m[OB_SYNC_LOST] = number(r, "energy_start") - number(r, "energy_end");
+	m[OB_SYNC_ENERGY] = ob_json_read_number(r, "energy_gain_max");
+	m[OB_SYNC_MOMENTUM] = ob_json_read_number(r, "momentum_error");
+	m[OB_SYNC_LOST] = ob_json_read_number(r, "energy_start") - ob_json_read_number(r, "energy_end");
 }
 
 static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
 {
 	const job *j = t->what;
-	ob_program_result r = { 0 };
-	char **argv = arguments(j, t->seed);
-	bool fine = argv ? ob_program_run(argv, &r, e) : ob_fail(e, "out of memory");
-	if (fine && r.code != 0)
-		fine = ob_fail(e, "%s", *r.complaint ? r.complaint : "it died without a word");
+	char *report = ob_program_report(arguments(j, t->seed), e);
+	const bool fine = report;
 	if (fine)
-		read_report(j, r.out, out->metric);
-	for (char **at = argv; at && *at; at++)
-		free(*at);
-	free(argv);
-	free(r.out);
+		read_report(j, report, out->metric);
+	free(report);
 	return fine;
 }
 

@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/utf8.h"
@@ -131,6 +132,14 @@ const char *ob_json_find(const char *text, const char *key)
 			return s;
 	}
 	return NULL;
+}
+
+double ob_json_read_number(const char *text, const char *key)
+{
+	const char *at = ob_json_find(text, key);
+	char *end = NULL;
+	const double x = at ? strtod(at, &end) : NAN;
+	return end != at ? x : NAN;
 }
 
 bool ob_json_read_string(const char *at, char *out, size_t size)

@@ -28,6 +28,8 @@ void ob_json_null(ob_json *j, const char *key);
 
 // Reading one flat object, as written above: start of the value of key; NULL = no such member.
 const char *ob_json_find(const char *text, const char *key);
+// The number that key has; NaN: none.
+double ob_json_read_number(const char *text, const char *key);
 // Reads the string value at "at", without escapes. Returns false if it is no string, or longer than size bytes.
 bool ob_json_read_string(const char *at, char *out, size_t size);
 

@@ -389,3 +389,23 @@ bool ob_program_run(char *const argv[], ob_program_result *r, ob_error *e)
 	}
 	return fine;
 }
+
+void ob_program_free_arguments(char **argv)
+{
+	for (char **at = argv; at && *at; at++)
+		free(*at);
+	free(argv);
+}
+
+char *ob_program_report(char **argv, ob_error *e)
+{
+	ob_program_result r = { 0 };
+	bool fine = argv ? ob_program_run(argv, &r, e) : ob_fail(e, "out of memory");
+	if (fine && r.code != 0)
+		fine = ob_fail(e, "%s", *r.complaint ? r.complaint : "it died without a word");
+	ob_program_free_arguments(argv);
+	if (fine)
+		return r.out;
+	free(r.out);
+	return NULL;
+}

@@ -58,5 +58,9 @@ typedef struct ob_program_result {
 // Runs this program with other arguments (argv[0] is for show), and collects its output. Call it within a process's
 // work: it ends together with that process. Returns false and e if it could not be started or read. free(r->out).
 bool ob_program_run(char *const argv[], ob_program_result *r, ob_error *e);
+// Same, for arguments in memory of their own, which it frees. Returns the output, to be freed; NULL and e: it could not be
+// run, or did not end with 0. argv NULL: out of memory.
+char *ob_program_report(char **argv, ob_error *e);
+void ob_program_free_arguments(char **argv);
 
 #endif

@@ -8,6 +8,7 @@
 #include "check.h"
 #include "compare/compare.h"
 #include "compare/table.h"
+#include "experiment/process.h"
 
 enum { RUNS = 7 };
 
@@ -292,14 +293,14 @@ static void test_arguments(void)
 		CHECK(says(argv, solver) == !monolith &&
 		      says(argv, "--workers=2") == (!monolith && !strstr(ob_configuration_table[id].key, "each")));
 		CHECK(says(argv, ob_configuration_table[id].other_narrow ? "--narrow=aabb" : "--narrow=obb"));
-		ob_comparison_free_arguments(argv);
+		ob_program_free_arguments(argv);
 	}
 	char **argv = ob_comparison_arguments(c, c->point, OB_CONFIGURATION_PROCESSES_EACH, OB_COMPARE_SAMPLE, true, 0);
 	CHECK(says(argv, "--measure=profile") && says(argv, "--workers=objects") && says(argv, "--isolation=process"));
-	ob_comparison_free_arguments(argv);
+	ob_program_free_arguments(argv);
 	argv = ob_comparison_arguments(c, c->point, OB_CONFIGURATION_THREADS, OB_COMPARE_DRAWN, false, 0);
 	CHECK(says(argv, "--raw=/dev/null") && says(argv, "scenes/heap.lua"));
-	ob_comparison_free_arguments(argv);
+	ob_program_free_arguments(argv);
 	finish(c);
 }
 
