@@ -392,11 +392,6 @@ static void face_manifold(const frame_pair *f, const ob_placed *a, const ob_plac
 	}
 }
 
-static ob_vec3 axis_normal(const ob_placed *a, const ob_placed *b, const axis_gaps *s)
-{
-	return s->largest_edge > s->largest_face ? edge_normal(a, b, s->edge) : face_normal(a, b, s->face);
-}
-
 static void boxes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	frame_pair f;
@@ -419,7 +414,7 @@ static void boxes(const ob_placed *a, const ob_placed *b, double margin, ob_mani
 		return;
 	}
 	if (out->separation > margin || crossing) {
-		out->normal = axis_normal(a, b, &s);
+		out->normal = normal_along(a, b, s.largest_edge > s.largest_face ? FACES + s.edge : s.face);
 		return;
 	}
 	if (axis < 0) {

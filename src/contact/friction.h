@@ -18,6 +18,23 @@
 #ifndef OB_CONTACT_FRICTION_H
 #define OB_CONTACT_FRICTION_H
 
+// A load pushes, and never pulls: change of a normal's impulse x where its row alone would change it by "step".
+static inline real push_change(real x, real step)
+{
+	return larger_of(-x, step);
+}
+
+// Sweeps over a normal: changes its impulse x in the lanes "open", and adds it to the load. response: the row's own.
+// largest: of the changes of a velocity. Returns the change, for the other rows.
+static inline real push_sweep(mask open, real step, real response, real *x, real *load, real *largest)
+{
+	const real d = push_change(*x, step);
+	*x += chosen(open, d, real_of(0));
+	*load += *x;
+	*largest = larger_of(*largest, size_of(d) * response);
+	return d;
+}
+
 // Returns the factor that brings a force of this squared length to the disc: 1 within it.
 static inline real disc_share(real bound, real length2)
 {

@@ -109,7 +109,7 @@ static void prepare(ob_batch *b)
 		prepare_kind(b, OB_KIND_FULL, false, true);
 }
 
-static inline void gather(const ob_body_row *rows, const uint32_t *index, lanes *o)
+static inline __attribute__((always_inline)) void gather(const ob_body_row *rows, const uint32_t *index, lanes *o)
 {
 	lanes linear[OB_LANES], rest[OB_LANES];
 	for (int l = 0; l < OB_LANES; l++) {
@@ -291,11 +291,8 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 {
 	lanes largest = lanes_of(0), sum = lanes_of(0), next[3] = { sum, sum, sum }, disc[2];
 	for (int i = 0; i < points_of(kind); i++) {
-		lanes d = lanes_max(-x[i], step[i]);
+		const lanes d = push_sweep(open, step[i], b->diag[i], &x[i], &sum, &largest);
 		couple(b, kind, i, d, step);
-		x[i] += lanes_where(open, d);
-		sum += x[i];
-		largest = lanes_max(largest, lanes_abs(d) * b->diag[i]);
 	}
 	largest *= largest;
 	if (!in_use(kind, OB_ROW_FRICTION))
@@ -691,7 +688,7 @@ static bool project(ob_batch *b, double slop, double beta, bool jacobi, ob_body_
 		r[i] = -lanes_where(deep, r[i] * b->inv_diag[i]); // change by each row alone, as in a sweep
 	for (int s = 0; s < 4; s++)
 		for (int i = 0; i < points; i++) {
-			lanes change = lanes_max(-x[i], r[i]);
+			lanes change = push_change(x[i], r[i]);
 			x[i] += change;
 			for (int j = 0; j < points; j++)
 				r[j] -= b->coupling[i][j] * change;

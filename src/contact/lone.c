@@ -207,11 +207,10 @@ static inline double lone_sweep(lone *p)
 	for (int i = 0; i < OB_POINTS; i++) {
 		if (i == p->points)
 			break;
-		const double x = p->x[i], d = larger_of(-x, p->short_n[i] * p->inv_diag[i]);
-		lone_change_point(p, i, d);
-		p->x[i] = x + d;
-		sum += x + d;
-		largest = larger_of(largest, size_of(d) * p->diag[i]);
+		double x = p->x[i];
+		lone_change_point(p, i,
+				  push_sweep(true, p->short_n[i] * p->inv_diag[i], p->diag[i], &x, &sum, &largest));
+		p->x[i] = x;
 	}
 	lone_friction(p, sum, next);
 	const lanes d = lone_vector(next[0], next[1], next[2]) - p->y;
