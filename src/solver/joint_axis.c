@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#include "motion/joint_value.h"
-
 static const double same_rate = 1e-10; // m/s, rad/s: a smaller difference counts as none
 static const double at_limit = 1e-10; // m, rad
 static const double value_rounding = 1e-12, force_rounding = 1e-9; // m, rad; share of the force
@@ -11,13 +9,10 @@ static const double slowest_bounce = .01; // m/s, rad/s: slower hits on a limit 
 
 // ---- value
 
-void ob_axis_find(ob_held_joint *j, double time)
+void ob_axis_find(ob_held_joint *j, double value, double time)
 {
-	const ob_vec3 apart = ob_sub(j->end[0].at, j->end[1].at), *b = j->end[1].axis;
-	j->along.value = j->kind == OB_JOINT_HINGE    ? ob_joint_turn(j->axis, j->end[0].axis[0], b[0], b[1])
-			 : j->kind == OB_JOINT_SLIDER ? ob_dot(j->end[1].axis[2], apart)
-						      : ob_norm(apart);
-	const double error = j->along.value - (j->along.goal + j->along.goal_rate * (time - j->along.since));
+	j->along.value = value;
+	const double error = value - (j->along.goal + j->along.goal_rate * (time - j->along.since));
 	j->error[j->base] = !j->along.engaged           ? 0
 			    : j->kind == OB_JOINT_HINGE ? error - 2 * M_PI * nearbyint(error / (2 * M_PI))
 							: error;

@@ -26,8 +26,8 @@ typedef enum ob_axis_event {
 	OB_AXIS_FASTER,
 } ob_axis_event;
 
-// Finds value and violation, where the ends have been found, at this time (s) of the run.
-void ob_axis_find(ob_held_joint *j, double time);
+// Takes the value, and finds its violation at this time (s) of the run.
+void ob_axis_find(ob_held_joint *j, double value, double time);
 // Finds the response of the axis alone, where the rows have been found.
 void ob_axis_find_response(ob_held_joint *j);
 // Finds the state of an axis with this rate, at the time and value found. Rows are to be factored anew.

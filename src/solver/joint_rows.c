@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "motion/joint_value.h"
 #include "solver/joint_axis.h"
 #include "solver/joint_load.h"
 
@@ -76,18 +77,25 @@ static void find_end(const ob_island_work *w, ob_joint_end *e, double time)
 		e->axis[i] = ob_column(&axes, i);
 }
 
-// Finds the violation of each row, at this time (s) of the run.
-static void find_errors(ob_held_joint *j, double time)
+// The number that a row holds or limits, at the places that its ends have.
+static double value_of(const ob_held_joint *j, const row_rule *rule)
 {
 	const ob_joint_end *a = &j->end[0], *b = &j->end[1];
 	const ob_vec3 apart = ob_sub(a->at, b->at);
+	return rule->type == ALONG    ? ob_dot(b->axis[rule->b], apart)
+	       : rule->type == ACROSS ? ob_dot(a->axis[rule->a], b->axis[rule->b])
+	       : rule->type == TURN   ? ob_joint_turn(j->axis, a->axis[0], b->axis[0], b->axis[1])
+				      : ob_norm(apart);
+}
+
+// Finds the violation of each row, at this time (s) of the run.
+static void find_errors(ob_held_joint *j, double time)
+{
 	if (j->axis)
-		ob_axis_find(j, time);
+		ob_axis_find(j, value_of(j, &axis_rules[j->kind]), time);
 	for (uint32_t r = 0; r < j->base; r++) {
 		const row_rule *rule = &rules[j->kind][r];
-		j->error[r] = rule->type == ALONG    ? ob_dot(b->axis[rule->b], apart)
-			      : rule->type == ACROSS ? ob_dot(a->axis[rule->a], b->axis[rule->b])
-						     : ob_norm(apart) - j->length;
+		j->error[r] = value_of(j, rule) - (rule->type == LENGTH ? j->length : 0);
 	}
 }
 
@@ -102,7 +110,7 @@ void ob_joints_find(ob_island_work *w, double time)
 	}
 }
 
-// Sets a row of both ends.
+// Sets the derivative of a row's value by the motions of both ends.
 static void find_row(const ob_held_joint *j, const row_rule *rule, double *of_a, double *of_b)
 {
 	const ob_joint_end *a = &j->end[0], *b = &j->end[1];

@@ -1,7 +1,7 @@
 // Rows of an island's joints: equality constraints, solved together by sparse elimination (solver/sparse_solver.h).
 //
 // A row is one number g of the poses of its two ends that must stay 0, with its derivative J by their motions. There are
-// four types; a kind of joint is a list of them.
+// four types, each with one case in value_of and one in find_row (joint_rows.c); a kind of joint is a list of them.
 //
 //   along    n . (p_a - p_b)   n an axis of the second end: the origins part along it
 //   across   x . y             x an axis of the first end, y of the second: they lean
