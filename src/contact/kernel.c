@@ -328,7 +328,8 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 	return lanes_max(largest, spin * spin);
 }
 
-// Replaces d by m^-1 d, by elimination without pivots.
+// Replaces d by m^-1 d, by elimination without pivots. lone_eliminate (contact/lone.c) does the same for one pair, with
+// four columns side by side and in another order; a single text would change bits (docs/notebook/tried.md).
 PER_KIND void eliminate(ob_batch_kind kind, int rows, lanes (*m)[OB_ROWS], lanes *d)
 {
 #pragma GCC unroll 7
