@@ -4,7 +4,7 @@ import { isEndless, isHulled, outlineOf } from './shapes.js';
 import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes, hullVertices } from './meshes.js';
 import { turned } from './motion.js';
 
-const SHADOW_TEXELS = 1280, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: border for the
+const SAMPLES = 4, SHADOW_TEXELS = 1280, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: border for the
                                                                                   // filter
 const SKY_MAPS = 12; // as in light.glsl
 const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2, UNIT_PLAIN = 3, UNIT_SKY = 4, UNIT_COLOUR_IMAGE = 5, UNIT_SURFACE_IMAGE = 6;
@@ -181,7 +181,7 @@ export class Drawing {
 	// renderer.
 	constructor(canvas, light) {
 		this.canvas = canvas;
-		const gl = canvas.getContext('webgl2', { antialias: true, alpha: false, preserveDrawingBuffer: true });
+		const gl = canvas.getContext('webgl2', { antialias: false, alpha: false, preserveDrawingBuffer: true });
 		if (!gl)
 			throw new Error('this browser has no WebGL 2, which the viewer draws with');
 		this.gl = gl;
@@ -302,8 +302,8 @@ export class Drawing {
 	// ---- a frame
 
 	// bodies: { shape, size, p, q, radius, shown: linear RGB; mesh: one of looks, if it has one }; look: the
-	// scene's (welcome). overlay: see drawSegments.
-	draw(bodies, view, look, overlay) {
+	// scene's (welcome). overlay: see drawSegments. smooth: with several samples a pixel.
+	draw(bodies, view, look, overlay, smooth = true) {
 		const gl = this.gl, width = this.canvas.width, height = this.canvas.height;
 		const solid = bodies.filter((b) => !isEndless(b.shape)), planes = bodies.filter((b) => isEndless(b.shape));
 		const ground = planes.find((b) => turned(b.q, [0, 0, 1])[2] > 0.999);
@@ -326,9 +326,31 @@ export class Drawing {
 		if (ground && this.draft)
 			this.drawOcclusionMap(solid.filter((b) => dot(b.p, up) - b.radius < f.level + OCCLUSION_HEIGHT &&
 				contains(f.occlusion, b)), view, height);
+		this.target(smooth ? this.samples(width, height) : null, width, height);
 		this.drawColour(solid, planes, f, look, width, height);
 		if (overlay.length)
 			this.drawSegments(overlay, view);
+		if (!smooth)
+			return;
+		gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.multi.framebuffer);
+		gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+		gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+	}
+
+	// A target of this size with several samples a pixel.
+	samples(width, height) {
+		const gl = this.gl, count = Math.min(SAMPLES, gl.getParameter(gl.MAX_SAMPLES));
+		this.multi ??= { framebuffer: gl.createFramebuffer(), buffers: [gl.createRenderbuffer(), gl.createRenderbuffer()] };
+		if (this.multi.width === width && this.multi.height === height)
+			return this.multi.framebuffer;
+		Object.assign(this.multi, { width, height });
+		gl.bindFramebuffer(gl.FRAMEBUFFER, this.multi.framebuffer);
+		[[gl.COLOR_ATTACHMENT0, gl.RGB8], [gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT24]].forEach(([attachment, form], i) => {
+			gl.bindRenderbuffer(gl.RENDERBUFFER, this.multi.buffers[i]);
+			gl.renderbufferStorageMultisample(gl.RENDERBUFFER, count, form, width, height);
+			gl.framebufferRenderbuffer(gl.FRAMEBUFFER, attachment, gl.RENDERBUFFER, this.multi.buffers[i]);
+		});
+		return this.multi.framebuffer;
 	}
 
 	setBlock(f, sun, look, width, height) {
@@ -537,7 +559,6 @@ export class Drawing {
 
 	drawColour(solid, planes, f, look, width, height) {
 		const gl = this.gl;
-		this.target(null, width, height);
 		gl.enable(gl.DEPTH_TEST);
 		gl.frontFace(gl.CCW);
 		gl.clear(gl.DEPTH_BUFFER_BIT);

@@ -26,7 +26,7 @@ const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('to
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const recording = document.querySelector('meta[name=recording]').content;
 const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), recorder = new Recorder(universe), sharpness = new Sharpness();
-let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '', shownShare = 1;
+let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '', shownForm = '';
 
 // ---- the picture
 
@@ -71,10 +71,10 @@ function accompany(list, seconds) {
 	panel.follows(camera.holds);
 }
 
-function draw(list, view, width, height) {
+function draw(list, view, width, height, smooth) {
 	if (canvas.width !== width || canvas.height !== height)
 		[canvas.width, canvas.height] = [width, height];
-	drawing.draw(list, view, look, overlay(list, view));
+	drawing.draw(list, view, look, overlay(list, view), smooth);
 }
 
 let before = performance.now();
@@ -94,10 +94,11 @@ function frame(now) {
 	// An unchanged picture is not drawn again: a universe that is paused or at rest costs nothing.
 	const { on } = panel, seen = [list.every((b) => b.rests) || universe.time, universe.news, drawing.looks.size, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
 		on.contacts, on.joints, on.simulators, workers.key, read, hand.held?.target].join();
-	const share = drawing.software && !explore.recorder ? sharpness.next(seconds, seen !== shown) : 1;
-	if (seen !== shown || share !== shownShare)
-		draw(list, view, Math.round(width * share), Math.round(height * share));
-	[shown, shownShare] = [seen, share];
+	const changes = seen !== shown, share = drawing.software && !explore.recorder ? sharpness.next(seconds, changes) : 1;
+	const smooth = !drawing.software || !changes, form = `${share} ${smooth}`;
+	if (changes || form !== shownForm)
+		draw(list, view, Math.round(width * share), Math.round(height * share), smooth);
+	[shown, shownForm] = [seen, form];
 	panel.clock(universe.time, universe.rate, universe.paused);
 	frames++;
 	requestAnimationFrame(frame);
@@ -268,7 +269,7 @@ offers.addEventListener('control', ({ detail: { to, text } }) => {
 explore.addEventListener('pick', (e) => pick(e.detail));
 panel.addEventListener('picture', () => {
 	const scale = Math.min(2, devicePixelRatio || 1), size = [canvas.clientWidth, canvas.clientHeight].map((x) => Math.max(1, Math.round(x * scale)));
-	draw(bodies(), camera.view(...size), ...size); // in full resolution
+	draw(bodies(), camera.view(...size), ...size, true); // in full resolution
 	explore.picture(canvas);
 });
 panel.addEventListener('video', () => document.querySelector('[data-do=video]').setAttribute('aria-pressed', explore.video(canvas)));
