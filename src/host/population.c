@@ -596,7 +596,7 @@ static void carry_out_requests(ob_population *p, uint64_t step, ob_requests *q)
 	ob_request r;
 	while ((again = ob_journal_again(&p->journal, &at)))
 		carry_out_request(p, again);
-	if (ob_journal_next_step(&p->journal) < UINT64_MAX || step < p->reached || !ob_requests_waiting(q))
+	if (ob_population_is_behind(p) || !ob_requests_waiting(q))
 		return;
 	while (ob_requests_take(q, &r)) {
 		if (p->kept)
@@ -725,6 +725,11 @@ void ob_population_put_back(ob_population *p, uint64_t reached)
 		return;
 	ob_journal_rewind(&p->journal);
 	put_back(p, p->kept);
+}
+
+bool ob_population_is_behind(const ob_population *p)
+{
+	return ob_journal_next_step(&p->journal) < UINT64_MAX || ob_step_count(p->u) < p->reached;
 }
 
 void ob_population_restore(ob_population *p, const ob_kept_population *k)

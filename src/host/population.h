@@ -54,6 +54,8 @@ void ob_population_restore(ob_population *p, const ob_kept_population *k);
 // steps that were complete before the restart; new requests wait until as many are complete again.
 bool ob_population_keep(ob_population *p); // false: out of memory
 void ob_population_put_back(ob_population *p, uint64_t reached);
+// True until a run that was put back so is where it was, with all requests since.
+bool ob_population_is_behind(const ob_population *p);
 // True if another checkpoint is due: much would be repeated, or there was no memory to note it.
 bool ob_population_is_checkpoint_due(const ob_population *p);
 // The next step at which something is due; UINT64_MAX: never.

@@ -17,10 +17,19 @@
 
 static const double poll_interval = .05; // s, between checks of a run that does not pause
 enum { LOOKS_PER_POLL = 5 }; // checks for Ctrl-C in each of these intervals
+// Steps of a run that a program leads until it looks for a command: where no simulator has work, the leading thread itself
+// passes all steps of an interval.
+enum { LED_STEPS = 1 << 14 };
 static const double spin_time = 5e-5; // s
 static const double interrupt_grace = .03; // s that a step may still take after Ctrl-C, unless the run is to be saved
 
-// Paused: adds and removes objects, then opens the gate for the next interval, if the target is still ahead.
+static bool is_called(ob_host *h)
+{
+	return h->caller.fd >= 0 && poll(&h->caller, 1, 0) == 1;
+}
+
+// Paused: adds and removes objects, then opens the gate for the next interval, if the target is still ahead. A program
+// that calls ends the way there, but not before the run is where it was when a simulator died.
 static void begin_interval(ob_host *h)
 {
 	ob_interval *interval = &h->interval;
@@ -29,10 +38,13 @@ static void begin_interval(ob_host *h)
 		ob_population_update(h->population, step, h->requests);
 	ob_restart_checkpoint(h, ob_restart_freeze(h));
 	ob_host_log_scripts(h);
+	if (is_called(h) && step < h->target && !ob_population_is_behind(h->population))
+		h->target = step;
 	if (h->started && step >= h->target)
 		return;
 	uint64_t next = ob_population_next_step(h->population), retry = ob_restart_next_step(h);
 	next = next < retry ? next : retry;
+	next = h->caller.fd >= 0 && next > step + LED_STEPS ? step + LED_STEPS : next;
 	if (!h->started)
 		ob_universe_set_state(h->u, OB_UNIVERSE_RUNNING);
 	h->started = true;
@@ -101,11 +113,6 @@ static void report_stall(ob_host *h, uint64_t step)
 	ob_restart_request(h, &d);
 }
 
-static bool is_called(ob_host *h)
-{
-	return h->caller.fd >= 0 && poll(&h->caller, 1, 0) == 1;
-}
-
 // Between pauses: detects a stall, and ends the interval early if a thread waits for a pause. false: interrupted, and
 // the step does not end.
 static bool check_progress(ob_host *h, ob_stall_watch *stall, double *interrupted_at)
@@ -117,10 +124,7 @@ static bool check_progress(ob_host *h, ob_stall_watch *stall, double *interrupte
 		report_stall(h, stall->step);
 	if (h->interrupted && *interrupted_at == 0)
 		*interrupted_at = now;
-	const bool called = is_called(h);
-	if (called)
-		h->target = ob_step_count(h->u);
-	if (h->interrupted || called || ob_requests_waiting(h->requests) || ob_restart_checkpoint_due(h))
+	if (h->interrupted || is_called(h) || ob_requests_waiting(h->requests) || ob_restart_checkpoint_due(h))
 		ob_host_pause_early(h);
 	return h->saved || !(h->interrupted && now - *interrupted_at > interrupt_grace);
 }

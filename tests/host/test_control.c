@@ -14,7 +14,7 @@
 #include "measure/measure.h"
 #include "workers.h"
 
-enum { BALLS = 20, STEPS = 160, LAST = 1 << 22 };
+enum { BALLS = 20, STEPS = 160, LAST = 1 << 22, NEVER = 1 << 30 };
 
 // ---- a run that is led by a program in another thread
 
@@ -22,6 +22,7 @@ typedef struct led_run {
 	ob_host *host;
 	ob_control *control;
 	pthread_t thread;
+	uint64_t last; // 0: LAST
 	bool failed;
 } led_run;
 
@@ -33,7 +34,8 @@ static void *lead(void *argument)
 	do {
 		ob_host_go(r->host, step);
 		r->failed = !ob_host_wait(r->host, &e);
-	} while (!r->failed && ob_control_next(r->control, r->host, LAST, &step) == OB_CONTROL_GOES_ON);
+	} while (!r->failed &&
+		 ob_control_next(r->control, r->host, r->last ? r->last : LAST, &step) == OB_CONTROL_GOES_ON);
 	if (r->failed)
 		ob_control_end(r->control, e.text);
 	return NULL;
@@ -74,7 +76,7 @@ static void hurry(void)
 	enum { SLOWLY = 25, SOON = 1 << 19 }; // SOON: seconds of steps on any machine
 	ob_error e = { "" };
 	ob_scene s = little_scene(1);
-	led_run r;
+	led_run r = { 0 };
 	CHECK(begin(&r, &s, OB_ISOLATION_THREAD, 1));
 	ob_controller *c = ob_controller_open(ob_host_universe(r.host), &e);
 	CHECK(c && ob_controller_run(c, 1, &e));
@@ -82,6 +84,21 @@ static void hurry(void)
 		pause_ms(1);
 	CHECK(ob_controller_run(c, INFINITY, &e) && ob_controller_pause(c, &e));
 	CHECK(ob_controller_steps(c) < SOON);
+	ob_controller_close(c);
+	end(&r);
+	free(s.object);
+}
+
+// Likewise where nothing happens: no simulator has work, and millions of steps pass in a second.
+static void hurry_idly(ob_isolation isolation)
+{
+	ob_error e = { "" };
+	ob_scene s = little_scene(0);
+	led_run r = { .last = NEVER };
+	CHECK(begin(&r, &s, isolation, 1));
+	ob_controller *c = ob_controller_open(ob_host_universe(r.host), &e);
+	CHECK(c && ob_controller_step(c, 10, &e) && ob_controller_run(c, INFINITY, &e) && ob_controller_pause(c, &e));
+	CHECK(ob_controller_steps(c) < NEVER && ob_controller_step(c, 1, &e));
 	ob_controller_close(c);
 	end(&r);
 	free(s.object);
@@ -171,12 +188,35 @@ static void kill_a_worker(const ob_universe *u, ob_controller *c)
 	}
 }
 
+// A command that comes while a run makes up for a death waits until it is where it was: no clock goes back.
+static void pause_after_kill(void)
+{
+	enum { ROUNDS = 8 };
+	ob_error e = { "" };
+	ob_scene s = busy_heap(BALLS);
+	led_run r = { 0 };
+	CHECK(begin(&r, &s, OB_ISOLATION_PROCESS, 2));
+	const ob_universe *u = ob_host_universe(r.host);
+	ob_controller *c = ob_controller_open(u, &e);
+	CHECK(c);
+	for (int i = 0; c && i < ROUNDS; i++) {
+		CHECK(ob_controller_step(c, 10, &e));
+		const uint64_t before = ob_controller_steps(c);
+		kill_a_worker(u, c);
+		CHECK(ob_controller_run(c, INFINITY, &e) && ob_controller_pause(c, &e));
+		CHECK(ob_controller_steps(c) >= before);
+	}
+	ob_controller_close(c);
+	end(&r);
+	free(s.object);
+}
+
 // seed: of the detours; 0: none
 static uint64_t live(ob_isolation isolation, uint32_t workers, uint64_t seed, bool kills)
 {
 	ob_error e = { "" };
 	ob_scene s = busy_heap(BALLS);
-	led_run r;
+	led_run r = { 0 };
 	uint64_t hash = 0;
 	uint32_t created[2] = { 0 };
 	if (!begin(&r, &s, isolation, workers))
@@ -371,7 +411,7 @@ static void test_session(ob_isolation isolation)
 {
 	ob_error e = { "" };
 	ob_scene s = busy_heap(BALLS);
-	led_run r;
+	led_run r = { 0 };
 	if (!begin(&r, &s, isolation, 2))
 		return;
 	const ob_universe *u = ob_host_universe(r.host);
@@ -403,6 +443,9 @@ int main(void)
 	test_session(OB_ISOLATION_THREAD);
 	test_session(OB_ISOLATION_PROCESS);
 	hurry();
+	hurry_idly(OB_ISOLATION_THREAD);
+	hurry_idly(OB_ISOLATION_PROCESS);
+	pause_after_kill();
 	test_lives();
 	return check_end();
 }
