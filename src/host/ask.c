@@ -119,16 +119,22 @@ static void take_in(ob_asked *a)
 		close(fd);
 }
 
+enum { VERSION = sizeof magic - 1 }; // place of the version in a magic
+
+// True for a program of any version that wants to control the run.
 static bool is_hello(const packet *p, ssize_t n)
 {
-	return n >= (ssize_t)sizeof p->magic && memcmp(p->magic, OB_CONTROL_MAGIC, sizeof p->magic) == 0;
+	return n >= (ssize_t)sizeof p->magic && memcmp(p->magic, OB_CONTROL_MAGIC, VERSION) == 0;
 }
 
 // Gives a caller that wants to control the run to the thread that leads it.
-static bool hand_over(ob_host *h, ob_asked *a, int fd, ob_error *e)
+static bool hand_over(ob_host *h, ob_asked *a, int fd, char version, ob_error *e)
 {
 	if (!h->control)
 		return ob_fail(e, "this run is not to be controlled: start it with obsim control");
+	if (version != OB_CONTROL_MAGIC[VERSION])
+		return ob_fail(e, "this run has control protocol %c, and the program %c: use the same obsim for both",
+			       OB_CONTROL_MAGIC[VERSION], version);
 	epoll_ctl(a->events, EPOLL_CTL_DEL, fd, NULL);
 	return ob_control_take(h->control, fd, e);
 }
@@ -142,7 +148,7 @@ static void answer(ob_host *h, ob_asked *a, int fd)
 			continue;
 		const ssize_t n = recv(fd, &p, sizeof p, MSG_DONTWAIT);
 		drop(a, i);
-		if (is_hello(&p, n) && hand_over(h, a, fd, &e))
+		if (is_hello(&p, n) && hand_over(h, a, fd, p.magic[VERSION], &e))
 			return;
 		if (!is_hello(&p, n))
 			carry_out(h, &p, n, &e);

@@ -49,8 +49,11 @@ ob_universe *ob_universe_attach(const char *name, ob_error *e)
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
+	errno = 0;
 	u->fd = ob_segment_open(name);
-	if (u->fd >= 0 ? map_segment(u, name, e) : ob_fail(e, "no universe \"%.60s\" on this machine", name)) {
+	if (u->fd >= 0        ? map_segment(u, name, e)
+	    : errno == EACCES ? ob_fail(e, "universe \"%.60s\" belongs to another user", name)
+			      : ob_fail(e, "no universe \"%.60s\" on this machine", name)) {
 		ob_segment_read(u->fd);
 		return u;
 	}

@@ -2,6 +2,8 @@
 
 import os
 import socket
+import subprocess
+import sys
 import unittest
 
 import program
@@ -158,6 +160,72 @@ class Send(program.Case):
 					self.assertIn(b"not of this version", s.recv(10000))
 		self.assertIn("listener", self.objects())
 		self.assertIsNone(self.run_.poll())
+
+
+STRANGER = """
+import socket, sys
+name, *packets = sys.argv[1:]
+for packet in packets:
+	with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as s:
+		s.connect("\\0obsim." + name)
+		try:
+			if packet:
+				s.send(bytes.fromhex(packet))
+			print(s.recv(10000).split(b"\\0")[0].decode())
+		except (BrokenPipeError, ConnectionResetError): # it was refused before it had sent all
+			print("this universe belongs to another user")
+try:
+	open("/dev/shm/obsim." + name, "rb")
+except PermissionError:
+	print("no memory")
+"""
+
+
+class Strangers(program.Case):
+	"""Programs of another user, and of another version."""
+
+	def setUp(self):
+		super().setUp()
+		with open(self.path("scene.lua"), "w") as f:
+			f.write(SCENE)
+		self.control = program.start("control", self.path("scene.lua"), "--name", self.name, "--isolation", "process")
+		self.assertIn("waits as universe", self.control.stdout.readline())
+
+	def tearDown(self):
+		self.control.terminate()
+		self.control.communicate(timeout=program.PATIENCE)
+		super().tearDown()
+
+	@unittest.skipUnless(os.geteuid() == 0, "needs root, to be another user")
+	def test_another_user(self):
+		"""Another user gets one line for each request, and no state. Then the run's own user leads it."""
+		stranger = {"user": 65534, "group": 65534, "extra_groups": [], "cwd": "/"}
+		packets = [b"", b"OBSIMCT1" + bytes(32), b"OBSIMAS1" + bytes(4096), b"x"]
+		done = subprocess.run([sys.executable, "-c", STRANGER, self.name, *(p.hex() for p in packets)], capture_output=True, text=True,
+			timeout=program.PATIENCE, check=True, **stranger)
+		self.assertEqual(done.stdout.splitlines(), 4 * ["this universe belongs to another user"] + ["no memory"])
+		other = f'obsim: universe "{self.name}" belongs to another user\n'
+		for words, saying in ((["send", self.name, "remove", "crate"], other), (["send", self.name, "kill", "crate"], other),
+				(["top", self.name, "--once"], "obsim: no universe is running: start one with obsim run SCENE.lua\n")):
+			done = program.call(*words, **stranger)
+			self.assertEqual((done.returncode, done.stdout, done.stderr), (1, "", saying))
+		led = program.Led(self.name)
+		led.step(10)
+		self.assertEqual((program.steps(self.name), program.deaths(self.name)), (10, 0))
+		led.close()
+
+	def test_another_version(self):
+		"""A program of the version before gets one line, which names both versions, and does not take control."""
+		with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as s:
+			s.settimeout(program.PATIENCE)
+			s.connect("\0obsim." + self.name)
+			s.send(b"OBSIMCT0" + bytes(32))
+			self.assertEqual(s.recv(10000).split(b"\0")[0].decode(),
+				"this run has control protocol 1, and the program 0: use the same obsim for both")
+			self.assertEqual(s.recv(1), b"")
+		led = program.Led(self.name)
+		led.step(1)
+		led.close()
 
 
 class Starting(program.Case):
