@@ -18,8 +18,11 @@ class Usage(program.Case):
 		self.assertEqual(set(listed), {f[:-4] for f in os.listdir(program.SCENES) if f.endswith(".lua")})
 		self.assertEqual(listed["plaza"], "A plaza")
 		os.mkdir(self.path("stack"))
-		done = program.call("run", "stack", "--duration", ".05", "--measure", "end", cwd=self.directory.name)
-		self.assertEqual(done.returncode, 0, done.stderr)
+		for name in "stack", "scenes/stack.lua": # as documents have it
+			done = program.call("run", name, "--duration", ".05", "--measure", "end", cwd=self.directory.name)
+			self.assertEqual(done.returncode, 0, done.stderr)
+		for name in "scenes/stak.lua", "scenes/stack", "other/stack.lua":
+			self.refuse("run", name, saying=f"{name}: No such file")
 		self.refuse("scenes", "plaza", saying="it takes no name")
 
 	def test_options(self):
