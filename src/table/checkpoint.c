@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "base/allocate.h"
+#include "table/home.h"
 #include "table/layout.h"
 
 // Bytes of the segment; begin and end on page borders.
@@ -210,15 +211,18 @@ static void put_motions_back(const ob_checkpoint *c, ob_universe *u)
 	}
 }
 
-// Restores body properties; objects added since then become absent.
+// Restores body properties; objects added since then become absent, and their simulators' moves are forgotten.
 static void put_passports_back(const ob_checkpoint *c, ob_universe *u)
 {
 	static const ob_passport none = { 0 };
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		ob_passport now;
 		const ob_passport *then = id < c->ids ? &c->passport[id] : &none;
-		if (ob_passport_read(u, id, &now) && memcmp(&now, then, sizeof now) != 0)
-			ob_write_passport(u, id, then);
+		if (!ob_passport_read(u, id, &now) || memcmp(&now, then, sizeof now) == 0)
+			continue;
+		if (now.generation != then->generation || !(then->flags & OB_OBJECT_PRESENT))
+			ob_pin_drop(u, id);
+		ob_write_passport(u, id, then);
 	}
 }
 

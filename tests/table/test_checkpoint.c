@@ -10,6 +10,7 @@
 
 #include "../check.h"
 #include "table/checkpoint.h"
+#include "table/home.h"
 #include "table/layout.h"
 
 enum { OBJECTS = 300, WORKERS = 3 };
@@ -130,6 +131,33 @@ static void test_put_back(void)
 }
 
 // Pages that came into use after it was taken are zero again.
+// Moves of simulators outlive deaths, but not their objects: of one that came after the checkpoint, or had an earlier one's
+// number then.
+static void test_moves(void)
+{
+	enum { STAYS = 3, COMES = 5, ANOTHER = 7 };
+	ob_universe *u = make();
+	ob_checkpoint *c = ob_checkpoint_create(u);
+	ob_passport p = { .id = COMES };
+	ob_write_passport(u, COMES, &p);
+	CHECK(ob_checkpoint_take(c, u));
+	p = (ob_passport){ .id = COMES, .flags = OB_OBJECT_PRESENT, .shape = OB_SHAPE_SPHERE, .mass = 1 };
+	ob_write_passport(u, COMES, &p);
+	p = (ob_passport){ .id = ANOTHER, .generation = 9, .flags = OB_OBJECT_PRESENT, .mass = 1 };
+	ob_write_passport(u, ANOTHER, &p);
+	for (uint32_t id = STAYS; id <= ANOTHER; id += 2) {
+		CHECK(ob_move_ask(u, id, 1));
+		ob_move_make(u, ob_move_take(u));
+	}
+	ob_checkpoint_put_back(c, u);
+	CHECK(ob_universe_step_data(u)->pin[STAYS] == 2 && ob_moves_were_made(u));
+	CHECK(ob_universe_step_data(u)->pin[COMES] == 0 && ob_universe_step_data(u)->pin[ANOTHER] == 0);
+	ob_pin_drop(u, STAYS);
+	CHECK(!ob_moves_were_made(u));
+	ob_checkpoint_destroy(c);
+	ob_universe_destroy(u, true);
+}
+
 static void test_new_pages(void)
 {
 	size_t n, set = 0;
@@ -215,6 +243,7 @@ static void test_deaths(void)
 int main(void)
 {
 	test_put_back();
+	test_moves();
 	test_new_pages();
 	test_readers();
 	test_deaths();
