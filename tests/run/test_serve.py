@@ -444,11 +444,12 @@ controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 		self.serve("--room", "64")
 		v = self.viewer()
 		before = len(v.objects)
-		for i in range(100):
+		for i in range(65): # each when the one before is there: the server counts those
+			v.until(lambda: len(v.objects) >= before + i)
 			v.send(do="create", shape="sphere", size=[.1, 0, 0], at=[10 + i, 0, 1], mass=1)
 			time.sleep(.03)
 		v.until(lambda: "full" in v.told.get("error", ""))
-		v.until(lambda: len(v.objects) >= before + 64)
+		self.assertEqual(len(v.objects), before + 64)
 		self.end()
 
 	def closed(self, v):
