@@ -28,6 +28,7 @@ static bool find_object(sending *s, const char *text, ob_error *e)
 	char *end;
 	ob_passport p;
 	ob_spelling near = ob_spelling_start(text);
+	char best[OB_NAME_MAX];
 	const unsigned long number = strtoul(text, &end, 10);
 	const bool by_number = *text && !*end && number < UINT32_MAX;
 	for (uint32_t id = 0; id < ob_universe_ids(s->u); id++) {
@@ -41,6 +42,7 @@ static bool find_object(sending *s, const char *text, ob_error *e)
 		}
 		if (!by_number)
 			ob_spelling_offer(&near, p.name);
+		near.best = near.best == p.name ? memcpy(best, p.name, sizeof best) : near.best;
 	}
 	return near.best ? ob_fail(e, "universe \"%s\" has no object \"%s\": did you mean \"%s\"?", s->universe, text,
 				   near.best)
@@ -74,24 +76,9 @@ static bool create(sending *s, ob_error *e)
 	return fine;
 }
 
-// Finds a joint that has not broken by its name.
 static bool find_joint(sending *s, const char *name, ob_error *e)
 {
-	ob_spelling near = ob_spelling_start(name);
-	ob_joint_passport j;
-	for (uint32_t i = 0; i < ob_universe_joints(s->u); i++) {
-		if (!ob_universe_get_joint(s->u, i, &j) || j.flags & OB_JOINT_BROKEN)
-			continue;
-		if (strcmp(j.name, name) == 0) {
-			s->request.joint = i;
-			s->request.id = j.object[0], s->request.generation = j.generation[0];
-			return true;
-		}
-		ob_spelling_offer(&near, j.name);
-	}
-	return near.best ? ob_fail(e, "universe \"%s\" has no joint \"%s\": did you mean \"%s\"?", s->universe, name,
-				   near.best)
-			 : ob_fail(e, "universe \"%s\" has no joint \"%s\"", s->universe, name);
+	return ob_joint_request_find(s->u, name, &s->request, e);
 }
 
 static bool read_colour(sending *s, ob_error *e)
@@ -108,21 +95,40 @@ static bool read_values(sending *s, ob_error *e)
 	return true;
 }
 
-static bool read_number(const sending *s, const char *verb, double *out, ob_error *e)
+static bool read_number(const char *verb, const char *word, double *out, ob_error *e)
 {
 	char *end;
-	*out = strtod(s->word[1], &end);
-	return (*s->word[1] && !*end) || ob_fail(e, "%s: expected a number, got \"%s\"", verb, s->word[1]);
+	*out = strtod(word, &end);
+	return (*word && !*end) || ob_fail(e, "%s: expected a number, got \"%s\"", verb, word);
 }
 
 static bool read_motor(sending *s, ob_error *e)
 {
-	return read_number(s, "motor", &s->request.motor, e);
+	return read_number("motor", s->word[1], &s->request.motor, e);
 }
 
 static bool read_friction(sending *s, ob_error *e)
 {
-	return read_number(s, "friction", &s->request.friction, e);
+	return read_number("friction", s->word[1], &s->request.friction, e);
+}
+
+static bool read_steps(sending *s, ob_error *e)
+{
+	double steps = 1;
+	if (s->word[0] && !read_number("step", s->word[0], &steps, e))
+		return false;
+	s->request.steps = steps >= 0 && steps == floor(steps) && steps < 1e18 ? (uint64_t)steps : 0;
+	return true;
+}
+
+static bool read_until(sending *s, ob_error *e)
+{
+	return read_number("until", s->word[0], &s->request.until, e);
+}
+
+static bool read_rate(sending *s, ob_error *e)
+{
+	return read_number("rate", s->word[0], &s->request.rate, e);
 }
 
 // Reads three numbers from word i on.
@@ -178,6 +184,28 @@ static bool read_velocity(sending *s, ob_error *e)
 {
 	s->request.state = same_state();
 	return read_pull(s, &s->request.state.v, e);
+}
+
+static bool read_spin(sending *s, ob_error *e)
+{
+	s->request.state = same_state();
+	return read_pull(s, &s->request.state.w, e);
+}
+
+static bool read_attitude(sending *s, ob_error *e)
+{
+	ob_quat *q = &s->request.state.pose.q;
+	ob_vec3 v = { 0 };
+	s->request.state = same_state();
+	if (!read_number("attitude", s->word[1], &q->w, e) || !read_vector(s, 2, &v, e))
+		return false;
+	q->x = v.x, q->y = v.y, q->z = v.z;
+	return true;
+}
+
+static bool read_surface(sending *s, ob_error *e)
+{
+	return read_pull(s, &s->request.surface_velocity, e);
 }
 
 // Reads a point of a path from one word: "T X Y Z", or "T X Y Z QW QX QY QZ", as the first one has it.
@@ -244,6 +272,9 @@ static const struct verb {
 	{ "release", "release OBJECT", 1, 0, OB_REQUEST_RELEASE, find_object, NULL },
 	{ "place", "place OBJECT X Y Z", 4, 0, OB_REQUEST_STATE, find_object, read_place },
 	{ "velocity", "velocity OBJECT X Y Z", 4, 0, OB_REQUEST_STATE, find_object, read_velocity },
+	{ "attitude", "attitude OBJECT W X Y Z", 5, 0, OB_REQUEST_STATE, find_object, read_attitude },
+	{ "spin", "spin OBJECT X Y Z", 4, 0, OB_REQUEST_STATE, find_object, read_spin },
+	{ "surface", "surface OBJECT X Y Z", 4, 0, OB_REQUEST_SURFACE, find_object, read_surface },
 	{ "path", "path OBJECT 'T X Y Z [QW QX QY QZ]' ... [loop]", 2, INT_MAX - 2, OB_REQUEST_PATH, find_object,
 	  read_path },
 	{ "friction", "friction OBJECT NUMBER", 2, 0, OB_REQUEST_FRICTION, find_object, read_friction },
@@ -254,13 +285,18 @@ static const struct verb {
 	{ "keep", "keep", 0, 0, OB_REQUEST_KEEP, NULL, NULL },
 	{ "return", "return", 0, 0, OB_REQUEST_RETURN, NULL, NULL },
 	{ "restart", "restart", 0, 0, OB_REQUEST_RESTART, NULL, NULL },
+	{ "pause", "pause", 0, 0, OB_REQUEST_PAUSE, NULL, NULL },
+	{ "resume", "resume", 0, 0, OB_REQUEST_RESUME, NULL, NULL },
+	{ "step", "step [STEPS]", 0, 1, OB_REQUEST_STEP, NULL, read_steps },
+	{ "until", "until SECONDS", 1, 0, OB_REQUEST_UNTIL, NULL, read_until },
+	{ "rate", "rate NUMBER", 1, 0, OB_REQUEST_RATE, NULL, read_rate },
 };
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 // Lists all requests.
 static void refuse_all(ob_error *e)
 {
-	char text[256] = "";
+	char text[sizeof e->text] = "";
 	for (int i = 0; i < VERBS; i++)
 		snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s", i ? ", " : "", verbs[i].name);
 	ob_fail(e, "expected a request: obsim send NAME with one of %s", text);

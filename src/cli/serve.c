@@ -64,7 +64,7 @@ typedef struct serving {
 	serve_request q;
 	ob_scene *scene;
 	ob_host *host;
-	ob_pace pace;
+	ob_pace *pace; // clock of this run and its successors
 	ob_server *server;
 	ob_recorder *recorder; // NULL: none
 	ob_snapshot shown; // the latest recorded one
@@ -102,6 +102,7 @@ static bool start(serving *s, ob_error *e)
 	config.free_window = free_window;
 	config.spare = s->q.room;
 	config.returns = !q->record;
+	config.pace = s->pace;
 	config.log = s->q.log;
 	s->host = ob_host_start(s->scene, &config, e);
 	if (!s->host || !q->record)
@@ -175,16 +176,16 @@ static bool start_anew(serving *s, const ob_define *wish, ob_error *e)
 	free(s->own.define);
 	free(s->set);
 	*s = next;
-	ob_pace_restart(&s->pace);
+	ob_pace_restart(s->pace);
 	return start(s, e) && ob_server_go_on(s->server, s->scene, s->host, e);
 }
 
 // Returns the next step of a free run, whose simulators follow the clock themselves; while paused, steps that are allowed.
 static uint64_t pace_free(serving *s, uint64_t done)
 {
-	const ob_pace_state pace = ob_pace_get(&s->pace);
+	const ob_pace_state pace = ob_pace_get(s->pace);
 	const uint64_t due =
-		pace.paused ? ob_pace_wait(&s->pace, done, s->q.run.run.step_length, 1, patience) : done + 1;
+		pace.paused ? ob_pace_wait(s->pace, done, s->q.run.run.step_length, 1, patience) : done + 1;
 	ob_host_set_pace(s->host, pace.paused ? 0 : pace.rate, due);
 	return due;
 }
@@ -195,7 +196,7 @@ static uint64_t go_on(serving *s, uint64_t done, uint64_t *batch, bool *at_once)
 	const uint64_t every = s->scene->record_every, state = s->recorder ? (done / every + 1) * every : UINT64_MAX;
 	const uint64_t paced = *batch < paced_steps ? paced_steps : *batch;
 	uint64_t due = s->q.run.is_free ? pace_free(s, done)
-					: ob_pace_wait(&s->pace, done, s->q.run.run.step_length,
+					: ob_pace_wait(s->pace, done, s->q.run.run.step_length,
 						       paced < state - done ? paced : state - done, patience);
 	const uint64_t most = due < UINT64_MAX ? paced : *batch;
 	*at_once = due > done + most && done < s->last;
@@ -230,7 +231,7 @@ static bool live(serving *s, ob_error *e)
 		}
 		if (ob_host_operate(s->host)) {
 			done = ob_step_count(ob_host_universe(s->host));
-			ob_pace_restart(&s->pace);
+			ob_pace_restart(s->pace);
 		}
 		if (at_once && took < .5 * go_time)
 			batch *= 2;
@@ -247,8 +248,7 @@ static int carry_out(serving *s)
 	ob_error e;
 	bool ended = false;
 	ob_warn_of_overlap(s->host);
-	ob_pace_begin(&s->pace, s->q.run.pace, s->q.paused);
-	s->server = ob_server_start(&s->q.server, s->host, &s->pace, &e);
+	s->server = ob_server_start(&s->q.server, s->host, s->pace, &e);
 	if (s->server) {
 		printf("%s is at %s\n", s->q.server.scene->title, ob_server_url(s->server, OB_ROLE_OPERATE));
 		for (ob_role r = OB_ROLE_OPERATE; r-- > OB_ROLE_WATCH;)
@@ -259,7 +259,6 @@ static int carry_out(serving *s)
 		ended = live(s, &e);
 	}
 	ob_server_stop(s->server);
-	ob_pace_end(&s->pace);
 	const int failed = s->host && ob_host_broke_invariant(s->host) ? OB_EXIT_BROKEN : OB_EXIT_FAILED;
 	return ended ? OB_EXIT_OK : ob_command_fail(failed, e.text);
 }
@@ -318,7 +317,8 @@ int ob_command_serve(const ob_arguments *a)
 {
 	if (a->value[OB_OPTION_REPLAY])
 		return serve_replay(a);
-	serving s = { .a = a, .recorded = UINT64_MAX };
+	ob_pace pace;
+	serving s = { .a = a, .recorded = UINT64_MAX, .pace = &pace };
 	ob_error e;
 	if (!ob_serve_check(&e) || !read_request(&s.q, a, &e) || !load(&s, &e)) {
 		ob_scene_free(s.scene);
@@ -331,11 +331,13 @@ int ob_command_serve(const ob_arguments *a)
 	s.q.log = path ? ob_request_log_create(path, &head, &e) : NULL;
 	if (path)
 		s.q.server.fixed = "its requests are logged (--log-requests)";
+	ob_pace_begin(&pace, s.q.run.pace, s.q.paused);
 	int code = (!path || s.q.log) && start(&s, &e) ? carry_out(&s) : ob_command_fail(OB_EXIT_FAILED, e.text);
 	if (s.recorder && !ob_recorder_close(s.recorder, &e))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_snapshot_finish(&s.shown);
 	ob_host_stop(s.host);
+	ob_pace_end(&pace);
 	if (!ob_request_log_close(s.q.log, &e))
 		code = ob_command_fail(OB_EXIT_FAILED, e.text);
 	ob_interrupt_release();

@@ -320,6 +320,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->limit = config->limit;
 	h->control = config->control;
 	h->returns = config->returns;
+	h->pace = config->pace;
 	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;
 	pthread_mutex_init(&h->failure_lock, NULL);
 	pthread_mutex_init(&h->interval.lock, NULL);

@@ -61,6 +61,8 @@ typedef struct ob_host_config {
 	double free_window; // s that its simulators may be ahead of the common time; 0: as far as memory reaches
 	ob_request_log *log; // input from outside; NULL = none. It must outlive the host
 	bool returns; // visitors may put the run back (ob_host_operate)
+	struct ob_pace
+		*pace; // visitors may lead the run's time by it (pace.h); NULL = they may not. It must outlive the host
 	struct ob_control *control; // takes programs that control the run (control.h); NULL = refuses them. Likewise
 	const ob_logged_requests *replay; // requests to carry out again, each in its place; NULL = none
 	const ob_saved_host *from; // start of the run, checked (ob_saved_universe_check); NULL = the scene's start

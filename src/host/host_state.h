@@ -73,7 +73,8 @@ struct ob_host {
 	struct pollfd caller;
 	ob_snapshots snapshots;
 	uint64_t start, kept; // snapshots for visitors; 0 = none
-	bool returns; // see ob_host_config
+	bool returns; // see ob_host_config; likewise the next
+	struct ob_pace *pace;
 	atomic_uint running_workers; // workers that have not ended
 	atomic_bool interrupted, failed, ending;
 	pthread_mutex_t failure_lock;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "base/spelling.h"
 #include "base/utf8.h"
 #include "free/free.h"
 #include "scene/object_limits.h"
@@ -28,6 +29,27 @@ bool ob_joined_find(void *universe, const char *name, ob_joined *out)
 		return true;
 	}
 	return false;
+}
+
+bool ob_joint_request_find(const ob_universe *u, const char *name, ob_request *r, ob_error *e)
+{
+	ob_spelling near = ob_spelling_start(name);
+	char best[OB_NAME_MAX];
+	ob_joint_passport j;
+	for (uint32_t i = 0; i < ob_universe_joints(u); i++) {
+		if (!ob_universe_get_joint(u, i, &j) || j.flags & OB_JOINT_BROKEN)
+			continue;
+		if (strcmp(j.name, name) == 0) {
+			r->joint = i;
+			r->id = j.object[0], r->generation = j.generation[0];
+			return true;
+		}
+		ob_spelling_offer(&near, j.name);
+		near.best = near.best == j.name ? memcpy(best, j.name, sizeof best) : near.best;
+	}
+	return near.best ? ob_fail(e, "universe \"%s\" has no joint \"%s\": did you mean \"%s\"?", ob_universe_name(u),
+				   name, near.best)
+			 : ob_fail(e, "universe \"%s\" has no joint \"%s\"", ob_universe_name(u), name);
 }
 
 void ob_joint_request_make(ob_request *r, const ob_joint_passport *j)

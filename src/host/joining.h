@@ -14,6 +14,9 @@ static inline bool ob_is_joint_request(const ob_request *r)
 
 // Finds an object of the universe by its name, as it is now (ob_scene_options.find); any thread, any program.
 bool ob_joined_find(void *universe, const char *name, ob_joined *out);
+// Completes a request to a joint that holds by its name: its number, and its first object. false and e: there is none.
+// Likewise.
+bool ob_joint_request_find(const ob_universe *u, const char *name, ob_request *r, ob_error *e);
 // Request for a joint that was read so.
 void ob_joint_request_make(ob_request *r, const ob_joint_passport *j);
 bool ob_joint_request_check(const ob_universe *u, const ob_request *r, ob_error *e);

@@ -8,7 +8,7 @@
 void ob_pace_begin(ob_pace *p, double rate, bool paused)
 {
 	pthread_condattr_t monotonic;
-	*p = (ob_pace){ .state = { rate, paused } };
+	*p = (ob_pace){ .state = { rate, paused }, .stop = UINT64_MAX };
 	pthread_mutex_init(&p->lock, NULL);
 	pthread_condattr_init(&monotonic);
 	pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
@@ -50,6 +50,16 @@ void ob_pace_set_paused(ob_pace *p, bool paused)
 {
 	pthread_mutex_lock(&p->lock);
 	p->state.paused = paused;
+	p->stop = UINT64_MAX;
+	tell(p);
+	pthread_mutex_unlock(&p->lock);
+}
+
+void ob_pace_run_until(ob_pace *p, uint64_t step)
+{
+	pthread_mutex_lock(&p->lock);
+	p->state.paused = false;
+	p->stop = step;
 	tell(p);
 	pthread_mutex_unlock(&p->lock);
 }
@@ -74,13 +84,17 @@ static uint64_t due_step(ob_pace *p, uint64_t done, double step_length, uint64_t
 {
 	double now = ob_clock_wall(), each = step_length / p->state.rate;
 	*wait = INFINITY;
+	if (done >= p->stop) {
+		p->state.paused = true;
+		p->stop = UINT64_MAX;
+	}
 	if (p->state.paused) {
 		const uint64_t steps = p->allowed < most ? p->allowed : most;
 		p->allowed -= steps;
 		return done + steps;
 	}
 	if (isinf(p->state.rate))
-		return UINT64_MAX;
+		return p->stop;
 	double lag = p->drawn ? now - p->from_wall - (double)(done - p->from_step) * each : 0;
 	if (!p->drawn || lag > OB_PACE_BEHIND + each) {
 		p->drawn = true;
@@ -90,6 +104,7 @@ static uint64_t due_step(ob_pace *p, uint64_t done, double step_length, uint64_t
 	double steps = floor((now - p->from_wall) / each);
 	uint64_t due = p->from_step + (steps < 1e18 ? (uint64_t)steps : 0);
 	*wait = p->from_wall + (double)(done + 1 - p->from_step) * each - now;
+	due = due < p->stop ? due : p->stop;
 	return due > done ? due : done;
 }
 

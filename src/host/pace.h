@@ -28,6 +28,7 @@ typedef struct ob_pace {
 	pthread_cond_t changed;
 	ob_pace_state state;
 	uint64_t allowed; // steps that may still be made while it is paused
+	uint64_t stop; // step at which it is paused; UINT64_MAX: none
 	bool drawn; // the line begins at a step and an instant:
 	uint64_t from_step;
 	double from_wall; // s
@@ -40,6 +41,7 @@ ob_pace_state ob_pace_get(ob_pace *p);
 void ob_pace_set_rate(ob_pace *p, double rate);
 void ob_pace_set_paused(ob_pace *p, bool paused);
 void ob_pace_allow(ob_pace *p, uint64_t steps); // more, while it is paused
+void ob_pace_run_until(ob_pace *p, uint64_t step); // goes on, and is paused at this step, unless it is set anew before
 
 void ob_pace_restart(ob_pace *p); // the universe was put back: the line begins anew
 

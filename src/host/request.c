@@ -1,8 +1,10 @@
 // Requests of any thread to a run.
+#include <math.h>
 #include <string.h>
 
 #include "free/free.h"
 #include "host/host_state.h"
+#include "host/pace.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"
 #include "table/home.h"
@@ -70,6 +72,26 @@ static bool check_whole(const ob_host *h, const ob_request *r, ob_error *e)
 	return r->kind == OB_REQUEST_RELEASE || check_return(h, e);
 }
 
+// Checks a request about time.
+static bool check_time(const ob_host *h, const ob_request *r, ob_error *e)
+{
+	const double now = (double)ob_step_count(h->u) * ob_universe_settings(h->u)->step_length;
+	if (!h->pace)
+		return ob_fail(e, "the clock of this run is not to be led: obsim serve takes such requests");
+	if (r->kind == OB_REQUEST_RATE && !(r->rate >= 0 && r->rate <= OB_REQUEST_RATE_MOST))
+		return ob_fail(e, "rate: expected a number from 0 to %d, got %g", OB_REQUEST_RATE_MOST, r->rate);
+	if (r->kind == OB_REQUEST_UNTIL && !(r->until > now && isfinite(r->until)))
+		return ob_fail(e, "until: expected a time after %g s, got %g", now, r->until);
+	if (r->kind == OB_REQUEST_UNTIL && ob_free_settings_of(h->u))
+		return ob_fail(e, "until: only simulators in lockstep stand at a time");
+	if (r->kind != OB_REQUEST_STEP)
+		return true;
+	if (!ob_pace_get(h->pace).paused)
+		return ob_fail(e, "step: time goes on by itself: pause it first");
+	return (r->steps >= 1 && r->steps <= OB_REQUEST_STEPS) ||
+	       ob_fail(e, "step: expected 1 to %d steps, got %llu", OB_REQUEST_STEPS, (unsigned long long)r->steps);
+}
+
 static bool check_kill(const ob_host *h, const ob_request *r, const ob_passport *p, ob_error *e)
 {
 	uint32_t worker;
@@ -95,6 +117,8 @@ bool ob_request_check(const ob_host *h, ob_request *r, ob_error *e)
 		return check_new(h, r, e);
 	if (r->kind == OB_REQUEST_AVATAR)
 		return ob_population_check_avatar(h->population, r, &(ob_object_def){ 0 }, e);
+	if (r->kind >= OB_REQUEST_PAUSE)
+		return check_time(h, r, e);
 	if (r->kind >= OB_REQUEST_KEEP || r->kind == OB_REQUEST_RELEASE)
 		return check_whole(h, r, e);
 	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)
@@ -143,6 +167,25 @@ static bool kill_simulator(ob_host *h, const ob_request *r, ob_error *e)
 	       ob_fail(e, "the simulator of object %u has gone", r->id);
 }
 
+// Carries out a request about time. The run is not paused for it: its leader waits for the pace.
+static void lead_time(ob_host *h, const ob_request *r)
+{
+	const double length = ob_universe_settings(h->u)->step_length;
+	switch (r->kind) {
+	case OB_REQUEST_STEP:
+		ob_pace_allow(h->pace, r->steps);
+		break;
+	case OB_REQUEST_UNTIL:
+		ob_pace_run_until(h->pace, (uint64_t)fmin(ceil(r->until / length - 1e-6), 1e18));
+		break;
+	case OB_REQUEST_RATE:
+		ob_pace_set_rate(h->pace, r->rate > 0 ? r->rate : OB_PACE_MAX);
+		break;
+	default:
+		ob_pace_set_paused(h->pace, r->kind == OB_REQUEST_PAUSE);
+	}
+}
+
 bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e)
 {
 	if (!ob_request_check(h, r, e))
@@ -156,6 +199,13 @@ bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e)
 	case OB_REQUEST_RETURN:
 	case OB_REQUEST_RESTART:
 		return ob_requests_push(h->operations, r) || ob_fail(e, "out of memory");
+	case OB_REQUEST_PAUSE:
+	case OB_REQUEST_RESUME:
+	case OB_REQUEST_STEP:
+	case OB_REQUEST_UNTIL:
+	case OB_REQUEST_RATE:
+		lead_time(h, r);
+		return true;
 	default:
 		return ob_host_request(h, r, e);
 	}

@@ -31,10 +31,15 @@ typedef enum ob_request_kind {
 	OB_REQUEST_KEEP, // a snapshot of the whole universe replaces the one kept before
 	OB_REQUEST_RETURN, // the universe goes back to that snapshot, or to its start if there is none
 	OB_REQUEST_RESTART, // the universe goes back to its start
+	OB_REQUEST_PAUSE, // time stands; likewise below, of a run with a pace (pace.h)
+	OB_REQUEST_RESUME,
+	OB_REQUEST_STEP, // so many steps, while time stands
+	OB_REQUEST_UNTIL, // time goes on until a simulated time, and stands
+	OB_REQUEST_RATE, // the pace
 	OB_REQUEST_KINDS
 } ob_request_kind;
 
-enum { OB_REQUEST_POINTS = OB_CONTROL_POINTS };
+enum { OB_REQUEST_POINTS = OB_CONTROL_POINTS, OB_REQUEST_STEPS = 1000000, OB_REQUEST_RATE_MOST = 1000000 };
 
 // Path from where the object then stands, which is its first point, through others.
 typedef struct ob_request_path {
@@ -63,6 +68,9 @@ typedef struct ob_request {
 	ob_vec3 surface_velocity; // m/s, body frame
 	uint32_t joint; // number of a joint
 	double motor; // target: m/s, rad/s, or m, rad
+	uint64_t steps; // 1 to OB_REQUEST_STEPS
+	double until; // s, simulated
+	double rate; // simulated s in a second, 0 to OB_REQUEST_RATE_MOST; 0: as fast as possible
 	uint32_t bytes; // of the message, or the joint
 	unsigned char values[512]; // flat (scene/flat.h)
 } ob_request;

@@ -12,17 +12,33 @@
 #include "shape/shape.h"
 
 static const char *const kinds[OB_DO_KINDS] = {
-	[OB_DO_CREATE] = "create",     [OB_DO_REMOVE] = "remove",
-	[OB_DO_DRAG] = "drag",         [OB_DO_PUSH] = "push",
-	[OB_DO_TURN] = "turn",         [OB_DO_RELEASE] = "release",
-	[OB_DO_MESSAGE] = "message",   [OB_DO_EDIT] = "edit",
-	[OB_DO_KILL] = "kill",         [OB_DO_KEEP] = "keep",
-	[OB_DO_RETURN] = "return",     [OB_DO_RESTART] = "restart",
-	[OB_DO_PAUSE] = "pause",       [OB_DO_RESUME] = "resume",
-	[OB_DO_STEP] = "step",         [OB_DO_RATE] = "rate",
-	[OB_DO_CONTACTS] = "contacts", [OB_DO_JOINTS] = "joints",
-	[OB_DO_INSPECT] = "inspect",   [OB_DO_SIMULATORS] = "simulators",
-	[OB_DO_ENERGY] = "energy",     [OB_DO_SET] = "set",
+	[OB_DO_CREATE] = "create",
+	[OB_DO_REMOVE] = "remove",
+	[OB_DO_DRAG] = "drag",
+	[OB_DO_PUSH] = "push",
+	[OB_DO_TURN] = "turn",
+	[OB_DO_RELEASE] = "release",
+	[OB_DO_MESSAGE] = "message",
+	[OB_DO_EDIT] = "edit",
+	[OB_DO_KICK] = "kick",
+	[OB_DO_PATH] = "path",
+	[OB_DO_MOTOR] = "motor",
+	[OB_DO_UNJOIN] = "unjoin",
+	[OB_DO_KILL] = "kill",
+	[OB_DO_KEEP] = "keep",
+	[OB_DO_RETURN] = "return",
+	[OB_DO_RESTART] = "restart",
+	[OB_DO_PAUSE] = "pause",
+	[OB_DO_RESUME] = "resume",
+	[OB_DO_STEP] = "step",
+	[OB_DO_UNTIL] = "until",
+	[OB_DO_RATE] = "rate",
+	[OB_DO_CONTACTS] = "contacts",
+	[OB_DO_JOINTS] = "joints",
+	[OB_DO_INSPECT] = "inspect",
+	[OB_DO_SIMULATORS] = "simulators",
+	[OB_DO_ENERGY] = "energy",
+	[OB_DO_SET] = "set",
 	[OB_DO_ANEW] = "anew",
 };
 
@@ -53,6 +69,11 @@ enum {
 	STEPS,
 	RATE,
 	VALUE,
+	SURFACE,
+	IMPULSE,
+	TWIST,
+	POINTS,
+	LOOP,
 	ON,
 	FIELDS
 };
@@ -83,6 +104,11 @@ static const char *const names[FIELDS] = {
 	[STEPS] = "steps",
 	[RATE] = "rate",
 	[VALUE] = "value",
+	[SURFACE] = "surface",
+	[IMPULSE] = "impulse",
+	[TWIST] = "twist",
+	[POINTS] = "points",
+	[LOOP] = "loop",
 	[ON] = "on",
 };
 // Numbers of a field (0: a word), and their range. Those of an object are limited as all objects are, and of requests
@@ -109,9 +135,12 @@ static const struct {
 	[FREQUENCY] = { 1, -DBL_MAX, DBL_MAX },
 	[ID] = { 1, 0, 4294967294. },
 	[GENERATION] = { 1, 0, 4294967295. },
-	[STEPS] = { 1, 1, 1e6 },
-	[RATE] = { 1, 0, 1e6 },
+	[STEPS] = { 1, 1, OB_REQUEST_STEPS },
+	[RATE] = { 1, 0, OB_REQUEST_RATE_MOST },
 	[VALUE] = { 1, -DBL_MAX, DBL_MAX },
+	[SURFACE] = { 3, -DBL_MAX, DBL_MAX },
+	[IMPULSE] = { 3, -DBL_MAX, DBL_MAX },
+	[TWIST] = { 3, -DBL_MAX, DBL_MAX },
 };
 
 typedef struct reading {
@@ -123,7 +152,9 @@ typedef struct reading {
 	char word[WORDS][OB_NAME_MAX];
 	double value[FIELDS][4];
 	int count[FIELDS];
-	bool on;
+	double points[4 * OB_REQUEST_POINTS];
+	uint32_t point_numbers;
+	bool on; // or loop
 } reading;
 
 static char fail(reading *r, const char *what, const char *field)
@@ -149,9 +180,19 @@ static char begin_field(reading *r, const char *path)
 	return 0;
 }
 
+static char take_point_number(reading *r, const char *text)
+{
+	if (r->depth != 2 || r->point_numbers == 4 * OB_REQUEST_POINTS)
+		return fail(r, "expected a list of 64 times four numbers at most", "points");
+	r->points[r->point_numbers++] = strtod(text, NULL);
+	return 0;
+}
+
 static char take_number(reading *r, const char *text)
 {
 	int f = r->field;
+	if (f == POINTS)
+		return take_point_number(r, text);
 	if (f < 0 || numbers[f].count == 0)
 		return fail(r, "a number was not expected here", f < 0 ? NULL : names[f]);
 	if (r->count[f] >= numbers[f].count || (numbers[f].count == 1) != (r->depth == 1))
@@ -201,7 +242,9 @@ static signed char take(struct lejp_ctx *c, char reason)
 	case LEJPCB_VAL_TRUE:
 	case LEJPCB_VAL_FALSE:
 		r->on = reason == LEJPCB_VAL_TRUE;
-		return r->field == ON && r->depth == 1 ? 0 : fail(r, "true and false were not expected here", NULL);
+		return (r->field == ON || r->field == LOOP) && r->depth == 1
+			       ? 0
+			       : fail(r, "true and false were not expected here", NULL);
 	case LEJPCB_VAL_NULL:
 		return fail(r, "null was not expected here", NULL);
 	default:
@@ -338,8 +381,32 @@ static bool make_edit(reading *r, ob_command *c)
 		friction->kind = OB_REQUEST_FRICTION;
 		friction->friction = r->value[FRICTION][0];
 	}
+	if (is_given(r, SURFACE)) {
+		ob_request *surface = &c->request[c->requests++];
+		*surface = to;
+		surface->kind = OB_REQUEST_SURFACE;
+		surface->surface_velocity = vec3(r, SURFACE);
+	}
+	if (is_given(r, FORCE)) {
+		ob_request *force = &c->request[c->requests++];
+		*force = to;
+		force->kind = OB_REQUEST_FORCE;
+	}
 	return c->requests > 0 ||
-	       fail(r, "expected some of at, attitude, velocity, spin, colour and friction", "edit") == 0;
+	       fail(r, "expected some of at, attitude, velocity, spin, colour, friction, surface and force", "edit") ==
+		       0;
+}
+
+static bool make_path(reading *r, ob_request_path *path)
+{
+	if (r->point_numbers == 0 || r->point_numbers % 4 != 0)
+		return fail(r, "expected four numbers for each: s, x, y, z", "points") == 0;
+	for (uint32_t i = 0; i < r->point_numbers; i += 4) {
+		const double *x = &r->points[i];
+		path->point[path->points++] = (ob_path_point){ x[0], ob_v3(x[1], x[2], x[3]), ob_quat_identity() };
+	}
+	path->loop = is_given(r, LOOP) && r->on;
+	return true;
 }
 
 // Puts each word of the text into a message, as obsim send does.
@@ -361,7 +428,11 @@ static bool make_requests(reading *r, ob_command *c)
 		[OB_DO_TURN] = OB_REQUEST_TORQUE,     [OB_DO_RELEASE] = OB_REQUEST_RELEASE,
 		[OB_DO_MESSAGE] = OB_REQUEST_MESSAGE, [OB_DO_KILL] = OB_REQUEST_KILL,
 		[OB_DO_KEEP] = OB_REQUEST_KEEP,       [OB_DO_RETURN] = OB_REQUEST_RETURN,
-		[OB_DO_RESTART] = OB_REQUEST_RESTART,
+		[OB_DO_RESTART] = OB_REQUEST_RESTART, [OB_DO_KICK] = OB_REQUEST_KICK,
+		[OB_DO_PATH] = OB_REQUEST_PATH,       [OB_DO_MOTOR] = OB_REQUEST_MOTOR,
+		[OB_DO_UNJOIN] = OB_REQUEST_UNJOIN,   [OB_DO_PAUSE] = OB_REQUEST_PAUSE,
+		[OB_DO_RESUME] = OB_REQUEST_RESUME,   [OB_DO_STEP] = OB_REQUEST_STEP,
+		[OB_DO_UNTIL] = OB_REQUEST_UNTIL,     [OB_DO_RATE] = OB_REQUEST_RATE,
 	};
 	ob_request *q = &c->request[0];
 	c->requests = 1;
@@ -370,13 +441,18 @@ static bool make_requests(reading *r, ob_command *c)
 	q->generation = (uint32_t)r->value[GENERATION][0];
 	q->point = vec3(r, POINT);
 	q->target = vec3(r, TARGET);
-	q->force = vec3(r, FORCE);
-	q->twist = vec3(r, TORQUE);
+	q->force = vec3(r, c->kind == OB_DO_KICK ? IMPULSE : FORCE);
+	q->twist = vec3(r, c->kind == OB_DO_KICK ? TWIST : TORQUE);
 	q->frequency = is_given(r, FREQUENCY) ? r->value[FREQUENCY][0] : OB_PULL_FREQUENCY;
+	q->motor = q->until = r->value[VALUE][0];
+	q->steps = is_given(r, STEPS) ? (uint64_t)r->value[STEPS][0] : 1;
+	q->rate = r->value[RATE][0];
 	if (c->kind == OB_DO_EDIT)
 		return make_edit(r, c);
 	if (c->kind == OB_DO_MESSAGE)
 		return put_words(r, q);
+	if (c->kind == OB_DO_PATH)
+		return make_path(r, &q->path);
 	return c->kind != OB_DO_CREATE || make_object(r, &q->def);
 }
 
@@ -390,7 +466,12 @@ static bool make(reading *r, ob_command *c)
 		[OB_DO_TURN] = 1u << ID | 1u << GENERATION | 1u << TORQUE,
 		[OB_DO_MESSAGE] = 1u << ID | 1u << GENERATION | 1u << TEXT,
 		[OB_DO_EDIT] = 1u << ID | 1u << GENERATION,
+		[OB_DO_KICK] = 1u << ID | 1u << GENERATION | 1u << IMPULSE,
+		[OB_DO_PATH] = 1u << ID | 1u << GENERATION | 1u << POINTS,
+		[OB_DO_MOTOR] = 1u << NAME | 1u << VALUE,
+		[OB_DO_UNJOIN] = 1u << NAME,
 		[OB_DO_KILL] = 1u << ID | 1u << GENERATION,
+		[OB_DO_UNTIL] = 1u << VALUE,
 		[OB_DO_RATE] = 1u << RATE,
 		[OB_DO_CONTACTS] = 1u << ON,
 		[OB_DO_JOINTS] = 1u << ON,
@@ -404,7 +485,10 @@ static bool make(reading *r, ob_command *c)
 		[OB_DO_DRAG] = 1u << POINT | 1u << FREQUENCY,
 		[OB_DO_PUSH] = 1u << POINT,
 		[OB_DO_RELEASE] = 1u << ID,
-		[OB_DO_EDIT] = 1u << AT | 1u << ATTITUDE | 1u << VELOCITY | 1u << SPIN | 1u << COLOUR | 1u << FRICTION,
+		[OB_DO_EDIT] = 1u << AT | 1u << ATTITUDE | 1u << VELOCITY | 1u << SPIN | 1u << COLOUR | 1u << FRICTION |
+			       1u << SURFACE | 1u << FORCE,
+		[OB_DO_KICK] = 1u << TWIST,
+		[OB_DO_PATH] = 1u << LOOP,
 		[OB_DO_STEP] = 1u << STEPS,
 		[OB_DO_INSPECT] = 1u << ID,
 	};
@@ -416,13 +500,11 @@ static bool make(reading *r, ob_command *c)
 	*c = (ob_command){
 		.kind = (ob_command_kind)kind,
 		.id = r->given & 1u << ID ? (uint32_t)r->value[ID][0] : UINT32_MAX,
-		.steps = r->given & 1u << STEPS ? (uint32_t)r->value[STEPS][0] : 1,
-		.rate = r->value[RATE][0],
 		.on = r->on,
 		.value = r->value[VALUE][0],
 	};
 	snprintf(c->name, sizeof c->name, "%s", r->word[NAME]);
-	if (kind <= OB_DO_RESTART && !make_requests(r, c))
+	if (kind <= OB_DO_RATE && !make_requests(r, c))
 		c->kind = OB_DO_NOTHING;
 	return c->kind != OB_DO_NOTHING;
 }

@@ -10,11 +10,16 @@
 //      turn      id, generation, torque (N m). Likewise
 //      release   optionally id: of one object, else of all that this visitor holds
 //      message   id, generation, text: its words to the object's script, numbers as such
-//      edit      id, generation, and some of at, attitude, velocity, spin, colour, friction
+//      edit      id, generation, and some of at, attitude, velocity, spin, colour, friction, force (N, from now on), surface
+//                (velocity of a belt, m/s, body frame)
+//      kick      id, generation, impulse (N s); optionally twist (N m s)
+//      path      id, generation, points (lists of s from now on, x, y, z in one list: 64 at most); optionally loop
+//      motor     name, value: target of a joint's motor;  unjoin: name
 //      kill      id, generation: the worker process that simulates the object
 //      keep      a snapshot of the universe;  return: to that, or to the start;  restart: at the start
 //      pause, resume
 //      step      steps (1), while it is paused
+//      until     value (s): goes on to this simulated time, and pauses
 //      rate      rate (s a s); 0: as fast as possible
 //      set       name, value: the scene starts anew with this value of a parameter
 //      contacts  on;  joints, energy: likewise
@@ -37,6 +42,10 @@ typedef enum ob_command_kind {
 	OB_DO_RELEASE,
 	OB_DO_MESSAGE,
 	OB_DO_EDIT,
+	OB_DO_KICK,
+	OB_DO_PATH,
+	OB_DO_MOTOR,
+	OB_DO_UNJOIN,
 	OB_DO_KILL,
 	OB_DO_KEEP,
 	OB_DO_RETURN,
@@ -44,7 +53,8 @@ typedef enum ob_command_kind {
 	OB_DO_PAUSE,
 	OB_DO_RESUME,
 	OB_DO_STEP,
-	OB_DO_RATE,
+	OB_DO_UNTIL,
+	OB_DO_RATE, // the last that is requests to the host
 	OB_DO_CONTACTS,
 	OB_DO_JOINTS,
 	OB_DO_INSPECT,
@@ -55,17 +65,15 @@ typedef enum ob_command_kind {
 	OB_DO_KINDS,
 } ob_command_kind;
 
-enum { OB_COMMAND_REQUESTS = 3 };
+enum { OB_COMMAND_REQUESTS = 5 };
 
 typedef struct ob_command {
 	ob_command_kind kind;
 	uint32_t requests;
 	ob_request request[OB_COMMAND_REQUESTS]; // [requests] to the host, in this order; origin 0
 	uint32_t id; // inspect
-	uint32_t steps; // step
-	double rate; // rate; 0: as fast as possible
 	bool on; // contacts, joints, simulators, energy
-	char name[OB_NAME_MAX]; // set
+	char name[OB_NAME_MAX]; // set; motor and unjoin: the joint, which the requests lack
 	double value; // set
 } ob_command;
 

@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "base/interrupt.h"
+#include "host/joining.h"
 #include "serve/avatar.h"
 #include "serve/client.h"
 #include "serve/door.h"
@@ -300,6 +301,11 @@ static void carry_out_requests(ob_server *s, ob_client *c, ob_command *asked)
 {
 	for (uint32_t i = 0; i < asked->requests; i++) {
 		ob_request *r = &asked->request[i];
+		ob_error e;
+		if (ob_is_joint_request(r) && !ob_joint_request_find(ob_host_universe(s->host), asked->name, r, &e)) {
+			send_error(c, e.text);
+			return;
+		}
 		if (r->kind == OB_REQUEST_REMOVE)
 			remove_object(s, c, r);
 		else if (r->kind != OB_REQUEST_ADD && may(c, ob_role_for(r->kind)))
@@ -361,25 +367,8 @@ static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 		break;
 	}
 	carry_out_requests(s, c, asked);
-	if (asked->requests || !may(c, OB_ROLE_OPERATE))
-		return;
-	switch (asked->kind) {
-	case OB_DO_PAUSE:
-	case OB_DO_RESUME:
-		ob_pace_set_paused(s->pace, asked->kind == OB_DO_PAUSE);
-		break;
-	case OB_DO_SET:
+	if (asked->kind == OB_DO_SET && may(c, OB_ROLE_OPERATE))
 		wish(s, c, asked);
-		break;
-	case OB_DO_STEP:
-		ob_pace_allow(s->pace, asked->steps);
-		break;
-	case OB_DO_RATE:
-		ob_pace_set_rate(s->pace, asked->rate > 0 ? asked->rate : OB_PACE_MAX);
-		break;
-	default:
-		break;
-	}
 }
 
 static int refuse_client(ob_client *c, enum lws_close_status status, const char *why)

@@ -76,8 +76,16 @@ class Send(program.Case):
 		self.send(self.name, "drag", "0", "0", "3", "2", code=1, saying="does not move by forces")
 		self.send(self.name, "drag", "new", "0", "3", "x", code=1, saying='three numbers after the object, got "x"')
 		self.send(self.name, "kill", "new", code=1, saying="--isolation process")
+		self.send(self.name, "attitude", "new", ".6", "0", "0", ".8")
+		self.send(self.name, "spin", "new", "0", "0", "1")
+		self.send(self.name, "attitude", "new", "1", "1", "0", "0", code=1, saying="unit quaternion")
+		self.send(self.name, "surface", "lift", ".1", "0", "0")
+		self.send(self.name, "surface", "new", ".1", "0", "0", code=1, saying="static or kinematic")
+		self.send(self.name, "remove", "lisener", code=1, saying='did you mean "listener"?')
 		for verb in "keep", "return", "restart":
 			self.send(self.name, verb, code=1, saying="obsim serve can")
+		for words in ["pause"], ["resume"], ["step"], ["until", "9"], ["rate", "2"]:
+			self.send(self.name, *words, code=1, saying="obsim serve takes such requests")
 		self.send("nobody", "remove", "x", code=1, saying="nobody")
 		for words, saying in ((), "no universe given"), ((self.name,), "create, remove, colour, message"), \
 				((self.name, "drag", "new", "1", "2"), "drag OBJECT X Y Z"), \

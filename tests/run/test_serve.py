@@ -2,6 +2,7 @@
 
 import glob
 import gzip
+import math
 import os
 import random
 import re
@@ -143,6 +144,71 @@ class Serve(Case):
 		v.until(lambda: v.time > 1)
 		v.send(do="pause")
 		v.until(lambda: v.paused)
+		self.end()
+
+	MACHINE = """ground {}
+box { name = "post", size = { .2, .2, 2 }, at = { 0, 0, 1 }, kind = "static" }
+box { name = "arm", size = { 1, .1, .1 }, at = { .5, .3, 1.5 }, mass = 1 }
+hinge { "arm", "post", name = "elbow", at = { 0, .3, 1.5 }, axis = { 0, 1, 0 }, motor = { rate = 0, most = 1000 } }
+box { name = "lift", size = { 1, 1, .1 }, at = { 6, 0, 1 }, kind = "kinematic" }
+box { name = "load", size = { .2, .2, .2 }, at = { 6, 0, 1.15 }, mass = 1 }
+"""
+
+	def test_lead(self):
+		"""All that a program may ask for by obsim control, by the page's commands: motors, paths, belts, kicks, and time."""
+		self.serve_file(self.write(self.MACHINE), "--listen", "127.0.0.1:0", "--paused")
+		v = self.viewer()
+		to = {o["name"]: {"id": i, "generation": o["generation"]} for i, o in v.objects.items()}
+		def at(name): # x and z; viewers are sent motions, not places
+			lines = [line.split() for line in program.call("top", self.name, "--once", "--interval", ".01").stdout.splitlines()]
+			return next((float(words[5]), float(words[7])) for words in lines if words[1:2] == [name])
+		self.assertIn('no joint "elbo": did you mean "elbow"?', self.refused(v, do="motor", name="elbo", value=1))
+		v.send(do="motor", name="elbow", value=2)
+		v.send(do="until", value=.5)
+		v.until(lambda: v.paused and v.time == .5)
+		self.assertAlmostEqual(at("arm")[1], 1.5 - .5 * math.sin(1), 2) # half a metre from the axis, turned by a radian
+		self.assertIn("expected a time after 0.5 s", self.refused(v, do="until", value=.25))
+		v.send(do="unjoin", name="elbow")
+		v.send(do="path", points=[.2, 6, 0, 1.1, 1, 6, 0, 2], **to["lift"])
+		v.send(do="rate", rate=0)
+		v.send(do="until", value=3)
+		v.until(lambda: v.paused and v.time == 3)
+		self.assertEqual(at("lift"), (6, 2))
+		self.assertLess(at("arm")[1], .2)
+		v.send(do="edit", surface=[1, 0, 0], **to["lift"])
+		v.send(do="kick", impulse=[0, 0, 5], **to["arm"])
+		v.send(do="step", steps=12)
+		self.assertTrue(program.wait_until(lambda: at("arm")[1] > .5 and at("load")[0] > 6.01))
+		self.assertIn("four numbers", self.refused(v, do="path", points=[1, 2, 3], **to["lift"]))
+		v.send(do="resume")
+		v.until(lambda: v.time > 4)
+		self.assertIn("pause it first", self.refused(v, do="step"))
+		self.end()
+
+	def test_sent(self):
+		"""Time is led by obsim send, too, and the page shows it."""
+		self.serve_file(self.write(self.MACHINE))
+		v = self.viewer()
+		def send(*words, saying=None):
+			done = program.call("send", self.name, *words)
+			self.assertEqual(done.returncode, 1 if saying else 0, done.stderr)
+			self.assertIn(saying or "", done.stderr)
+		send("step", saying="pause it first")
+		send("pause")
+		v.until(lambda: v.paused)
+		before = program.steps(self.name)
+		send("step")
+		send("step", "9")
+		self.assertTrue(program.wait_until(lambda: program.steps(self.name) == before + 10))
+		for words, saying in ((["step", "0"], "expected 1 to 1000000"), (["step", "x"], "expected a number"), (["rate", "-1"], "expected a number from 0"),
+				(["until", "0"], "expected a time after"), (["until", "nan"], "expected a time after")):
+			send(*words, saying=saying)
+		send("rate", "0")
+		send("until", "100")
+		v.until(lambda: v.paused and v.time == 100)
+		send("rate", "1")
+		send("resume")
+		v.until(lambda: v.time > 100)
 		self.end()
 
 	def test_strangers(self):

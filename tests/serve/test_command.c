@@ -63,10 +63,22 @@ static void test_meaning(void)
 	CHECK(strcmp(c.name, "n") == 0 && c.value == 12.5);
 	CHECK(reads("{\"do\":\"energy\",\"on\":true}", &c) && c.kind == OB_DO_ENERGY && c.on);
 	CHECK(reads("{\"do\":\"restart\"}", &c) && q->kind == OB_REQUEST_RESTART && c.requests == 1);
-	CHECK(reads("{\"do\":\"pause\"}", &c) && c.kind == OB_DO_PAUSE && c.requests == 0);
-	CHECK(reads("{\"do\":\"step\"}", &c) && c.kind == OB_DO_STEP && c.steps == 1);
-	CHECK(reads("{\"do\":\"step\",\"steps\":25}", &c) && c.steps == 25);
-	CHECK(reads("{\"do\":\"rate\",\"rate\":0.25}", &c) && c.rate == .25);
+	CHECK(reads("{\"do\":\"pause\"}", &c) && c.requests == 1 && q->kind == OB_REQUEST_PAUSE);
+	CHECK(reads("{\"do\":\"step\"}", &c) && q->kind == OB_REQUEST_STEP && q->steps == 1);
+	CHECK(reads("{\"do\":\"step\",\"steps\":25}", &c) && q->steps == 25);
+	CHECK(reads("{\"do\":\"rate\",\"rate\":0.25}", &c) && q->kind == OB_REQUEST_RATE && q->rate == .25);
+	CHECK(reads("{\"do\":\"until\",\"value\":2.5}", &c) && q->kind == OB_REQUEST_UNTIL && q->until == 2.5);
+	CHECK(reads("{\"do\":\"kick\",\"id\":1,\"generation\":1,\"impulse\":[1,2,3],\"twist\":[0,0,4]}", &c));
+	CHECK(q->kind == OB_REQUEST_KICK && q->force.y == 2 && q->twist.z == 4);
+	CHECK(reads("{\"do\":\"edit\",\"id\":1,\"generation\":1,\"surface\":[1,2,3],\"force\":[0,0,4]}", &c));
+	CHECK(c.requests == 2 && q->kind == OB_REQUEST_SURFACE && q->surface_velocity.z == 3);
+	CHECK(c.request[1].kind == OB_REQUEST_FORCE && c.request[1].force.z == 4 && c.request[1].id == 1);
+	CHECK(reads("{\"do\":\"motor\",\"name\":\"elbow\",\"value\":-1}", &c) && q->kind == OB_REQUEST_MOTOR);
+	CHECK(strcmp(c.name, "elbow") == 0 && q->motor == -1);
+	CHECK(reads("{\"do\":\"unjoin\",\"name\":\"elbow\"}", &c) && q->kind == OB_REQUEST_UNJOIN);
+	CHECK(reads("{\"do\":\"path\",\"id\":1,\"generation\":1,\"points\":[1,2,3,4,5,6,7,8],\"loop\":true}", &c));
+	CHECK(q->kind == OB_REQUEST_PATH && q->path.points == 2 && q->path.loop == 1 && q->path.turns == 0);
+	CHECK(q->path.point[1].t == 5 && q->path.point[1].p.z == 8);
 	CHECK(reads("{\"do\":\"contacts\",\"on\":true}", &c) && c.on);
 	CHECK(reads("{\"do\":\"joints\",\"on\":true}", &c) && c.on && c.kind == OB_DO_JOINTS);
 	CHECK(reads("{\"do\":\"inspect\"}", &c) && c.id == UINT32_MAX);
@@ -109,6 +121,14 @@ static void test_nonsense(void)
 		"{\"do\":\"set\",\"name\":\"n\",\"value\":1e999}",
 		"{\"do\":\"kill\",\"id\":1}",
 		"{\"do\":\"step\",\"steps\":0}",
+		"{\"do\":\"until\"}",
+		"{\"do\":\"motor\",\"name\":\"elbow\"}",
+		"{\"do\":\"kick\",\"id\":1,\"generation\":1,\"twist\":[0,0,1]}",
+		"{\"do\":\"path\",\"id\":1,\"generation\":1,\"points\":[]}",
+		"{\"do\":\"path\",\"id\":1,\"generation\":1,\"points\":[1,2,3]}",
+		"{\"do\":\"path\",\"id\":1,\"generation\":1,\"points\":7}",
+		"{\"do\":\"path\",\"id\":1,\"generation\":1,\"points\":[[1,2,3,4]]}",
+		"{\"do\":\"path\",\"id\":1,\"generation\":1,\"points\":[1,2,3,4],\"on\":true}",
 		"{\"do\":\"rate\",\"rate\":-1}",
 		"{\"do\":\"contacts\",\"on\":1}",
 		"{\"do\":\"contacts\",\"on\":null}",

@@ -55,7 +55,7 @@ _obsim()
 		*:-*) mapfile -t COMPREPLY < <(compgen -W "$(_obsim_options "$program" "$command")" -- "$word") ;;
 		paper:*) ;;
 		inspect:* | export:* | import:*) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-		send:*) mapfile -t COMPREPLY < <(compgen -W "create remove colour message force kick torque push drag release place velocity path friction motor unjoin move kill keep return restart $(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
+		send:*) mapfile -t COMPREPLY < <(compgen -W "create remove colour message force kick torque push drag release place velocity attitude spin surface path friction motor unjoin move kill keep return restart pause resume step until rate $(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
 			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;
 		top:*) mapfile -t COMPREPLY < <(compgen -W "$(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
 			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;
