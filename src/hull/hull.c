@@ -444,7 +444,7 @@ bool ob_hull_build(const ob_vec3 *point, size_t points, ob_hull *out, ob_error *
 	if (points > OB_HULL_POINTS_MAX)
 		return ob_fail(e, "expected at most %d points, got %zu", OB_HULL_POINTS_MAX, points);
 	for (size_t i = 0; i < points; i++)
-		if (!isfinite(point[i].x) || !isfinite(point[i].y) || !isfinite(point[i].z))
+		if (!ob_is_finite(point[i]))
 			return ob_fail(e, "expected points of finite numbers");
 	raw_hull *raw = calloc(1, sizeof *raw);
 	bool fine = raw;

@@ -123,7 +123,7 @@ void ob_drift_held(ob_quat q, ob_vec3 w, ob_vec3 inertia, double s, ob_quat *q_o
 
 ob_vec3 ob_small_turn(ob_quat from, ob_quat to)
 {
-	ob_quat t = ob_quat_mul(to, (ob_quat){ from.w, -from.x, -from.y, -from.z });
+	ob_quat t = ob_quat_mul(to, ob_quat_conjugate(from));
 	ob_vec3 v = ob_scale(ob_v3(t.x, t.y, t.z), t.w < 0 ? -2 : 2);
 	double x = .25 * ob_norm2(v);
 	return ob_scale(v, 1 + x * (1. / 6 + x * (3. / 40 + x * (5. / 112))));

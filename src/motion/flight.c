@@ -47,7 +47,7 @@ ob_state ob_motion_at(const ob_motion *m, ob_vec3 inertia, double t)
 // to b: exact for small turns too.
 static ob_quat between(ob_quat a, ob_quat b, double f)
 {
-	ob_quat turn = ob_quat_mul(b, (ob_quat){ a.w, -a.x, -a.y, -a.z });
+	ob_quat turn = ob_quat_mul(b, ob_quat_conjugate(a));
 	ob_vec3 axis = ob_v3(turn.x, turn.y, turn.z);
 	double sine = ob_norm(axis);
 	if (!(sine > 0))

@@ -83,7 +83,7 @@ static ob_vec3 first_acceleration(ob_vec3 p, ob_vec3 v, ob_vec3 q, ob_vec3 w, do
 
 bool ob_path_turn(ob_quat from, ob_quat to, ob_vec3 *turn)
 {
-	ob_quat r = ob_quat_mul(to, (ob_quat){ from.w, -from.x, -from.y, -from.z });
+	ob_quat r = ob_quat_mul(to, ob_quat_conjugate(from));
 	if (r.w < 0)
 		r = (ob_quat){ -r.w, -r.x, -r.y, -r.z };
 	const ob_vec3 v = ob_v3(r.x, r.y, r.z);

@@ -307,6 +307,6 @@ void ob_reference_spin_at(const ob_reference_spin *s, double t, ob_quat *q_out, 
 
 double ob_reference_turn_between(ob_quat a, ob_quat b)
 {
-	ob_quat d = ob_quat_mul(b, (ob_quat){ a.w, -a.x, -a.y, -a.z });
+	ob_quat d = ob_quat_mul(b, ob_quat_conjugate(a));
 	return 2 * atan2(sqrt(d.x * d.x + d.y * d.y + d.z * d.z), fabs(d.w));
 }

@@ -372,7 +372,7 @@ static ob_mesh_source source_of_mesh(const body *d)
 		const ob_quat f = d->hull->frame;
 		const ob_mat3 r = ob_quat_matrix(f);
 		source.pose.p = ob_rotate_back(&r, ob_sub(source.pose.p, d->hull->centre));
-		source.pose.q = ob_quat_mul((ob_quat){ f.w, -f.x, -f.y, -f.z }, source.pose.q);
+		source.pose.q = ob_quat_mul(ob_quat_conjugate(f), source.pose.q);
 	}
 	return source;
 }

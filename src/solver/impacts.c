@@ -602,7 +602,7 @@ static bool set_hops(ob_solver *s, uint32_t chain, double t, const ob_impact_bod
 // Rotation vector (rad, world) from attitude a to b, by less than half a turn.
 static ob_vec3 turn_between(ob_quat a, ob_quat b)
 {
-	ob_quat turn = ob_quat_mul(b, (ob_quat){ a.w, -a.x, -a.y, -a.z });
+	ob_quat turn = ob_quat_mul(b, ob_quat_conjugate(a));
 	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
 	double angle = 2 * ob_atan2(sin_half, fabs(turn.w)), scale = sin_half > 1e-12 ? angle / sin_half : 2;
 	return ob_scale(ob_v3(turn.x, turn.y, turn.z), turn.w < 0 ? -scale : scale);
