@@ -50,10 +50,10 @@ bool ob_grow(void *array, size_t from, size_t count, size_t size)
 	return true;
 }
 
-bool ob_make_room(void *array, size_t count, size_t *max, size_t size)
+bool ob_reserve(void *array, size_t needed, size_t *max, size_t size)
 {
-	const size_t more = *max ? 2 * *max : 64;
-	if (count < *max)
+	const size_t least = 64, more = needed + needed / 2 > least ? needed + needed / 2 : least;
+	if (needed <= *max)
 		return true;
 	if (!ob_grow(array, more, more, size))
 		return false;

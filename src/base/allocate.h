@@ -23,9 +23,11 @@ void *ob_reallocate(void *old, size_t bytes) __attribute__((warn_unused_result))
 #define OB_GROW(array, count) ob_grow(&(array), count, count, sizeof *(array))
 #define OB_GROW_CLEARED(array, from, count) ob_grow(&(array), from, count, sizeof *(array))
 bool ob_grow(void *array, size_t from, size_t count, size_t size);
-// Makes room for one more element than "count": at "max" the array grows to twice as many.
-#define OB_MAKE_ROOM(array, count, max) ob_make_room(&(array), count, &(max), sizeof *(array))
-bool ob_make_room(void *array, size_t count, size_t *max, size_t size);
+// Makes room for so many elements: beyond "max" the array grows to half as many again, 64 at least.
+#define OB_RESERVE(array, needed, max) ob_reserve(&(array), needed, &(max), sizeof *(array))
+bool ob_reserve(void *array, size_t needed, size_t *max, size_t size);
+// Makes room for one more element than "count".
+#define OB_MAKE_ROOM(array, count, max) OB_RESERVE(array, (count) + 1, max)
 
 // Calls leave in this thread instead, from now on; leave must not return. NULL: back to the default.
 void ob_allocate_or_else(void (*leave)(void));

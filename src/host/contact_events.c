@@ -26,21 +26,10 @@ static int by_ids(const void *pa, const void *pb)
 	return (a->b > b->b) - (a->b < b->b);
 }
 
-static bool grow(void **array, size_t element, size_t count, size_t *max)
-{
-	if (count <= *max)
-		return true;
-	if (!ob_grow(array, 2 * count, 2 * count, element))
-		return false;
-	*max = 2 * count;
-	return true;
-}
-
 static bool reserve_pairs(ob_contact_events *c, size_t count)
 {
 	size_t one = c->pairs_max, other = c->pairs_max;
-	if (!grow((void **)&c->before, sizeof *c->before, count, &one) ||
-	    !grow((void **)&c->now, sizeof *c->now, count, &other))
+	if (!OB_RESERVE(c->before, count, one) || !OB_RESERVE(c->now, count, other))
 		return false;
 	c->pairs_max = one;
 	return true;
@@ -51,7 +40,7 @@ static bool list_pairs(ob_contact_events *c, const ob_universe *u)
 {
 	size_t n = ob_universe_get_contacts(u, c->point, c->points_max);
 	while (n > c->points_max) {
-		if (!grow((void **)&c->point, sizeof *c->point, n, &c->points_max))
+		if (!OB_RESERVE(c->point, n, c->points_max))
 			return false;
 		n = ob_universe_get_contacts(u, c->point, c->points_max);
 	}
@@ -69,8 +58,7 @@ static bool list_pairs(ob_contact_events *c, const ob_universe *u)
 
 static void add(ob_contact_events *c, pair p, bool begins, uint64_t step)
 {
-	if (c->events < OB_CONTACT_EVENTS_MAX &&
-	    grow((void **)&c->event, sizeof *c->event, c->events + 1, &c->events_max))
+	if (c->events < OB_CONTACT_EVENTS_MAX && OB_MAKE_ROOM(c->event, c->events, c->events_max))
 		c->event[c->events++] = (ob_contact_event){ p.a, p.b, (uint32_t)step, begins };
 	else
 		c->lost++;

@@ -58,17 +58,6 @@ uint64_t ob_checkpoint_step(const ob_checkpoint *c)
 	return c->control.step;
 }
 
-static bool grow(void **array, size_t element, size_t needed, size_t *max)
-{
-	if (needed <= *max)
-		return true;
-	size_t next = needed + needed / 2;
-	if (!ob_grow(array, next, next, element))
-		return false;
-	*max = next;
-	return true;
-}
-
 // The step's own areas, without the scheduler's scratch, which holds nothing from one step to the next.
 static range step_areas(const ob_universe *u)
 {
@@ -101,8 +90,7 @@ static bool is_blank(const char *page)
 static bool keep(ob_checkpoint *c, const ob_universe *u, range r, size_t *bytes)
 {
 	size_t more = r.end - r.begin;
-	if (!grow((void **)&c->kept, sizeof *c->kept, c->ranges + 1, &c->ranges_max) ||
-	    !grow((void **)&c->bytes, 1, *bytes + more, &c->bytes_max))
+	if (!OB_MAKE_ROOM(c->kept, c->ranges, c->ranges_max) || !OB_RESERVE(c->bytes, *bytes + more, c->bytes_max))
 		return false;
 	memcpy(c->bytes + *bytes, u->base + r.begin, more);
 	c->kept[c->ranges++] = r;
@@ -133,7 +121,7 @@ static bool take_motions(ob_checkpoint *c, const ob_universe *u)
 {
 	size_t max = c->ids_max;
 	const uint32_t ids = ob_universe_ids(u);
-	if (!grow((void **)&c->motion, sizeof *c->motion, ids, &max))
+	if (!OB_RESERVE(c->motion, ids, max))
 		return false;
 	c->ids_max = (uint32_t)max;
 	c->ids = ids;
@@ -145,7 +133,7 @@ static bool take_motions(ob_checkpoint *c, const ob_universe *u)
 // One that was never written is all 0.
 static bool take_passports(ob_checkpoint *c, const ob_universe *u)
 {
-	if (!grow((void **)&c->passport, sizeof *c->passport, c->ids, &c->passports_max))
+	if (!OB_RESERVE(c->passport, c->ids, c->passports_max))
 		return false;
 	for (uint32_t id = 0; id < c->ids; id++)
 		if (!ob_passport_read(u, id, &c->passport[id]))
