@@ -1,6 +1,7 @@
 #include "base/own_file.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -16,7 +17,8 @@ static bool climb(char *path)
 
 static bool is_there(char *path, const char *folder, const char *below, const char *name)
 {
-	return snprintf(path, PATH_MAX, "%s/%s/%s", folder, below, name) < PATH_MAX && access(path, F_OK) == 0;
+	char way[PATH_MAX]; // may lead up and down again
+	return snprintf(way, sizeof way, "%s/%s/%s", folder, below, name) < PATH_MAX && realpath(way, path);
 }
 
 // The root of the build tree is the nearest folder above the program in which ninja works.

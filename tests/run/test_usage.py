@@ -21,8 +21,9 @@ class Usage(program.Case):
 		for name in "stack", "scenes/stack.lua": # as documents have it
 			done = program.call("run", name, "--duration", ".05", "--measure", "end", cwd=self.directory.name)
 			self.assertEqual(done.returncode, 0, done.stderr)
+			self.assertNotIn("/../", done.stdout)
 		for name in "scenes/stak.lua", "scenes/stack", "other/stack.lua":
-			self.refuse("run", name, saying=f"{name}: No such file")
+			self.refuse("run", name, saying=f"{name}: cannot read the scene: No such file")
 		self.refuse("scenes", "plaza", saying="it takes no name")
 
 	def test_options(self):
@@ -52,7 +53,7 @@ class Usage(program.Case):
 		self.refuse("--versoin", saying="unknown command")
 		self.assertEqual(program.call().returncode, 2)
 
-	def test_scenes(self):
+	def test_missing_scenes(self):
 		self.refuse("run", "missing.lua", saying="missing.lua")
 		self.refuse("compare", "missing.lua", saying="missing.lua")
 		self.refuse("run", self.directory.name, saying=self.directory.name)
