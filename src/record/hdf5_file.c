@@ -3,32 +3,38 @@
 #include <stdio.h>
 #include <string.h>
 
-// Disables HDF5's own cleanup when the process exits, too: after a failed write it crashes (1.10.8). We close all that
-// we open.
-void ob_hdf5_silence(void)
-{
-	H5dont_atexit();
-	H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-}
+static _Thread_local char reason[128]; // the system's, of the last call that failed for one
 
 // Finds the system's reason in HDF5's error: "..., errno = 28, error message = 'No space left on device', ..."
 static herr_t find_reason(unsigned depth, const H5E_error2_t *error, void *data)
 {
-	(void)depth;
-	char *reason = data;
+	(void)depth, (void)data;
 	const char *mark = "error message = '";
 	const char *from = error->desc ? strstr(error->desc, mark) : NULL;
 	if (!from)
 		return 0;
 	from += strlen(mark);
-	snprintf(reason, 128, "%.*s", (int)strcspn(from, "'"), from);
+	snprintf(reason, sizeof reason, "%.*s", (int)strcspn(from, "'"), from);
 	return 0;
+}
+
+// HDF5 calls this when a call fails. Later calls, those that close what is open included, forget its errors.
+static herr_t keep_reason(hid_t errors, void *data)
+{
+	return H5Ewalk2(errors, H5E_WALK_DOWNWARD, find_reason, data);
+}
+
+// Disables HDF5's own cleanup when the process exits, too: after a failed write it crashes (1.10.8). We close all that
+// we open.
+void ob_hdf5_silence(void)
+{
+	H5dont_atexit();
+	H5Eset_auto2(H5E_DEFAULT, keep_reason, NULL);
+	reason[0] = '\0';
 }
 
 bool ob_hdf5_fail(ob_error *e, const char *path, const char *doing)
 {
-	char reason[128] = "";
-	H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, find_reason, reason);
 	return ob_fail(e, "%s: cannot %s: %s", path, doing, reason[0] ? reason : "HDF5 gives no reason");
 }
 

@@ -11,9 +11,9 @@ typedef struct ob_hdf5_label {
 	const char *name, *units, *frame, *description; // frame: NULL where it means nothing
 } ob_hdf5_label;
 
-// Silences HDF5's own messages on the terminal from now on (process-wide).
+// Silences HDF5's own messages on the terminal from now on (process-wide). This thread's failures before are forgotten.
 void ob_hdf5_silence(void);
-// Sets e: "doing" failed, and the system's reason, as HDF5 noted it in the last failed call. Returns false.
+// Sets e: "doing" failed, and the system's reason of this thread's last call of HDF5 that failed for one. Returns false.
 bool ob_hdf5_fail(ob_error *e, const char *path, const char *doing);
 
 // Bytes of the closed file that HDF5 uses; 0 if it cannot be read.
