@@ -2,11 +2,16 @@
 
 #include <errno.h>
 #include <libgen.h>
+#include <limits.h>
 #include <setjmp.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
+
+#include "base/utf8.h"
 
 enum { FILE_MOST = 64 << 20 };
 
@@ -50,58 +55,281 @@ static text read_text(const char *path, ob_error *e)
 	return t;
 }
 
-// Writes a name of a mesh: package://NAME/REST becomes a path if a folder above the file holds NAME/REST, or REST.
-static void write_mesh_path(const char *path, const char *name, size_t length, FILE *to)
+// A file on its way to the parser, without what MuJoCo refuses and others read.
+typedef struct source {
+	const char *path; // absolute
+	text t;
+	FILE *omitted; // lines of what is left out; NULL: nobody reads them
+	bool balanced, bounded; // moments that no body can have, and missing masses, are replaced
+} source;
+
+static void leave_out(const source *u, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void leave_out(const source *u, const char *format, ...)
 {
-	static const char scheme[] = "package://";
-	char rest[4096], folder[4096], found[8300];
-	snprintf(rest, sizeof rest, "%.*s", (int)length, name);
-	if (strncmp(rest, scheme, sizeof scheme - 1) != 0) {
-		fwrite(name, 1, length, to);
-		return;
-	}
-	const char *whole = rest + sizeof scheme - 1, *inside = strchr(whole, '/');
-	snprintf(folder, sizeof folder, "%s", path);
-	for (char *above = dirname(folder);; above = dirname(above)) {
-		for (int i = 0; i < 2; i++) {
-			snprintf(found, sizeof found, "%s/%s", above, i == 0 || !inside ? whole : inside + 1);
-			if (access(found, R_OK) == 0) {
-				fputs(found, to);
-				return;
-			}
-		}
-		if (strcmp(above, "/") == 0 || strcmp(above, ".") == 0)
-			break;
-	}
-	fputs(whole, to);
+	char line[500];
+	va_list args;
+	va_start(args, format);
+	vsnprintf(line, sizeof line, format, args);
+	va_end(args);
+	ob_utf8_make_plain(line);
+	if (u->omitted)
+		fprintf(u->omitted, "%s\n", line);
 }
 
-// Prepares a URDF file. MuJoCo would weld its root to the world, fuse what is fixed to each other, and drop the folders of
-// its meshes.
-static text prepare_urdf(const char *path, const text *from)
+// Replaces the characters first .. end-1.
+static bool replace(source *u, size_t first, size_t end, const char *by)
+{
+	text made = { NULL, 0 };
+	FILE *to = open_memstream(&made.at, &made.size);
+	if (!to)
+		return false;
+	fwrite(u->t.at, 1, first, to);
+	fputs(by, to);
+	fputs(u->t.at + end, to);
+	if (fclose(to) != 0)
+		return false;
+	free(u->t.at);
+	u->t = made;
+	return true;
+}
+
+// A value within quotation marks.
+typedef struct attribute {
+	size_t first, end; // in the text
+} attribute;
+
+// Finds the next file name of a mesh.
+static bool next_mesh(const source *u, size_t from, attribute *out)
+{
+	static const char key[] = "filename=", tag[] = "<mesh";
+	for (const char *at = u->t.at + from; (at = strstr(at, tag));) {
+		at += sizeof tag - 1;
+		const char *name = strstr(at, key), *close = strchr(at, '>');
+		if (!name || !close || name > close)
+			continue;
+		name += sizeof key - 1;
+		const char *last = *name ? strchr(name + 1, *name) : NULL;
+		if (!last)
+			return false;
+		*out = (attribute){ (size_t)(name + 1 - u->t.at), (size_t)(last - u->t.at) };
+		return true;
+	}
+	return false;
+}
+
+// Finds the file of package://NAME/REST: a folder above the model's holds NAME/REST, or REST.
+static bool find_file(const char *path, const char *name, char *out, size_t room)
+{
+	static const char scheme[] = "package://", local[] = "file://";
+	char folder[4096];
+	snprintf(folder, sizeof folder, "%s", path);
+	char *above = dirname(folder);
+	if (strncmp(name, scheme, sizeof scheme - 1) != 0) {
+		const char *plain = strncmp(name, local, sizeof local - 1) == 0 ? name + sizeof local - 1 : name;
+		snprintf(out, room, "%s%s%s", *plain == '/' ? "" : above, *plain == '/' ? "" : "/", plain);
+		return access(out, R_OK) == 0;
+	}
+	const char *whole = name + sizeof scheme - 1, *inside = strchr(whole, '/');
+	for (;; above = dirname(above)) {
+		const bool top = strcmp(above, "/") == 0;
+		for (int i = 0; i < 2; i++) {
+			snprintf(out, room, "%s/%s", top ? "" : above, i == 0 || !inside ? whole : inside + 1);
+			if (access(out, R_OK) == 0)
+				return true;
+		}
+		if (top)
+			return false;
+	}
+}
+
+// True if MuJoCo reads files of this kind.
+static bool is_mesh_file(const char *name)
+{
+	static const char *const kinds[] = { ".stl", ".obj", ".msh" };
+	const char *end = strrchr(name, '.');
+	bool found = false;
+	for (size_t i = 0; end && i < sizeof kinds / sizeof *kinds; i++)
+		found |= strcasecmp(end, kinds[i]) == 0;
+	return found;
+}
+
+// Start of the last <tag before a place; NULL: none.
+static char *last_before(const source *u, size_t place, const char *tag)
+{
+	char *found = NULL;
+	for (char *at = u->t.at; (at = strstr(at, tag)) && at < u->t.at + place; at++)
+		found = at;
+	return found;
+}
+
+// Removes the look or the solid with the mesh. Returns the place in the text from which to go on; 0: it cannot.
+static size_t drop_mesh(source *u, const attribute *mesh, const char *why)
+{
+	char *look = last_before(u, mesh->first, "<visual"), *solid = last_before(u, mesh->first, "<collision");
+	const bool is_look = look && (!solid || look > solid);
+	char *first = is_look ? look : solid;
+	const char *tag = is_look ? "</visual>" : "</collision>",
+		   *end = first ? strstr(u->t.at + mesh->end, tag) : NULL;
+	if (!end)
+		return 0;
+	const size_t from = (size_t)(first - u->t.at);
+	leave_out(u, "%s %.*s is left out: %s", is_look ? "look" : "mesh", (int)(mesh->end - mesh->first),
+		  u->t.at + mesh->first, why);
+	return replace(u, from, (size_t)(end - u->t.at) + strlen(tag), "") ? from + 1 : 0;
+}
+
+// Writes the places of meshes for their names, and drops those that MuJoCo cannot read.
+static void place_meshes(source *u)
+{
+	attribute mesh;
+	for (size_t at = 0; next_mesh(u, at, &mesh);) {
+		char name[4096], file[8300];
+		snprintf(name, sizeof name, "%.*s", (int)(mesh.end - mesh.first), u->t.at + mesh.first);
+		const bool there = find_file(u->path, name, file, sizeof file);
+		if (there && is_mesh_file(name)) {
+			at = replace(u, mesh.first, mesh.end, file) ? mesh.first : mesh.end;
+			continue;
+		}
+		at = drop_mesh(u, &mesh,
+			       there ? "MuJoCo reads STL, OBJ and MSH files"
+				     : "no file of this name is beside the model");
+		if (!at)
+			return;
+	}
+}
+
+// Options for MuJoCo, which would weld its root to the world, fuse what is fixed to each other, and drop the folders of its
+// meshes.
+static void set_options(source *u)
 {
 	static const char options[] = "<mujoco><compiler fusestatic=\"false\" strippath=\"false\"/></mujoco>";
-	static const char mesh[] = "filename=\"";
-	text t = { NULL, 0 };
-	FILE *to = open_memstream(&t.at, &t.size);
-	const char *at = from->at, *tag = strstr(at, "<robot"), *body = tag ? strchr(tag, '>') : NULL;
-	if (!to)
-		return t;
-	if (body && body[-1] != '/' && !strstr(at, "<mujoco")) {
-		fwrite(at, 1, (size_t)(body + 1 - at), to);
-		fputs(options, to);
-		at = body + 1;
+	const char *tag = strstr(u->t.at, "<robot"), *body = tag ? strchr(tag, '>') : NULL;
+	if (body && body[-1] != '/' && !strstr(u->t.at, "<mujoco"))
+		replace(u, (size_t)(body + 1 - u->t.at), (size_t)(body + 1 - u->t.at), options);
+}
+
+static void list_mimics(const source *u)
+{
+	int n = 0;
+	for (const char *at = u->t.at; (at = strstr(at, "<mimic")); at++)
+		n++;
+	if (n)
+		leave_out(u, "%d mimic joints move by themselves", n);
+}
+
+// Adds an attribute to the compiler's options.
+static bool add_option(source *u, const char *option)
+{
+	static const char compiler[] = "<compiler";
+	const char *at = strstr(u->t.at, compiler);
+	const size_t place = at ? (size_t)(at - u->t.at) + sizeof compiler - 1 : 0;
+	return at && replace(u, place, place, option);
+}
+
+// Changes a part of a URDF file that MuJoCo refuses, by its message. false: nothing is left to change.
+static bool mend_urdf(source *u, const char *why)
+{
+	static const char named[] = "Object name = ";
+	const char *object = strstr(why, named);
+	attribute mesh, last = { 0, 0 };
+	if (strstr(why, "balanceinertia") && !u->balanced) {
+		u->balanced = true;
+		leave_out(u, "moments that no body can have are replaced by their mean");
+		return add_option(u, " balanceinertia=\"true\"");
 	}
-	for (const char *name; (name = strstr(at, mesh));) {
-		name += sizeof mesh - 1;
-		const size_t length = strcspn(name, "\"");
-		fwrite(at, 1, (size_t)(name - at), to);
-		write_mesh_path(path, name, length, to);
-		at = name + length;
+	if (strstr(why, "mjMINVAL") && !u->bounded) {
+		u->bounded = true;
+		leave_out(u, "bodies have at least 1e-6 kg and 1e-9 kg m^2: some that move have none");
+		return add_option(u, " boundmass=\"1e-6\" boundinertia=\"1e-9\"");
 	}
-	fputs(at, to);
-	fclose(to);
-	return t;
+	for (size_t from = 0; next_mesh(u, from, &mesh); from = mesh.end) {
+		char name[4096];
+		snprintf(name, sizeof name, "%.*s", (int)(mesh.end - mesh.first), u->t.at + mesh.first);
+		if (strstr(why, name))
+			return drop_mesh(u, &mesh, "MuJoCo cannot read it");
+		// Meshes have the names of their files, and a number if their scales differ.
+		char *stem = basename(name), *dot = strrchr(stem, '.');
+		if (dot)
+			*dot = 0;
+		const char *end = object ? object + sizeof named - 1 + strlen(stem) : NULL;
+		if (end && strncmp(object + sizeof named - 1, stem, strlen(stem)) == 0 && strchr("0123456789,", *end))
+			last = mesh;
+	}
+	return last.end && drop_mesh(u, &last, "MuJoCo refuses it");
+}
+
+// ---- MJCF
+
+// True for characters between attributes.
+static bool is_space(char c)
+{
+	return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
+
+// Removes the attribute wherever it is. Returns how often.
+static int drop_attribute(source *u, const char *name)
+{
+	const size_t length = strlen(name);
+	int n = 0;
+	for (size_t from = 1; from < u->t.size;) {
+		const char *at = strstr(u->t.at + from, name), *value = at ? at + length : NULL;
+		if (!at)
+			break;
+		from = (size_t)(at - u->t.at) + 1;
+		value += strspn(value, " ");
+		const char *open = *value == '=' ? value + 1 + strspn(value + 1, " ") : NULL;
+		const char *close = open && (*open == '"' || *open == '\'') ? strchr(open + 1, *open) : NULL;
+		if (close && is_space(at[-1]) && replace(u, from - 1, (size_t)(close + 1 - u->t.at), ""))
+			n++;
+	}
+	return n;
+}
+
+// Removes elements of this name, with all in them. Returns how many.
+static int drop_element(source *u, const char *name)
+{
+	char tag[100], close[100];
+	int n = 0;
+	snprintf(tag, sizeof tag, "<%s", name);
+	snprintf(close, sizeof close, "</%s>", name);
+	for (size_t from = 0; from < u->t.size;) {
+		const char *at = strstr(u->t.at + from, tag), *end = at ? strchr(at, '>') : NULL;
+		if (!end)
+			break;
+		from = (size_t)(at - u->t.at) + 1;
+		if (!is_space(at[strlen(tag)]) && !strchr("/>", at[strlen(tag)]))
+			continue;
+		if (end[-1] != '/') {
+			end = strstr(end, close);
+			end = end ? strchr(end, '>') : NULL;
+		}
+		if (end && replace(u, from - 1, (size_t)(end + 1 - u->t.at), ""))
+			n++, from--;
+	}
+	return n;
+}
+
+// Drops an element or an attribute that a newer MuJoCo reads, by the parser's message.
+static bool mend_mjcf(source *u, const char *why)
+{
+	static const char foreign[] = "unrecognized attribute: '", element[] = "unrecognized element";
+	const char *at = strstr(why, foreign), *of = strstr(why, "Element '");
+	const char *name = at ? at + sizeof foreign - 1 : strstr(why, element) && of ? of + strlen("Element '") : NULL;
+	char word[64];
+	if (!name)
+		return false;
+	snprintf(word, sizeof word, "%.*s", (int)strcspn(name, "'"), name);
+	const int n = !*word ? 0 : at ? drop_attribute(u, word) : drop_element(u, word);
+	if (n)
+		leave_out(u, "%s %s is left out, %d times: MuJoCo 2.2 has none", at ? "attribute" : "element", word, n);
+	if (n && !u->bounded && !strstr(u->t.at, "autolimits")) {
+		// Since MuJoCo 3 a range is a limit.
+		u->bounded = true;
+		const char *root = strstr(u->t.at, "<mujoco"), *end = root ? strchr(root, '>') : NULL;
+		return end && replace(u, (size_t)(end + 1 - u->t.at), (size_t)(end + 1 - u->t.at),
+				      "<compiler autolimits=\"true\"/>");
+	}
+	return n > 0;
 }
 
 // True if the robot stands: it has a link called world.
@@ -147,26 +375,38 @@ static void shorten(char *why)
 		why[--n] = 0;
 }
 
-static bool load(const char *path, ob_drawn *out, ob_error *e)
+// Loads a file, without the parts that MuJoCo refuses, one after the other.
+static mjModel *load_source(source *u, bool (*mend)(source *, const char *), char *why, int room)
 {
-	char why[800] = "";
+	enum { MOST_ROUNDS = 200 };
+	mjModel *m = NULL;
+	for (int round = 0; round < MOST_ROUNDS && !m; round++) {
+		m = load_text(u->path, &u->t, why, room);
+		shorten(why);
+		if (!m && !mend(u, why))
+			return NULL;
+	}
+	return m;
+}
+
+static bool load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e)
+{
+	static char why[800], whole[PATH_MAX];
 	*out = (ob_drawn){ NULL, NULL, false };
 	mju_user_error = complain;
 	mju_user_warning = ignore;
-	text t = read_text(path, e);
-	if (!t.at)
+	source u = { .path = realpath(path, whole) ? whole : path, .t = read_text(path, e), .omitted = omitted };
+	if (!u.t.at)
 		return false;
-	const bool urdf = strstr(t.at, "<robot");
+	const bool urdf = strstr(u.t.at, "<robot");
 	if (urdf) {
-		out->floats = !has_world(t.at);
-		const text made = prepare_urdf(path, &t);
-		free(t.at);
-		t = made;
+		out->floats = !has_world(u.t.at);
+		set_options(&u);
+		place_meshes(&u);
+		list_mimics(&u);
 	}
-	if (t.at)
-		out->model = load_text(path, &t, why, sizeof why);
-	free(t.at);
-	shorten(why);
+	out->model = load_source(&u, urdf ? mend_urdf : mend_mjcf, why, sizeof why);
+	free(u.t.at);
 	if (!out->model)
 		return ob_fail(e, "%s: %s", path, *why ? why : "MuJoCo cannot load it");
 	out->data = mj_makeData(out->model);
@@ -178,10 +418,10 @@ static bool load(const char *path, ob_drawn *out, ob_error *e)
 }
 
 // Memory that MuJoCo holds when it complains is lost; the process ends soon.
-bool ob_drawn_load(const char *path, ob_drawn *out, ob_error *e)
+bool ob_drawn_load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e)
 {
 	if (setjmp(back) == 0)
-		return load(path, out, e);
+		return load(path, omitted, out, e);
 	shorten(complaint);
 	return ob_fail(e, "%s: MuJoCo: %s", path, complaint);
 }

@@ -3,6 +3,7 @@
 #define OB_IMPORT_LOAD_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include <mujoco/mujoco.h>
 
@@ -14,7 +15,8 @@ typedef struct ob_drawn {
 	bool floats; // a URDF file without a link called world: its root, which has no joint, is free
 } ob_drawn;
 
-// Loads an MJCF or URDF file and the files that it names. Once in a process: a fault of MuJoCo's leaves its memory.
-bool ob_drawn_load(const char *path, ob_drawn *out, ob_error *e);
+// Loads an MJCF or URDF file and the files that it names. omitted: for a line for each part of a URDF file that is left out
+// or changed; NULL: none. Once in a process: a fault of MuJoCo's leaves its memory.
+bool ob_drawn_load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e);
 
 #endif

@@ -21,7 +21,6 @@ typedef struct part {
 	char name[NAME];
 	int body, geom; // geom: one that stands still; -1: a body that moves
 	ob_imported_solid solid;
-	ob_hull *hull; // NULL: not a hull
 	int group; // number for its contype and conaffinity
 	int contype, conaffinity;
 } part;
@@ -124,16 +123,6 @@ static void note_contacts(const writer *w, part *p, int geom)
 	p->conaffinity |= w->m->geom_conaffinity[geom];
 }
 
-static void build_hull(part *p)
-{
-	ob_error e;
-	if (p->solid.shape != OB_SHAPE_HULL)
-		return;
-	p->hull = malloc(sizeof *p->hull);
-	if (!p->hull || !ob_hull_build(p->solid.point, p->solid.points, p->hull, &e))
-		exit(EXIT_FAILURE);
-}
-
 // True if a scene may have the shape (object_limits.h).
 static bool in_range(const ob_imported_solid *s)
 {
@@ -165,10 +154,9 @@ static void add_standing(writer *w, int body)
 			w->parts--;
 			continue;
 		}
-		build_hull(p);
 		if (p->solid.inside > 0)
 			leave_out(w, "%s collides as a hull of %u corners, up to %.2g m inside it", p->name,
-				  p->solid.points, p->solid.inside);
+				  p->solid.hull->corners, p->solid.inside);
 	}
 }
 
@@ -190,6 +178,18 @@ static void give_box(const writer *w, part *p)
 	p->contype = p->conaffinity = 0;
 }
 
+// True if a scene may have the moments with this shape (object_limits.h).
+static bool inertia_fits(const writer *w, const part *p)
+{
+	const ob_imported_solid *s = &p->solid;
+	const double least = 1e-4, most = fmax(s->inertia.x, fmax(s->inertia.y, s->inertia.z));
+	if (s->shape == OB_SHAPE_NONE)
+		return true;
+	const double r = s->hull ? s->hull->radius : ob_shape_radius(s->shape, s->size),
+		     share = most / (w->m->body_mass[p->body] * r * r);
+	return share >= least && share <= 1 / least;
+}
+
 static void add_moving(writer *w, int body)
 {
 	const mjModel *m = w->m;
@@ -203,18 +203,21 @@ static void add_moving(writer *w, int body)
 	ob_solid_of_body(w->d, body, &p->solid);
 	if (looks && !w->folder)
 		leave_out(w, "%s: %d geoms that are looks alone are left out: --out DIR writes them", p->name, looks);
-	if (p->solid.shape == OB_SHAPE_NONE && p->solid.geoms)
+	if (!inertia_fits(w, p)) {
+		leave_out(w, "%s collides with nothing: its moments are too large or too small for its shape", p->name);
+		p->solid.shape = OB_SHAPE_NONE;
+		p->solid.hull = NULL, p->solid.pieces = 0;
+	} else if (p->solid.shape == OB_SHAPE_NONE && p->solid.geoms)
 		leave_out(w, "%s collides with nothing: its centre of mass is not well inside the hull of its %u geoms",
 			  p->name, p->solid.geoms);
-	else if (p->solid.geoms > 1)
+	else if (p->solid.geoms > 1 && p->solid.pieces == 1)
 		leave_out(w, "%s collides as the hull of its %u geoms, with %u corners, up to %.2g m inside it",
-			  p->name, p->solid.geoms, p->solid.points, p->solid.inside);
+			  p->name, p->solid.geoms, p->solid.hull->corners, p->solid.inside);
 	else if (p->solid.inside > 0)
-		leave_out(w, "%s collides as a hull of %u corners, up to %.2g m inside its geom", p->name,
-			  p->solid.points, p->solid.inside);
+		leave_out(w, "%s collides as %u hulls of its geoms, up to %.2g m inside them", p->name, p->solid.pieces,
+			  p->solid.inside);
 	if (p->solid.shape == OB_SHAPE_NONE)
 		give_box(w, p);
-	build_hull(p);
 }
 
 // True if the body stands still: nothing on its way to the world moves.
@@ -348,16 +351,37 @@ static void write_group(const writer *w, const part *p, int groups)
 	fputs(" }", w->out);
 }
 
+static void write_piece(const writer *w, const ob_imported_piece *p)
+{
+	if (p->half.x > 0) {
+		write_vec(w, "size", ob_scale(p->half, 2));
+		write_pose(w, &p->pose);
+		return;
+	}
+	fputs("points = {", w->out);
+	for (uint32_t k = 0; k < p->points; k++)
+		fprintf(w->out, "%s{ %.17g, %.17g, %.17g }", k ? ", " : " ", p->point[k].x, p->point[k].y,
+			p->point[k].z);
+	fputs(" }", w->out);
+}
+
+// Writes the parts of a compound, or the points of a hull.
+static void write_pieces(const writer *w, const ob_imported_solid *s)
+{
+	fputs(s->pieces > 1 ? "parts = { { " : "", w->out);
+	for (uint32_t i = 0; i < s->pieces; i++) {
+		fputs(i ? " }, { " : "", w->out);
+		write_piece(w, &s->piece[i]);
+	}
+	fputs(s->pieces > 1 ? " } }" : "", w->out);
+}
+
 static void write_shape(const writer *w, const ob_imported_solid *s)
 {
 	const ob_shape_key *key = ob_shape_kind_of(s->shape)->key;
 	const double size[3] = { s->size.x, s->size.y, s->size.z };
-	if (s->shape == OB_SHAPE_HULL) {
-		fputs("points = {", w->out);
-		for (uint32_t k = 0; k < s->points; k++)
-			fprintf(w->out, "%s{ %.17g, %.17g, %.17g }", k ? ", " : " ", s->point[k].x, s->point[k].y,
-				s->point[k].z);
-		fputs(" }", w->out);
+	if (s->pieces) {
+		write_pieces(w, s);
 		return;
 	}
 	for (int k = 0; k < OB_SHAPE_KEYS && key[k].name; k++)
@@ -397,7 +421,7 @@ static void write_look(writer *w, const part *p, int number)
 static void write_part(writer *w, const part *p, int groups)
 {
 	const ob_imported_solid *s = &p->solid;
-	fprintf(w->out, "%s { name = \"%s\", ", ob_shape_name(s->shape), p->name);
+	fprintf(w->out, "%s { name = \"%s\", ", s->pieces > 1 ? "compound" : ob_shape_name(s->shape), p->name);
 	if (s->shape == OB_SHAPE_PLANE) {
 		write_plane(w, p);
 	} else {
@@ -686,16 +710,39 @@ static void write_excluded(writer *w)
 	}
 }
 
-static ob_solid solid_of(const part *p)
+// Solid k of an object: a compound has one for each part.
+static ob_solid solid_of(const part *p, uint32_t k)
 {
-	ob_solid s = { p->solid.shape, p->solid.size, p->solid.pose.p, ob_quat_matrix(p->solid.pose.q), p->hull };
-	if (!p->hull)
-		return s;
-	const ob_mat3 r = s.r;
-	s.size = ob_hull_size(p->hull);
-	s.p = ob_add(s.p, ob_rotate(&r, p->hull->centre));
-	s.r = ob_quat_matrix(ob_quat_mul(p->solid.pose.q, p->hull->frame));
-	return s;
+	const ob_imported_solid *s = &p->solid;
+	ob_solid out = { s->shape, s->size, s->pose.p, ob_quat_matrix(s->pose.q), s->hull };
+	if (!s->hull)
+		return out;
+	out.hull += s->pieces > 1 ? 1 + k : 0;
+	out.size = ob_hull_size(out.hull);
+	if (s->pieces > 1)
+		return out;
+	const ob_mat3 r = out.r;
+	out.p = ob_add(out.p, ob_rotate(&r, s->hull->centre));
+	out.r = ob_quat_matrix(ob_quat_mul(s->pose.q, s->hull->frame));
+	return out;
+}
+
+// Greatest depth (m) of a solid of one in a solid of the other; below 0: they are apart.
+static double depth_of(const part *one, const part *other)
+{
+	double most = -1;
+	for (uint32_t i = 0; i <= one->solid.pieces - (one->solid.pieces > 0); i++)
+		for (uint32_t k = 0; k <= other->solid.pieces - (other->solid.pieces > 0); k++) {
+			const ob_solid x = solid_of(one, i), y = solid_of(other, k);
+			most = fmax(most, ob_depth(&x, &y));
+		}
+	return most;
+}
+
+// True if it is not exactly the shape of its geometries.
+static bool is_rough(const ob_imported_solid *s)
+{
+	return s->inside > 0 || (s->geoms > 1 && s->pieces == 1);
 }
 
 // Hulls may overlap where the geometries that they stand for do not.
@@ -704,12 +751,11 @@ static void part_overlaps(writer *w)
 	for (int a = 0; a < w->parts; a++)
 		for (int b = 0; b < a; b++) {
 			const part *one = &w->part[a], *other = &w->part[b];
-			const bool moves = one->geom < 0 || other->geom<0, rough = one->solid.geoms> 1 ||
-					   other->solid.geoms > 1 || one->solid.inside > 0 || other->solid.inside > 0;
+			const bool moves = one->geom < 0 || other->geom < 0;
+			const bool rough = is_rough(&one->solid) || is_rough(&other->solid);
 			if (!moves || !rough || !touch(one, other) || are_joined(w, a, b))
 				continue;
-			const ob_solid x = solid_of(one), y = solid_of(other);
-			const double depth = ob_depth(&x, &y);
+			const double depth = depth_of(one, other);
 			if (!(depth > 0))
 				continue;
 			keep_apart(w, a, b);
@@ -777,7 +823,7 @@ static void write_scene(writer *w, const char *path)
 static bool convert(const char *path, const char *folder, FILE *scene, FILE *omitted, ob_error *e)
 {
 	ob_drawn d;
-	if (!ob_drawn_load(path, &d, e))
+	if (!ob_drawn_load(path, omitted, &d, e))
 		return false;
 	writer w = { .d = &d, .m = d.model, .out = scene, .omitted = omitted, .folder = folder };
 	w.part_of = calloc((size_t)d.model->nbody, sizeof *w.part_of);

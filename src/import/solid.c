@@ -6,6 +6,7 @@
 #include "hull/hull.h"
 #include "shape/shape.h"
 
+static const double least_inside = .125; // of a compound's thickness: radius of the ball in it (object_limits.c)
 static const double alike = 1e-9; // relative: moments, and products of inertia; of the size: places
 
 bool ob_geom_collides(const mjModel *m, int geom)
@@ -144,69 +145,125 @@ bool ob_geom_has_extent(const mjModel *m, int geom)
 	       ob_shape_is_bounded(shape_of(m, geom, &size));
 }
 
-// Adds the support points along n directions of the geometries first .. end-1, in the frame of the solid.
-static void add_points(const ob_drawn *d, int first, int end, int n, ob_imported_solid *out)
+// Geometries of the body that collide, of first .. end-1, and their frame.
+typedef struct group {
+	const ob_drawn *d;
+	int first, end;
+	ob_pose frame;
+} group;
+
+static bool counts(const group *g, int geom)
 {
-	const ob_mat3 r = ob_quat_matrix(out->pose.q);
-	out->points = 0;
-	for (int i = 0; i < n; i++) {
-		const ob_vec3 l = direction(i, n), w = ob_rotate(&r, l);
-		ob_vec3 p = { 0 };
-		double most = -INFINITY;
-		for (int geom = first; geom < end; geom++) {
-			if (!ob_geom_collides(d->model, geom) || !ob_geom_has_extent(d->model, geom))
-				continue;
-			const ob_vec3 at = ob_rotate_back(&r, ob_sub(ob_geom_farthest(d, geom, w), out->pose.p));
-			if (ob_dot(at, l) > most)
-				most = ob_dot(at, l), p = at;
-		}
-		bool known = false;
-		for (uint32_t k = 0; k < out->points; k++)
-			known |= ob_norm2(ob_sub(out->point[k], p)) == 0;
-		if (!known && out->points < OB_HULL_CORNERS_MAX)
-			out->point[out->points++] = p;
-		else if (!known)
-			out->inside = INFINITY; // more corners than a hull has
-	}
+	return ob_geom_collides(g->d->model, geom) && ob_geom_has_extent(g->d->model, geom);
 }
 
-// Finds by how much the geometries stand out of the hull.
-static double standing_out(const ob_drawn *d, int first, int end, const ob_imported_solid *s)
+// Support point of the group along l, both in its frame.
+static ob_vec3 farthest(const group *g, ob_vec3 l)
 {
-	const ob_mat3 r = ob_quat_matrix(s->pose.q);
+	const ob_mat3 r = ob_quat_matrix(g->frame.q);
+	const ob_vec3 w = ob_rotate(&r, l);
+	ob_vec3 p = { 0, 0, 0 };
+	double most = -INFINITY;
+	for (int geom = g->first; geom < g->end; geom++) {
+		if (!counts(g, geom))
+			continue;
+		const ob_vec3 at = ob_rotate_back(&r, ob_sub(ob_geom_farthest(g->d, geom, w), g->frame.p));
+		if (ob_dot(at, l) > most)
+			most = ob_dot(at, l), p = at;
+	}
+	return p;
+}
+
+// Makes the piece of the support points along n directions. Returns false if a hull has not so many corners.
+static bool add_points(const group *g, int n, ob_imported_piece *to)
+{
+	*to = (ob_imported_piece){ .points = 0 };
+	for (int i = 0; i < n; i++) {
+		const ob_vec3 p = farthest(g, direction(i, n));
+		bool known = false;
+		for (uint32_t k = 0; k < to->points; k++)
+			known |= ob_norm2(ob_sub(to->point[k], p)) == 0;
+		if (!known && to->points == OB_HULL_CORNERS_MAX)
+			return false;
+		if (!known)
+			to->point[to->points++] = p;
+	}
+	return true;
+}
+
+// Finds by how much the geometries stand out of the piece.
+static double standing_out(const group *g, const ob_imported_piece *piece)
+{
 	double most = 0;
 	for (int i = 0; i < DIRECTIONS; i++) {
-		const ob_vec3 l = direction(i, DIRECTIONS), w = ob_rotate(&r, l);
-		double own = -INFINITY, all = -INFINITY;
-		for (uint32_t k = 0; k < s->points; k++)
-			own = fmax(own, ob_dot(s->point[k], l));
-		for (int geom = first; geom < end; geom++)
-			if (ob_geom_collides(d->model, geom) && ob_geom_has_extent(d->model, geom))
-				all = fmax(
-					all,
-					ob_dot(ob_rotate_back(&r, ob_sub(ob_geom_farthest(d, geom, w), s->pose.p)), l));
-		most = fmax(most, all - own);
+		const ob_vec3 l = direction(i, DIRECTIONS);
+		double own = -INFINITY;
+		for (uint32_t k = 0; k < piece->points; k++)
+			own = fmax(own, ob_dot(piece->point[k], l));
+		most = fmax(most, ob_dot(farthest(g, l), l) - own);
 	}
-	return most;
+	return most > alike * ob_norm(piece->point[0]) ? most : 0;
 }
 
-// Makes the hull of the geometries first .. end-1 about the solid's frame. inward: the origin must be well inside it.
-static bool take_hull(const ob_drawn *d, int first, int end, bool inward, ob_imported_solid *out)
+// Makes the piece of the only geometry of the group if that is a box.
+static bool take_box(const group *g, ob_imported_piece *to)
 {
-	ob_hull *h = malloc(sizeof *h);
-	ob_error e;
-	out->inside = 0;
-	add_points(d, first, end, DIRECTIONS, out);
-	if (out->inside > 0)
-		add_points(d, first, end, OB_HULL_CORNERS_MAX, out);
-	const bool done = h && ob_hull_build(out->point, out->points, h, &e) &&
-			  (!inward || ob_hull_set_inertia(h, ob_v3(1, 1, 1), &e));
-	free(h);
-	if (!done)
+	const mjModel *m = g->d->model;
+	if (g->end != g->first + 1 || m->geom_type[g->first] != mjGEOM_BOX)
 		return false;
+	const ob_mat3 r = ob_quat_matrix(g->frame.q);
+	const ob_vec3 off = ob_sub(vec(g->d->data->geom_xpos + 3 * g->first), g->frame.p);
+	*to = (ob_imported_piece){ .half = vec(m->geom_size + 3 * g->first), .points = 8 };
+	to->pose.p = ob_rotate_back(&r, off);
+	to->pose.q = ob_quat_mul(ob_quat_conjugate(g->frame.q), quat_of(g->d->data->geom_xmat + 9 * g->first));
+	const ob_mat3 turn = ob_quat_matrix(to->pose.q);
+	for (uint32_t k = 0; k < 8; k++)
+		to->point[k] = ob_add(to->pose.p, ob_rotate(&turn, ob_box_corner(to->half, k)));
+	return true;
+}
+
+// Builds the hulls of a solid's pieces, with moments of its own. inward: its origin must be well inside them.
+static bool build(bool inward, ob_imported_solid *s)
+{
+	ob_hull_part part[OB_HULL_PARTS_MAX];
+	const ob_vec3 any = ob_v3(1, 1, 1);
+	uint32_t failed;
+	ob_error e;
+	if (s->pieces == 1)
+		return ob_hull_build(s->piece->point, s->piece->points, s->hull, &e) &&
+		       (!inward || ob_hull_set_inertia(s->hull, any, &e));
+	for (uint32_t i = 0; i < s->pieces; i++)
+		part[i] = (ob_hull_part){ s->piece[i].point, s->piece[i].points, 1 };
+	return ob_hull_build_compound(part, s->pieces, any, s->hull, &failed, &e) &&
+	       s->hull->inner >= least_inside * s->hull->thickness;
+}
+
+// Makes the hulls of groups about the solid's frame: as fine as fits into the corners of all together.
+static bool take_hulls(const group *g, uint32_t groups, bool inward, ob_imported_solid *out)
+{
+	static const int directions[] = { DIRECTIONS, OB_HULL_CORNERS_MAX, 48, 32, 24, 16, 12 };
+	bool done = false;
+	out->pieces = groups;
+	out->piece = calloc(groups, sizeof *out->piece);
+	out->hull = calloc(1 + groups, sizeof *out->hull);
+	for (size_t k = 0; out->piece && out->hull && !done && k < sizeof directions / sizeof *directions; k++) {
+		bool fit = true;
+		for (uint32_t i = 0; i < groups; i++)
+			fit &= (groups > 1 && take_box(&g[i], &out->piece[i])) ||
+			       add_points(&g[i], directions[k], &out->piece[i]);
+		done = fit && build(inward, out);
+	}
+	if (!done) {
+		free(out->piece), free(out->hull);
+		out->piece = NULL, out->hull = NULL, out->pieces = 0;
+		return false;
+	}
 	out->shape = OB_SHAPE_HULL;
-	out->inside = standing_out(d, first, end, out);
-	out->inside *= out->inside > alike * ob_norm(out->point[0]);
+	out->inside = 0;
+	for (uint32_t i = 0; i < groups; i++) {
+		out->piece[i].inside = standing_out(&g[i], &out->piece[i]);
+		out->inside = fmax(out->inside, out->piece[i].inside);
+	}
 	return true;
 }
 
@@ -214,19 +271,28 @@ void ob_solid_of_body(const ob_drawn *d, int body, ob_imported_solid *out)
 {
 	const mjModel *m = d->model;
 	const int first = m->body_geomadr[body], end = first + m->body_geomnum[body];
+	group each[OB_HULL_PARTS_MAX];
 	int only = -1;
 	*out = (ob_imported_solid){ .shape = OB_SHAPE_NONE };
-	for (int geom = first; geom < end; geom++)
-		if (ob_geom_collides(m, geom)) {
-			out->geoms += ob_geom_has_extent(m, geom);
-			only = geom;
-		}
+	out->pose = (ob_pose){ vec(d->data->xipos + 3 * body), quat_of(d->data->ximat + 9 * body) };
+	for (int geom = first; geom < end; geom++) {
+		if (!ob_geom_collides(m, geom))
+			continue;
+		only = geom;
+		if (!ob_geom_has_extent(m, geom))
+			continue;
+		if (out->geoms < OB_HULL_PARTS_MAX)
+			each[out->geoms] = (group){ d, geom, geom + 1, out->pose };
+		out->geoms++;
+	}
 	if (out->geoms == 1 && take_exact(d, body, only, out))
 		return;
-	out->pose = (ob_pose){ vec(d->data->xipos + 3 * body), quat_of(d->data->ximat + 9 * body) };
+	const group all = { d, first, end, out->pose };
 	out->inertia = vec(m->body_inertia + 3 * body);
-	if (out->geoms && !take_hull(d, first, end, true, out))
-		out->shape = OB_SHAPE_NONE;
+	if (out->geoms > 1 && out->geoms <= OB_HULL_PARTS_MAX && take_hulls(each, out->geoms, true, out))
+		return;
+	if (out->geoms)
+		take_hulls(&all, 1, true, out);
 }
 
 void ob_solid_of_geom(const ob_drawn *d, int geom, ob_imported_solid *out)
@@ -234,7 +300,6 @@ void ob_solid_of_geom(const ob_drawn *d, int geom, ob_imported_solid *out)
 	*out = (ob_imported_solid){ .geoms = 1 };
 	out->pose = (ob_pose){ vec(d->data->geom_xpos + 3 * geom), quat_of(d->data->geom_xmat + 9 * geom) };
 	out->shape = shape_of(d->model, geom, &out->size);
-	if (out->shape == OB_SHAPE_NONE &&
-	    (!ob_geom_has_extent(d->model, geom) || !take_hull(d, geom, geom + 1, false, out)))
-		out->shape = OB_SHAPE_NONE;
+	if (out->shape == OB_SHAPE_NONE && ob_geom_has_extent(d->model, geom))
+		take_hulls(&(group){ d, geom, geom + 1, out->pose }, 1, false, out);
 }

@@ -6,113 +6,37 @@ import os
 import pathlib
 import random
 import re
-import subprocess
 import unittest
 
 import program
+import robots
 
 MODELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "models")
-REFERENCE = os.environ["REFERENCE"]
-OBSERVER = """
-sphere {{ name = "observer", radius = .1, at = {{ 900, 0, 0 }}, static = true, hits = {{}}, script = [[
-function on_start() self:wake({seconds}) end
-function on_wake()
-	for name in ("{names}"):gmatch("[^|]+") do
-		local o = find(name)
-		print("at", name, o:position()) print("turned", name, o:attitude())
-	end
-end
-]] }}
-"""
-
-
-def matrix(w, x, y, z):
-	return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-		[2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-		[2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
-
-
-def product(a, b):
-	return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
-
-
-def transposed(a):
-	return [list(row) for row in zip(*a)]
-
-
-def numbers(line, key):
-	found = re.search(rf"\b{key} = \{{?([^}},]+(?:, [^}},]+)*)\}}?", line)
-	return [float(x) for x in found.group(1).split(",")] if found else None
-
-
-class Body:
-	"""An object of an imported scene, from its line."""
-
-	def __init__(self, line):
-		self.name = re.search(r'name = "([^"]*)"', line).group(1)
-		self.mass = float(re.search(r"\bmass = ([^,]+)", line).group(1))
-		self.at = numbers(line, "at")
-		turn = numbers(line, "q")
-		self.frame = matrix(*turn) if turn else matrix(1, 0, 0, 0)
-		moments = numbers(line, "inertia")
-		diagonal = [[moments[i] if i == j else 0 for j in range(3)] for i in range(3)]
-		i = product(product(self.frame, diagonal), transposed(self.frame))
-		self.tensor = [i[0][0], i[1][1], i[2][2], i[0][1], i[0][2], i[1][2]]
-
-
-def reference(path, seconds):
-	"""Numbers of each body in MuJoCo."""
-	done = subprocess.run([REFERENCE, path, str(seconds)], capture_output=True, text=True, timeout=program.PATIENCE, check=True)
-	found = {}
-	for line in done.stdout.splitlines():
-		name, *rest = line.split()
-		found[name] = [float(x) for x in rest]
-	return found
 
 
 class Import(program.Case):
 	def convert(self, name):
 		"""The scene, its objects that move by name, and what it leaves out."""
-		done = program.call("import", name if os.path.isabs(name) else os.path.join(MODELS, name))
+		done, bodies = robots.convert(name if os.path.isabs(name) else os.path.join(MODELS, name))
 		self.assertEqual(done.returncode, 0, done.stderr)
-		bodies = [Body(line) for line in done.stdout.splitlines() if " inertia = " in line]
 		return done.stdout, {b.name: b for b in bodies}, done.stderr
-
-	def states(self, scene, bodies, seconds):
-		"""Places and rotations after some time."""
-		path = self.path("scene.lua")
-		with open(path, "w", encoding="utf-8") as f:
-			f.write(scene + OBSERVER.format(seconds=seconds, names="|".join(bodies)))
-		done = program.call("run", path, "--step", "1/240", "--duration", seconds + 1 / 60, "--measure", "end")
-		self.assertEqual(done.returncode, 0, done.stderr)
-		found = {}
-		for what, name, values in re.findall(r"^obsim: (at|turned) (\S+) (.*)$", done.stderr, re.MULTILINE):
-			found.setdefault(name, {})[what] = [float(x) for x in values.split()]
-		return found
 
 	def compare(self, name, soft=(), seconds=2, moves=1e-4):
 		"""soft: bodies that MuJoCo holds by springs."""
-		path = os.path.join(MODELS, name)
-		expected = reference(path, seconds)
+		expected = robots.reference(os.path.join(MODELS, name), seconds)
 		scene, bodies, said = self.convert(name)
-		expected = {k: v for k, v in expected.items() if k in bodies}
-		self.assertEqual(set(bodies), set(expected))
-		for key, b in bodies.items():
-			values = expected[key]
-			self.assertAlmostEqual(b.mass / values[0], 1, delta=1e-9, msg=key)
-			largest = max(values[1:4])
-			for mine, theirs in zip(b.tensor, values[1:7]):
-				self.assertAlmostEqual(mine, theirs, delta=1e-9 * largest, msg=key)
-			self.assertLess(math.dist(b.at, values[7:10]), 1e-9, key)
-		found = self.states(scene, bodies, seconds)
-		for key, b in bodies.items():
-			values = expected[key]
-			if key in soft:
+		self.assertEqual(list(bodies), [e.name for e in expected])
+		self.assertLess(robots.error_of_mass(bodies.values(), expected), 1e-9)
+		self.assertLess(robots.error_of_inertia(bodies.values(), expected), 1e-9)
+		found = robots.states(scene, bodies.values(), seconds, self.directory.name)
+		for e, f, b in zip(expected, found, bodies.values()):
+			self.assertLess(math.dist(b.at, e.start), 1e-9, b.name)
+			if b.name in soft:
 				continue
-			self.assertLess(math.dist(found[key]["at"], values[10:13]), moves, f"{name}: {key} {found[key]} {values[10:13]}")
-			turned = product(matrix(*found[key]["turned"]), transposed(b.frame))
+			self.assertLess(math.dist(f["at"], e.end), moves, f"{name}: {b.name} {f} {e.end}")
+			turned = robots.product(robots.matrix(*f["turned"]), robots.transposed(b.frame))
 			for i in range(3):
-				self.assertLess(math.dist(turned[i], values[13 + 3 * i:16 + 3 * i]), 10 * moves, f"{name}: {key}")
+				self.assertLess(math.dist(turned[i], e.turn[3 * i:3 * i + 3]), 10 * moves, f"{name}: {b.name}")
 		return scene, bodies, said
 
 	def test_arm(self):
@@ -125,6 +49,7 @@ class Import(program.Case):
 		self.assertRegex(scene, r'\nplane \{ name = "floor"')
 		self.assertRegex(scene, r'\nuniversal \{ "hand", "fore"')
 		self.assertRegex(scene, r'\nslider \{ "finger", "hand"')
+		self.assertRegex(scene, r'\ncompound \{ name = "upper", parts = \{ \{ points = .* \}, \{ size = \{ 0.08\d*, 0.12\d*, 0.1\d* \}, at = ')
 
 	def test_humanoid(self):
 		scene, _, said = self.compare("humanoid.xml")
@@ -161,10 +86,95 @@ class Import(program.Case):
 		self.assertAlmostEqual(bodies["chassis"].mass, 6, 12)
 		for mine, given in zip(bodies["chassis"].tensor, [.05, .09, .12, .001, 0, -.002]):
 			self.assertAlmostEqual(mine, given, 8)
-		found = self.states(scene, bodies, 1)
+		found = robots.states(scene, bodies.values(), 1, self.directory.name)
 		total = sum(b.mass for b in bodies.values())
-		fallen = sum(b.mass * (b.at[2] - found[b.name]["at"][2]) for b in bodies.values()) / total
+		fallen = sum(b.mass * (b.at[2] - f["at"][2]) for b, f in zip(bodies.values(), found)) / total
 		self.assertAlmostEqual(fallen, .5 * 9.81, 6)
+
+	def test_compound(self):
+		"""Each geom of a body is a part; boxes are exact, so a peg fits between them."""
+		path = self.write("channel.xml", """<mujoco><worldbody>
+			<geom type="plane" size="1 1 1"/>
+			<body name="channel" pos="0 0 1.02"><freejoint/>
+				<geom type="box" size=".5 .1 .02"/>
+				<geom type="box" size=".5 .02 .1" pos="0 -.08 .12"/>
+				<geom type="box" size=".5 .02 .1" pos="0 .08 .12"/>
+			</body>
+			<body name="peg" pos="0 0 1.2"><freejoint/><geom type="box" size=".1 .05 .05" euler="0 0 1"/></body>
+		</worldbody></mujoco>""")
+		scene, bodies, said = self.convert(path)
+		self.assertEqual(said, "")
+		self.assertEqual(len(re.findall(r"\{ size = ", scene)), 3)
+		found = dict(zip(bodies, robots.states(scene, bodies.values(), 2, self.directory.name)))
+		self.assertAlmostEqual(found["peg"]["at"][2], .09, 3)
+
+	def test_many_geoms(self):
+		"""More parts than a compound has become the hull of all."""
+		geoms = "".join(f'<geom type="box" size=".01 .01 .01" pos="{i * .02} 0 0"/>' for i in range(20))
+		scene, _, said = self.convert(self.write("many.xml", "<mujoco><worldbody><body name='bar'><freejoint/>"
+			f"{geoms}</body></worldbody></mujoco>"))
+		self.assertIn('\nhull { name = "bar"', scene)
+		self.assertIn("bar collides as the hull of its 20 geoms, with 8 corners", said)
+
+	def test_urdf_of_others(self):
+		"""MuJoCo refuses meshes of other kinds, and ones that are missing or damaged, links without mass, and moments that no
+		body can have; others read them."""
+		self.write("cut.stl", b" " * 80 + b"\4\0\0\0")
+		self.write("box.dae", "<COLLADA/>")
+		link = """<link name="{0}">{1}{2}</link>"""
+		mass = '<inertial><mass value="{0}"/><inertia ixx="{1}" ixy="0" ixz="0" iyy="{2}" iyz="0" izz="{3}"/></inertial>'
+		mesh = '<{0}><geometry><mesh filename="{1}"/></geometry></{0}>'
+		joint = '<joint name="{1}" type="{2}"><parent link="{0}"/><child link="{1}"/><axis xyz="0 1 0"/>{3}</joint>'
+		text = "".join([
+			link.format("base", mass.format(1, .1, .1, .5), mesh.format("collision", "package://robot/cut.stl")),
+			link.format("arm", mass.format(1, .1, .1, .1), mesh.format("visual", "box.dae") + mesh.format("collision", "box.dae")),
+			link.format("hand", "", mesh.format("collision", "none.stl")),
+			link.format("finger", mass.format(.1, .01, .01, .01), ""),
+			joint.format("base", "arm", "continuous", ""),
+			joint.format("arm", "hand", "continuous", ""),
+			joint.format("hand", "finger", "continuous", '<mimic joint="arm"/>')])
+		scene, bodies, said = self.convert(self.write("robot.urdf", f'<robot name="robot">{text}</robot>'))
+		self.assertEqual(list(bodies), ["base", "arm", "hand", "finger"])
+		self.assertEqual(scene.count("\nhinge {"), 3)
+		for what in ("look box.dae is left out: MuJoCo reads STL, OBJ and MSH files", "mesh box.dae is left out: MuJoCo reads ",
+				"mesh none.stl is left out: no file of this name is beside the model", "cut.stl is left out: MuJoCo ",
+				"1 mimic joints move by themselves", "moments that no body can have are replaced by their mean",
+				"bodies have at least 1e-6 kg and 1e-9 kg m^2: some that move have none"):
+			self.assertIn(what, said)
+
+	def test_relative_path(self):
+		"""A path of the model that is not absolute: meshes are still found by package://."""
+		folder = self.path("arm_description")
+		os.makedirs(os.path.join(folder, "urdf"))
+		corners = "".join(f"v {x} {y} {z}\n" for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))
+		with open(os.path.join(folder, "wedge.obj"), "w", encoding="utf-8") as f:
+			f.write(corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
+		with open(os.path.join(folder, "urdf", "arm.urdf"), "w", encoding="utf-8") as f:
+			f.write('<robot name="a"><link name="l"><inertial><origin xyz=".25 .25 .25"/><mass value="1"/><inertia ixx=".1" ixy="0" '
+				'ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial><collision><geometry>'
+				'<mesh filename="package://arm_description/wedge.obj"/></geometry></collision></link></robot>')
+		done = program.call("import", "urdf/arm.urdf", cwd=folder)
+		self.assertEqual((done.returncode, done.stderr), (0, ""))
+		self.assertIn('hull { name = "l"', done.stdout)
+
+	def test_newer(self):
+		"""Attributes and elements that a newer MuJoCo reads; there a range is a limit."""
+		path = self.write("newer.xml", """<mujoco><worldbody><body name="arm" gravcomp="1">
+			<joint name="a" range="-1 1" actuatorfrcrange="-5 5"/><geom type="box" size=".1 .1 .1" pos=".2 0 0"/></body></worldbody>
+			<sensor><jointactuatorfrc joint="a"/><jointactuatorfrc joint="a"></jointactuatorfrc></sensor></mujoco>""")
+		scene, _, said = self.convert(path)
+		self.assertIn(", low = -0.017", scene)
+		self.assertIn("attribute gravcomp is left out, 1 times: MuJoCo 2.2 has none", said)
+		self.assertIn("element jointactuatorfrc is left out, 2 times: MuJoCo 2.2 has none", said)
+
+	def test_odd_moments(self):
+		"""A body whose shape is far too small for its moments keeps these, and touches nothing."""
+		path = self.write("odd.xml", """<mujoco><worldbody><body name="odd"><freejoint/><geom type="box" size=".001 .001 .001"/>
+			<inertial pos="0 0 0" mass=".001" diaginertia=".01 .01 .01"/></body></worldbody></mujoco>""")
+		scene, bodies, said = self.convert(path)
+		self.assertIn("odd collides with nothing: its moments are too large or too small for its shape", said)
+		self.assertEqual(bodies["odd"].tensor[0], .01)
+		robots.states(scene, bodies.values(), .1, self.directory.name)
 
 	def test_out(self):
 		folder = self.path("out")
