@@ -157,10 +157,12 @@ bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapsh
 
 // ---- automatic cameras
 
-// Weighted fourth moments instead of extremes: no single body makes the camera jump, and one that leaves for good is
-// left behind.
+// Weighted fourth moments instead of extremes: no single body makes the camera jump, and one that leaves the others for
+// good is left behind. Bodies that move together, or the only one that moves, are followed wherever they go.
 static const double lost_ranges =
-	1.5; // camera ranges: bodies farther from the initial target have less and less weight
+	1.5; // camera ranges, or distances of the nearest: bodies farther off count less and less
+static const double left_ranges = 20; // camera ranges from the initial target: likewise, however few move
+static const double present_least = .05, present_most = .1; // bodies in sight: the camera goes back to its beginning
 static const double spread =
 	2.05; // distance to a side of the picture, in one-sided fourth moments; 1.78 holds all of an even crowd
 static const double ground_clearance = .05; // of the eye, relative to its distance
@@ -175,23 +177,79 @@ typedef struct crowd {
 	const ob_draw_list *list;
 	const ob_camera_def *camera;
 	ob_view view;
+	ob_vec3 about; // m: place of those that move
+	double lost; // m^4: fourth power of the distance from there at which a body counts half
 	ob_vec3 middle; // m
 	double present, weight; // bodies that are not lost, before and after their attention
 } crowd;
 
+static double square(double x)
+{
+	return x * x;
+}
+
+static double fourth_power(double x)
+{
+	return square(square(x));
+}
+
+// By the eighth power of the distance, so that even the fourth moment of one that is lost vanishes.
 static double presence_of(const crowd *all, uint32_t i)
 {
 	const ob_draw_item *body = &all->list->body[i];
 	if (all->list->now->passport[body->id].flags & OB_OBJECT_STATIC)
 		return 0;
-	double lost = lost_ranges * all->view.range;
-	double far = ob_norm2(ob_sub(body->pose.p, all->camera->target)) / (lost * lost);
-	return 1 / (1 + far * far);
+	const double far = square(ob_norm2(ob_sub(body->pose.p, all->about))) / all->lost;
+	const double left = ob_norm2(ob_sub(body->pose.p, all->camera->target)) / square(left_ranges * all->view.range);
+	return 1 / ((1 + square(far)) * (1 + square(left)));
+}
+
+static double attention_to(const crowd *all, uint32_t i)
+{
+	return all->list->attention[all->list->body[i].id].level;
 }
 
 static double weight_of(const crowd *all, uint32_t i)
 {
-	return all->list->attention[all->list->body[i].id].level * presence_of(all, i);
+	return attention_to(all, i) * presence_of(all, i);
+}
+
+// Weight of a body among those that move: next to none at rest.
+static double motion_of(const crowd *all, uint32_t i)
+{
+	const double attention = square(attention_to(all, i));
+	return attention * square(attention) * presence_of(all, i);
+}
+
+// Looks from another place: from how far on bodies are lost depends on how near to it any moves, by a mean of distances
+// that the nearest decide.
+static void look_about(crowd *all, ob_vec3 place)
+{
+	const double range = square(all->view.range);
+	double all_moving = 0, near = 0;
+	all->about = place;
+	all->lost = INFINITY; // none is, while this is found
+	for (uint32_t i = 0; i < all->list->count; i++) {
+		const double moving = motion_of(all, i);
+		all_moving += moving;
+		near += moving / square(ob_norm2(ob_sub(all->list->body[i].pose.p, place)) + .25 * range);
+	}
+	all->lost = fourth_power(lost_ranges) * (square(range) + (near > 0 ? all_moving / near : 0));
+}
+
+// Looks from the middle of those that move.
+static void find_moving(crowd *all)
+{
+	ob_vec3 sum = { 0 };
+	double weight = 0;
+	look_about(all, all->camera->target);
+	for (uint32_t i = 0; i < all->list->count; i++) {
+		const double moving = motion_of(all, i);
+		sum = ob_madd(sum, moving, all->list->body[i].pose.p);
+		weight += moving;
+	}
+	if (weight > 0)
+		look_about(all, ob_scale(sum, 1 / weight));
 }
 
 static void find_middle(crowd *all)
@@ -203,11 +261,6 @@ static void find_middle(crowd *all)
 		all->weight += w;
 	}
 	all->middle = ob_scale(all->middle, 1 / all->weight);
-}
-
-static double fourth_power(double x)
-{
-	return x * x * (x * x);
 }
 
 // Extent along an axis of the picture; `tangent` is that of half of the angle that may be filled.
@@ -274,8 +327,10 @@ ob_camera_def ob_camera_follow(const ob_camera_def *c, const ob_draw_list *b, in
 		return to;
 	crowd all = { .list = b, .camera = c, .view = ob_view_of_camera(c, 0, width, height) };
 	const ob_view *v = &all.view;
+	find_moving(&all);
 	find_middle(&all);
-	if (!(all.present >= .5))
+	const double sight = fmin(1, (all.present - present_least) / (present_most - present_least));
+	if (!(sight > 0))
 		return to; // no body may move, or all are lost
 	reach x = reach_of(&all, v->right, v->tan_x), y = reach_of(&all, v->up, v->tan_y);
 	double away = fmax((x.high + x.low) / (2 * v->tan_x), (y.high + y.low) / (2 * v->tan_y));
@@ -283,6 +338,8 @@ ob_camera_def ob_camera_follow(const ob_camera_def *c, const ob_draw_list *b, in
 	to.target = ob_madd(all.middle, centre(&all, v->right, v->tan_x, away), v->right);
 	to.target = ob_madd(to.target, centre(&all, v->up, v->tan_y, away), v->up);
 	to.eye = ob_madd(to.target, -away, v->forward);
+	to.target = ob_madd(c->target, sight, ob_sub(to.target, c->target));
+	to.eye = ob_madd(c->eye, sight, ob_sub(to.eye, c->eye));
 	keep_above_ground(&to, c, b, ground_clearance * away);
 	return to;
 }

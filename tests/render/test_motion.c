@@ -174,6 +174,75 @@ static void automatic_cameras_attend(void)
 	test_scene_finish(&s);
 }
 
+static double range_of(const ob_camera_def *c)
+{
+	return ob_norm(ob_sub(c->target, c->eye));
+}
+
+// Adds bodies that rest in a row, and one that moves along x at this speed; returns its motion.
+static ob_motion *row_and_ball(ob_snapshot *s, int resting, double speed)
+{
+	test_scene_start(s, (uint32_t)resting + 2);
+	for (int i = 0; i < resting; i++)
+		test_scene_add(s, OB_SHAPE_BOX, ob_v3(.3, .3, .3), ob_v3(-4 + 4. * i / resting, 0, .3),
+			       ob_quat_identity(), red)
+			->flags = OB_MOTION_ASLEEP;
+	ob_motion *ball = test_scene_add(s, OB_SHAPE_SPHERE, ob_v3(.3, 0, 0), ob_v3(0, 0, .3), ob_quat_identity(), red);
+	ball->v = ob_v3(speed, 0, 0);
+	return ball;
+}
+
+// An automatic camera goes with the only body that moves, however many rest, and nearer than the way it has gone; without
+// a jump. It turns back to those that rest when the body has stopped, or has left for good.
+static void automatic_cameras_go_on(void)
+{
+	for (int resting = 0; resting <= 50; resting += 25) {
+		ob_draw_list list = { 0 };
+		ob_snapshot s;
+		ob_motion *ball = row_and_ball(&s, resting, 2);
+		ob_camera_def camera = test_scene_camera(ob_v3(0, -9, 3), ob_v3(0, 0, .3)), to = camera;
+		const double range = range_of(&camera);
+		ob_vec3 before = { NAN, 0, 0 };
+		camera.automatic = true;
+		for (double t = 0; t <= 40; t += .125) { // up to eight camera ranges away
+			CHECK(ob_draw_list_fill(&list, NULL, &s, t));
+			to = ob_camera_follow(&camera, &list, 320, 180);
+			const ob_view v = ob_view_of_camera(&to, 0, 320, 180);
+			CHECK(ob_view_in_frustum(&v, ob_motion_at(ball, ob_v3(1, 1, 1), t).pose.p, -.3));
+			CHECK(!(ob_norm(ob_sub(to.eye, before)) > .3 * range)); // in an eighth of a second
+			before = to.eye;
+		}
+		CHECK(range_of(&to) < 2 * range);
+		ball->p = ob_v3(1e6, 0, 0);
+		CHECK(ob_draw_list_fill(&list, NULL, &s, 40.1));
+		to = ob_camera_follow(&camera, &list, 320, 180);
+		CHECK(ob_norm(ob_sub(to.target, camera.target)) < range);
+		ob_draw_list_finish(&list);
+		test_scene_finish(&s);
+	}
+}
+
+// One that leaves others that move is left behind.
+static void automatic_cameras_stay(void)
+{
+	ob_draw_list list = { 0 };
+	ob_snapshot s;
+	ob_motion *ball = row_and_ball(&s, 0, 2);
+	ob_camera_def camera = test_scene_camera(ob_v3(0, -9, 3), ob_v3(0, 0, .3)), to = camera;
+	test_scene_add(&s, OB_SHAPE_SPHERE, ob_v3(.3, 0, 0), ob_v3(1, 0, .3), ob_quat_identity(), red)->w =
+		ob_v3(0, 0, 1);
+	camera.automatic = true;
+	for (double t = 0; t <= 40; t += .125) {
+		CHECK(ob_draw_list_fill(&list, NULL, &s, t));
+		to = ob_camera_follow(&camera, &list, 320, 180);
+		const ob_view v = ob_view_of_camera(&to, 0, 320, 180);
+		CHECK(ob_view_in_frustum(&v, ob_v3(1, 0, .3), -.3));
+	}
+	CHECK(ball->v.x > 0 && range_of(&to) < 2 * range_of(&camera));
+	ob_draw_list_finish(&list);
+	test_scene_finish(&s);
+}
+
 // Cameras that follow an object keep their offset from it; cameras on it turn with it, too.
 static void cameras_go_along(void)
 {
@@ -204,6 +273,8 @@ int main(void)
 	cameras_move();
 	automatic_cameras_centre();
 	automatic_cameras_attend();
+	automatic_cameras_go_on();
+	automatic_cameras_stay();
 	cameras_go_along();
 	far_from_the_origin();
 	return check_end();

@@ -4,7 +4,8 @@
 import { turned } from './motion.js';
 
 const STEEPEST = 89 * Math.PI / 180;
-const LOST_RANGES = 1.5, SPREAD = 2.05, NEAREST = 0.3; // for an automatic viewpoint: see src/render/draw_list.c
+const LOST_RANGES = 1.5, LEFT_RANGES = 20, PRESENT = [0.05, 0.1], SPREAD = 2.05, NEAREST = 0.3; // for an
+                                                                 // automatic viewpoint: see src/render/draw_list.c
 const NARROWEST = 1.3; // width over height, below which the angle of view grows with the height
 const FADE = 0.2; // s, in which a viewpoint approaches a followed object
 const NEAR = 30; // distance to it, in radii
@@ -14,6 +15,28 @@ const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => add([0, 0, 0], a, 1 / Math.hypot(...a));
+
+// Returns how much a body counts, by its distance from the middle of those that move, and from the initial target: as
+// presence_of of the renderer.
+function lookAbout(bodies, target, range) {
+	const near2 = (a, b) => dot(add(a, b, -1), add(a, b, -1));
+	const from = (place) => {
+		const left = (b) => 1 / (1 + (near2(b.p, target) / (LEFT_RANGES * range) ** 2) ** 2);
+		const motion = (b, presence) => b.attention ** 6 * presence(b);
+		let all = 0, near = 0;
+		for (const b of bodies) {
+			const moves = motion(b, left);
+			all += moves;
+			near += moves / (near2(b.p, place) + 0.25 * range ** 2) ** 2;
+		}
+		const lost = LOST_RANGES ** 4 * (range ** 4 + (near > 0 ? all / near : 0));
+		const presence = (b) => left(b) / (1 + (near2(b.p, place) ** 2 / lost) ** 2);
+		return { presence, moves: (b) => motion(b, presence) };
+	};
+	const { presence, moves } = from(target), weight = bodies.reduce((sum, b) => sum + moves(b), 0);
+	const middle = bodies.reduce((sum, b) => add(sum, b.p, moves(b) / weight), [0, 0, 0]);
+	return weight > 0 ? from(middle).presence : presence;
+}
 
 export class Camera {
 	constructor() {
@@ -115,17 +138,17 @@ export class Camera {
 	// Places the viewpoint to see moving objects, as ob_camera_follow of the renderer.
 	follow(bodies, width, height) {
 		const v = this.view(width, height), { target, range } = this.first, moving = [];
+		const free = bodies.filter((b) => !b.fixed && Number.isFinite(b.radius)), about = lookAbout(free, target, range);
 		let all = 0, present = 0, middle = [0, 0, 0];
-		for (const { p, radius, fixed, attention } of bodies) {
-			if (fixed || !Number.isFinite(radius))
-				continue;
-			const d = add(p, target, -1), presence = 1 / (1 + (dot(d, d) / (LOST_RANGES * range) ** 2) ** 2), weight = attention * presence;
+		for (const b of free) {
+			const presence = about(b), weight = b.attention * presence;
 			present += presence;
-			moving.push({ p, radius, weight });
+			moving.push({ p: b.p, radius: b.radius, weight });
 			all += weight;
-			middle = add(middle, p, weight);
+			middle = add(middle, b.p, weight);
 		}
-		if (present < 0.5)
+		const sight = Math.min(1, (present - PRESENT[0]) / (PRESENT[1] - PRESENT[0]));
+		if (!(sight > 0))
 			return;
 		middle = [0, 1, 2].map((k) => middle[k] / all);
 		const placed = moving.map(({ p, radius, weight }) => {
@@ -151,8 +174,9 @@ export class Camera {
 				[high, low] = reach(axis, Math.min((high + low) / (2 * away), tangent));
 			return (high - low) / 2;
 		};
-		this.target = add(add(middle, v.right, centre('right', v.tanX)), v.up, centre('up', v.tanY));
-		this.range = away;
+		const goal = add(add(middle, v.right, centre('right', v.tanX)), v.up, centre('up', v.tanY));
+		this.target = add(target, add(goal, target, -1), sight);
+		this.range = range + sight * (away - range);
 		this.elevation = this.first.elevation;
 		this.keepAbove();
 	}
