@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "cli/strip.h"
 #include "plot/caption.h"
 #include "table/table.h"
 
@@ -80,6 +81,7 @@ struct ob_capture {
 	const ob_universe *universe; // of the places; NULL = none
 	ob_worker_place *place; // [workers]
 	uint32_t workers;
+	ob_worker_strip *strip; // NULL: none
 };
 
 static bool add(ob_capture *c, ob_sink *s)
@@ -141,7 +143,12 @@ ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, d
 	c->width = f->width;
 	c->height = f->height;
 	c->raw_fd = -1;
-	if (u && f->colour_by != OB_COLOUR_OWN && !find_workers(c, u, e)) {
+	bool fine = !u || f->colour_by == OB_COLOUR_OWN || find_workers(c, u, e);
+	if (fine && f->simulators) {
+		c->strip = ob_worker_strip_create(u, e);
+		fine = c->strip;
+	}
+	if (!fine) {
 		ob_capture_close(c, NULL);
 		return NULL;
 	}
@@ -215,6 +222,8 @@ bool ob_capture_show(ob_capture *c, const ob_snapshot *prev, const ob_snapshot *
 			if (!ob_plot_caption(c->rgba, c->width, c->height, c->title, time, e))
 				return false;
 		}
+		if (c->strip && !ob_worker_strip_paint(c->strip, now, c->rgba, c->width, c->height, e))
+			return false;
 		trace(c, OB_TRACE_DRAW, begin);
 		begin = ob_clock_ns();
 		for (int i = 0; i < c->sinks; i++) {
@@ -237,6 +246,7 @@ bool ob_capture_close(ob_capture *c, ob_error *e)
 	if (c->raw_fd >= 0 && close(c->raw_fd) != 0 && fine)
 		fine = ob_fail(e, "%s: %s", c->raw_name, strerror(errno));
 	ob_renderer_destroy(c->renderer);
+	ob_worker_strip_destroy(c->strip);
 	free(c->place);
 	free(c->rgba);
 	free(c);

@@ -44,7 +44,7 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	static const ob_option_id of_lockstep[] = {
 		OB_OPTION_ARCH,       OB_OPTION_HARDEN,  OB_OPTION_TOLERANCE, OB_OPTION_STRICT,
 		OB_OPTION_LAG,        OB_OPTION_EXPLAIN, OB_OPTION_TRACE,     OB_OPTION_CHECK,
-		OB_OPTION_CHECKPOINT, OB_OPTION_RESUME,  OB_OPTION_ON_DEATH,  OB_OPTION_OVERLAY,
+		OB_OPTION_CHECKPOINT, OB_OPTION_RESUME,  OB_OPTION_ON_DEATH,
 	};
 	const char *sync = a->value[OB_OPTION_SYNC], *coupling = a->value[OB_OPTION_COUPLING];
 	r->free = (ob_free_settings){ .update_rate = NAN, .max_lag = NAN, .coupling = UINT32_MAX };
@@ -63,6 +63,8 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 			r->of_lockstep = ob_option_table[of_lockstep[i]].name;
 	if (a->value[OB_OPTION_SLEEPING] && strcmp(a->value[OB_OPTION_SLEEPING], "on") == 0)
 		r->of_lockstep = "sleeping on";
+	if (a->value[OB_OPTION_OVERLAY] && strstr(a->value[OB_OPTION_OVERLAY], "contacts"))
+		r->of_lockstep = "overlay contacts";
 	if (r->measure == OB_MEASURE_PROFILE)
 		r->of_lockstep = "measure profile";
 	if (coupling && !ob_setting_find(OB_COUPLING_NAMES, coupling, &r->free.coupling))

@@ -178,10 +178,13 @@ static bool read_overlay(ob_frames_request *f, const char *list, ob_error *e)
 			f->joints = true;
 		else if (n == 7 && strncmp(list, "caption", n) == 0)
 			f->caption = true;
+		else if (n == 10 && strncmp(list, "simulators", n) == 0)
+			f->simulators = true;
 		else
-			return ob_fail(
-				e, "--overlay %.*s: expected aabb, contacts, joints or caption, as in aabb,contacts",
-				(int)n, list);
+			return ob_fail(e,
+				       "--overlay %.*s: expected aabb, contacts, joints, simulators or caption, as in "
+				       "aabb,contacts",
+				       (int)n, list);
 		list += n + (list[n] == ',');
 	}
 	return true;
@@ -268,7 +271,7 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e
 		return ob_fail(e, "--size %dx%d: a video needs an even width and height", f->width, f->height);
 	return read_overlay(f, a->value[OB_OPTION_OVERLAY], e) && read_colours(f, a->value[OB_OPTION_COLOUR_BY], e) &&
 	       (!f->wanted || ob_render_check(e)) && (!f->video || ob_video_check(e)) &&
-	       (!f->caption || ob_plot_check(e));
+	       (!(f->caption || f->simulators) || ob_plot_check(e));
 }
 
 static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)
@@ -554,6 +557,8 @@ bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_erro
 			       "--colour-by %s: a record does not hold where simulators ran; simulator, island, "
 			       "rest and cost can be shown",
 			       a->value[OB_OPTION_COLOUR_BY]);
+	if (r->frames.simulators)
+		return ob_fail(e, "--overlay simulators: a record does not hold where simulators ran");
 	return !r->frames.contacts || ob_fail(e, "--overlay contacts: a record holds no contacts");
 }
 

@@ -21,7 +21,7 @@ typedef struct ob_frames_request {
 	uint32_t stills; // 0 = none
 	ob_quality quality;
 	int width, height, samples;
-	bool aabb, contacts, joints, caption; // overlays
+	bool aabb, contacts, joints, caption, simulators; // overlays
 	ob_colour_key colour_by;
 } ob_frames_request;
 

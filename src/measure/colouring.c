@@ -14,8 +14,8 @@ static const float rest[][3] = {
 static const double most_substeps = 512;
 static const double least_lead = 1e-3, most_lead = 1; // s
 
-// Colour of a number: a hue of its own, bright for even, darker for odd turns.
-static void colour_of_number(uint32_t number, float out[3])
+// Bright for even turns of the hue, darker for odd ones.
+void ob_colour_of_number(uint32_t number, float out[3])
 {
 	const double hue = 6 * fmod(golden_turn * number, 1), value = number / 3 % 2 ? .42 : .78, least = .06;
 	for (int i = 0; i < 3; i++) {
@@ -32,8 +32,7 @@ ob_rest ob_rest_of(const ob_motion *m)
 	return !(m->flags & OB_MOTION_SWINGS) && ob_norm2(m->a) > 0 ? OB_REST_FLIES : OB_REST_TOUCHES;
 }
 
-// From dark blue by red to light yellow. share: from 0 to 1; NaN: none.
-static void colour_of_share(double share, float out[3])
+void ob_colour_of_share(double share, float out[3])
 {
 	if (isnan(share)) {
 		memcpy(out, none, 3 * sizeof *out);
@@ -66,10 +65,10 @@ static void colour_of_home(const ob_colouring *c, uint32_t home, float out[3])
 	}
 	while (c->place[first].pid != c->place[home].pid)
 		first++;
-	colour_of_number(c->key == OB_COLOUR_WORKER ? home
-			 : c->key == OB_COLOUR_RANK ? c->place[home].rank
-						    : first,
-			 out);
+	ob_colour_of_number(c->key == OB_COLOUR_WORKER ? home
+			    : c->key == OB_COLOUR_RANK ? c->place[home].rank
+						       : first,
+			    out);
 }
 
 static bool has_simulator(const ob_snapshot *s, uint32_t id)
@@ -85,15 +84,15 @@ void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, f
 	else if (!has_simulator(s, id))
 		memcpy(colour, none, 3 * sizeof *colour);
 	else if (c->key == OB_COLOUR_SIMULATOR)
-		colour_of_number(id, colour);
+		ob_colour_of_number(id, colour);
 	else if (c->key == OB_COLOUR_ISLAND)
-		colour_of_number(m->flags & OB_MOTION_SWINGS ? id : m->island, colour);
+		ob_colour_of_number(m->flags & OB_MOTION_SWINGS ? id : m->island, colour);
 	else if (c->key == OB_COLOUR_REST)
 		memcpy(colour, rest[ob_rest_of(m)], 3 * sizeof *colour);
 	else if (c->key == OB_COLOUR_COST)
-		colour_of_share(share_of_cost(m), colour);
+		ob_colour_of_share(share_of_cost(m), colour);
 	else if (c->key == OB_COLOUR_LAG)
-		colour_of_share(s->own_time ? ob_share_of_lead(s->own_time[id] - s->time) : NAN, colour);
+		ob_colour_of_share(s->own_time ? ob_share_of_lead(s->own_time[id] - s->time) : NAN, colour);
 	else
 		colour_of_home(c, s->home ? s->home[id] : UINT32_MAX, colour);
 }

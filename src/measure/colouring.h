@@ -42,6 +42,9 @@ ob_rest ob_rest_of(const ob_motion *m);
 // Place on a scale, 0 to 1, of a lead (s) of an own time over the common time. NaN stays NaN.
 double ob_share_of_lead(double lead);
 
+// Colours, linear RGB: a number's, with a hue of its own; a share's (0 to 1; NaN: none), from dark blue by red to yellow.
+void ob_colour_of_number(uint32_t number, float out[3]);
+void ob_colour_of_share(double share, float out[3]);
 // Colour, linear RGB, of a present object. Objects without a simulator are grey, except for OB_COLOUR_OWN.
 void ob_colouring_of(const ob_colouring *c, const ob_snapshot *s, uint32_t id, float colour[3]);
 

@@ -30,3 +30,9 @@ bool ob_plot_caption(uint8_t *rgba, int width, int height, const char *title, co
 	const ob_plot_part *part = load(e);
 	return part && part->caption(rgba, width, height, title, time, e);
 }
+
+bool ob_plot_strip(uint8_t *rgba, int width, int height, const ob_strip *s, ob_error *e)
+{
+	const ob_plot_part *part = load(e);
+	return part && part->strip(rgba, width, height, s, e);
+}

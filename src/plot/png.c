@@ -102,4 +102,5 @@ static bool draw(const ob_drawing *d, const char *path, double zoom, ob_error *e
 	return !status || ob_fail(e, "cannot write %s: %s", path, cairo_status_to_string(status));
 }
 
-OB_PART(ob_plot_part) = { OB_PART_HEAD(ob_plot_part), .png = draw, .caption = ob_cairo_caption };
+OB_PART(ob_plot_part) = { OB_PART_HEAD(ob_plot_part), .png = draw, .caption = ob_cairo_caption,
+			  .strip = ob_cairo_strip };

@@ -108,6 +108,24 @@ class Frames(program.Case):
 			self.assertEqual(found, expected, words)
 		self.assertGreater(len(set(expected)), 20) # things move
 
+	def test_who_simulates(self):
+		"""A strip of workers at the upper left, with the own times of a free run below: the rest of the picture is as before."""
+		size, wide = ["--size", "640x360", "--samples", "1"], 640
+		def picture(*words):
+			raw = self.path("raw")
+			program.report(*BOXES, *size, "--workers", "2", "--still", ".5", "--raw", raw, *words)
+			with open(raw, "rb") as f:
+				return f.read()
+		plain, strip = picture(), picture("--overlay", "simulators")
+		changed = {(i // 3 % wide, i // 3 // wide) for i in range(len(plain)) if plain[i] != strip[i]}
+		self.assertGreater(len(changed), 2000)
+		self.assertLess(max(x for x, _ in changed), 300)
+		lowest = max(y for _, y in changed)
+		self.assertLess(lowest, 60)
+		free = picture("--sync", "free", "--overlay", "simulators")
+		rows = [free[3 * wide * y:3 * wide * y + 3 * 250] for y in range(lowest + 4, lowest + 60)]
+		self.assertGreater(len({row[3 * x:3 * x + 3] for row in rows for x in range(12, 240)}), 20)
+
 	def test_old_frames_are_replaced(self):
 		self.draw("f", "--duration", ".5")
 		r = self.draw("f", "--duration", ".2")

@@ -108,7 +108,8 @@ class Replay(program.Case):
 				([*frames, "-D", "n=3"], "--define: a record is shown as it was run"),
 				([*frames, program.scene("stack")], "expected one of them"),
 				([*frames, "--camera", "nobody"], "--camera nobody: the scene has none of this name"),
-				([*frames, "--overlay", "contacts"], "a record holds no contacts")):
+				([*frames, "--overlay", "contacts"], "a record holds no contacts"),
+				([*frames, "--overlay", "simulators"], "does not hold where simulators ran")):
 			self.refuse("run", "--replay", record, *words, saying=saying)
 		self.refuse("run", "--replay", program.scene("stack"), *frames, saying="no HDF5 file")
 		self.refuse("run", "--replay", self.path("nothing"), *frames, saying="No such file or directory")
