@@ -12,7 +12,7 @@
 #include "cli/observe.h"
 #include "cli/quantity.h"
 #include "cli/request.h"
-#include "cli/version.h"
+#include "cli/save.h"
 #include "host/control.h"
 #include "host/host.h"
 #include "table/table.h"
@@ -133,22 +133,8 @@ static void save(led_run *r)
 	uint32_t words;
 	const uint64_t *seed;
 	ob_error e;
-	ob_checkpoint_file f = { 0 };
-	ob_saved_run now = { .scene = r->q.scene,
-			     .text = r->scene->text,
-			     .text_size = r->scene->text_size,
-			     .options = r->q.scene_options,
-			     .duration = r->q.duration,
-			     .settings = r->q.run };
-	now.settings.timed = now.settings.freezes = now.settings.verify = 0;
-	now.settings.fault = (ob_fault_plan){ 0 };
-	bool fine = !r->q.run.monolith || ob_fail(&e, "the one ODE world cannot be saved: take object simulators");
-	fine = fine && ob_saved_run_make(&now, &f, r->host, ob_version_words, &e);
-	if (fine) {
-		ob_checkpoint_seal(&f);
-		fine = ob_checkpoint_write(&f, ob_control_words(r->control, &words, &seed), &e);
-	}
-	ob_checkpoint_finish(&f);
+	const char *path = ob_control_words(r->control, &words, &seed);
+	const bool fine = ob_save_led_run(&r->q, r->scene, r->host, path, &e);
 	ob_control_reply(r->control, r->host, fine ? NULL : &e);
 }
 

@@ -134,7 +134,9 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_TRACE] = { NULL, "trace", "FILE", "what each worker did when, for ui.perfetto.dev", RUN, 0 },
 
 	[OB_OPTION_CHECKPOINT] = { NULL, "checkpoint", "FILE",
-				   "what the run needs to go on, replaced as it goes, and at its end", RUN, 0 },
+				   "what the run needs to go on, replaced as it goes, and at its end (serve: on "
+				   "request)",
+				   RUN | SERVE, 0 },
 	[OB_OPTION_EVERY] = { NULL, "every", "S", "simulated seconds from one checkpoint to the next (1)", RUN, 0 },
 	[OB_OPTION_RESUME] = { NULL, "resume", "FILE", "go on from a checkpoint, instead of a scene", RUN | CONTROL,
 			       0 },

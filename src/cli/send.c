@@ -1,10 +1,13 @@
 // obsim send: sends a request to a running universe, from another terminal or a program.
+#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/spelling.h"
@@ -242,6 +245,73 @@ static bool read_path(sending *s, ob_error *e)
 	return true;
 }
 
+static bool read_parameter(sending *s, ob_error *e)
+{
+	double value;
+	const int n = snprintf((char *)s->request.values, sizeof s->request.values, "%s=%s", s->word[0], s->word[1]);
+	return read_number("set", s->word[1], &value, e) &&
+	       (n < (int)sizeof s->request.values || ob_fail(e, "set: expected a parameter's name"));
+}
+
+static bool read_whole(const char *verb, const char *word, uint64_t *out, ob_error *e)
+{
+	char *end;
+	errno = 0;
+	*out = strtoull(word, &end, 10);
+	return (strspn(word, "0123456789") > 0 && !*end && !errno) ||
+	       ob_fail(e, "%s: expected a whole number, got \"%s\"", verb, word);
+}
+
+static bool read_seed(sending *s, ob_error *e)
+{
+	return read_whole("seed", s->word[0], &s->request.seed, e);
+}
+
+static bool read_path_of_file(sending *s, ob_error *e)
+{
+	char here[PATH_MAX] = "";
+	const char *path = s->word[0];
+	if (*path != '/' && !getcwd(here, sizeof here))
+		return ob_fail(e, "save: there is no current directory");
+	const int n =
+		snprintf((char *)s->request.values, sizeof s->request.values, "%s%s%s", here, *here ? "/" : "", path);
+	return n < (int)sizeof s->request.values || ob_fail(e, "save: the path is too long");
+}
+
+// Waits until the file has been replaced by another one, but not for ever.
+static bool await_file(const char *path, const struct stat *before, ob_error *e)
+{
+	const double patience = 30, end = ob_clock_wall() + patience; // s
+	struct stat now;
+	while (ob_clock_wall() < end && nanosleep(&(struct timespec){ .tv_nsec = 1000000 }, NULL) == 0)
+		if (stat(path, &now) == 0 &&
+		    (now.st_ino != before->st_ino || now.st_mtim.tv_sec != before->st_mtim.tv_sec ||
+		     now.st_mtim.tv_nsec != before->st_mtim.tv_nsec))
+			return true;
+	return ob_fail(e, "save: %s was not written: viewers are told why", path);
+}
+
+static bool save(sending *s, ob_error *e)
+{
+	const char *path = (const char *)s->request.values;
+	struct stat before = { 0 };
+	if (!read_path_of_file(s, e))
+		return false;
+	stat(path, &before);
+	s->request.kind = OB_REQUEST_SAVE;
+	return ob_ask(s->u, &s->request, e) && await_file(path, &before, e);
+}
+
+// Waits until so many steps are complete.
+static bool await_step(sending *s, ob_error *e)
+{
+	uint64_t step = 0;
+	return read_whole("wait", s->word[0], &step, e) &&
+	       (ob_universe_wait(s->u, step, INFINITY) ||
+		ob_fail(e, "universe \"%s\" ended after step %llu", s->universe,
+			(unsigned long long)ob_step_count(s->u)));
+}
+
 static bool read_worker(sending *s, ob_error *e)
 {
 	char *end;
@@ -285,6 +355,10 @@ static const struct verb {
 	{ "keep", "keep", 0, 0, OB_REQUEST_KEEP, NULL, NULL },
 	{ "return", "return", 0, 0, OB_REQUEST_RETURN, NULL, NULL },
 	{ "restart", "restart", 0, 0, OB_REQUEST_RESTART, NULL, NULL },
+	{ "set", "set PARAMETER NUMBER", 2, 0, OB_REQUEST_SET, NULL, read_parameter },
+	{ "seed", "seed NUMBER", 1, 0, OB_REQUEST_SEED, NULL, read_seed },
+	{ "save", "save FILE", 1, 0, OB_REQUEST_SAVE, NULL, NULL },
+	{ "wait", "wait STEP", 1, 0, OB_REQUEST_KINDS, NULL, NULL },
 	{ "pause", "pause", 0, 0, OB_REQUEST_PAUSE, NULL, NULL },
 	{ "resume", "resume", 0, 0, OB_REQUEST_RESUME, NULL, NULL },
 	{ "step", "step [STEPS]", 0, 1, OB_REQUEST_STEP, NULL, read_steps },
@@ -333,6 +407,10 @@ static bool send(sending *s, const struct verb *v, ob_error *e)
 {
 	if (v->kind == OB_REQUEST_ADD)
 		return create(s, e);
+	if (v->kind == OB_REQUEST_SAVE)
+		return save(s, e);
+	if (v->kind == OB_REQUEST_KINDS)
+		return await_step(s, e);
 	s->request.kind = v->kind;
 	return (!v->read || v->read(s, e)) && (!v->find || v->find(s, s->word[0], e)) && ob_ask(s->u, &s->request, e);
 }

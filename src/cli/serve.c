@@ -15,6 +15,7 @@
 #include "cli/quantity.h"
 #include "cli/request.h"
 #include "cli/rerun.h"
+#include "cli/save.h"
 #include "cli/version.h"
 #include "measure/measure.h"
 #include "record/record.h"
@@ -55,12 +56,18 @@ static bool read_request(serve_request *q, const ob_arguments *a, ob_error *e)
 	       read_count(a, OB_OPTION_ROOM, 1000000, &q->room, e);
 }
 
-// A run that is served. Parameters that viewers have set replace it by another one.
+typedef struct ob_define {
+	char text[OB_NAME_MAX + 32]; // "name=value"
+} ob_define;
+
+// A run that is served. Parameters and a seed that visitors have set replace it by another one.
 typedef struct serving {
 	const ob_arguments *a; // from the command line
-	ob_arguments own; // with the parameters that viewers have set; define is its own
+	ob_arguments own; // with what visitors have set; define is its own
 	ob_define *set; // [sets], those parameters
 	uint32_t sets;
+	char seed[24]; // likewise; "": none
+	const char *fixed; // why the scene cannot start anew; NULL: it can
 	serve_request q;
 	ob_scene *scene;
 	ob_host *host;
@@ -86,9 +93,12 @@ static bool load(serving *s, ob_error *e)
 	else
 		q->free.end = INFINITY;
 	s->q.server.free_run = q->is_free;
-	s->q.server.fixed = q->record          ? "it is recorded (--record)"
-			    : s->scene->meshes ? "viewers have its meshes already"
-					       : NULL;
+	s->fixed = q->record                             ? "it is recorded (--record)"
+		   : s->a->value[OB_OPTION_LOG_REQUESTS] ? "its requests are logged (--log-requests)"
+		   : s->scene->meshes                    ? "viewers have its meshes already"
+							 : NULL;
+	s->q.server.fixed = s->fixed;
+	s->q.server.saves = q->checkpoint;
 	return true;
 }
 
@@ -102,6 +112,9 @@ static bool start(serving *s, ob_error *e)
 	config.free_window = free_window;
 	config.spare = s->q.room;
 	config.returns = !q->record;
+	config.wishes = true;
+	config.fixed = s->fixed;
+	config.checkpoint = q->checkpoint;
 	config.pace = s->pace;
 	config.log = s->q.log;
 	s->host = ob_host_start(s->scene, &config, e);
@@ -122,10 +135,10 @@ static bool record(serving *s, ob_error *e)
 	       ob_recorder_append(s->recorder, &s->shown, e);
 }
 
-// Copies the parameters that viewers have set, with another one in place of its former value.
+// Copies the parameters that visitors have set, with another one, unless it is NULL, in place of its former value.
 static bool keep_parameter(serving *s, const ob_define *wish, ob_error *e)
 {
-	const size_t name = strcspn(wish->text, "=") + 1;
+	const size_t name = wish ? strcspn(wish->text, "=") + 1 : 0;
 	const ob_define *before = s->set;
 	uint32_t i = 0;
 	s->set = calloc(s->sets + 1, sizeof *s->set);
@@ -133,6 +146,8 @@ static bool keep_parameter(serving *s, const ob_define *wish, ob_error *e)
 		return ob_fail(e, "out of memory");
 	if (s->sets)
 		memcpy(s->set, before, s->sets * sizeof *before);
+	if (!wish)
+		return true;
 	while (i < s->sets && strncmp(s->set[i].text, wish->text, name) != 0)
 		i++;
 	s->sets += i == s->sets;
@@ -140,7 +155,7 @@ static bool keep_parameter(serving *s, const ob_define *wish, ob_error *e)
 	return true;
 }
 
-// Makes the arguments of the next run: those of the command line, and behind them what viewers have set.
+// Makes the arguments of the next run: those of the command line, and behind them what visitors have set.
 static bool make_arguments(const serving *s, ob_arguments *own, ob_error *e)
 {
 	*own = *s->a;
@@ -151,18 +166,33 @@ static bool make_arguments(const serving *s, ob_arguments *own, ob_error *e)
 		own->define[i] = s->a->define[i];
 	for (uint32_t i = 0; i < s->sets; i++)
 		own->define[own->defines++] = s->set[i].text;
+	if (*s->seed)
+		own->value[OB_OPTION_SEED] = s->seed;
 	return true;
+}
+
+// Notes what a visitor has set. false and e: out of memory.
+static bool keep_wish(serving *s, const ob_request *wish, ob_error *e)
+{
+	ob_define define;
+	if (wish->kind == OB_REQUEST_SEED) {
+		snprintf(s->seed, sizeof s->seed, "%llu", (unsigned long long)wish->seed);
+		return keep_parameter(s, NULL, e);
+	}
+	const int n = snprintf(define.text, sizeof define.text, "%s", (const char *)wish->values);
+	return n < (int)sizeof define.text ? keep_parameter(s, &define, e)
+					   : ob_fail(e, "set: expected a shorter number");
 }
 
 // Starts the scene anew, as an operator wishes. An invalid scene is told to viewers, and the run goes on. false and e: the
 // next run cannot be started.
-static bool start_anew(serving *s, const ob_define *wish, ob_error *e)
+static bool start_anew(serving *s, const ob_request *wish, ob_error *e)
 {
 	serving next = *s;
 	ob_error why;
 	next.scene = NULL;
 	next.own.define = NULL;
-	if (!keep_parameter(&next, wish, &why) || !make_arguments(&next, &next.own, &why) ||
+	if (!keep_wish(&next, wish, &why) || !make_arguments(&next, &next.own, &why) ||
 	    !read_request(&next.q, &next.own, &why) || !load(&next, &why)) {
 		ob_scene_free(next.scene);
 		free(next.own.define);
@@ -178,6 +208,17 @@ static bool start_anew(serving *s, const ob_define *wish, ob_error *e)
 	*s = next;
 	ob_pace_restart(s->pace);
 	return start(s, e) && ob_server_go_on(s->server, s->scene, s->host, e);
+}
+
+// Saves the run as a checkpoint, and tells viewers.
+static void save(serving *s, const ob_request *wish)
+{
+	const char *asked = (const char *)wish->values, *path = *asked ? asked : s->q.run.checkpoint;
+	ob_error text;
+	if (ob_save_led_run(&s->q.run, s->scene, s->host, path, &text))
+		ob_fail(&text, "a checkpoint of %.2f s is saved as %s",
+			(double)ob_step_count(ob_host_universe(s->host)) * s->q.run.run.step_length, path);
+	ob_server_notify(s->server, &text);
 }
 
 // Returns the next step of a free run, whose simulators follow the clock themselves; while paused, steps that are allowed.
@@ -215,14 +256,17 @@ static uint64_t go_on(serving *s, uint64_t done, uint64_t *batch, bool *at_once)
 static bool live(serving *s, ob_error *e)
 {
 	uint64_t done = 0, batch = 1, next_state = 0;
-	ob_define wish;
+	ob_request wish;
 	double began = ob_clock_wall();
 	bool at_once = false;
 	ob_host_go(s->host, 0);
 	while (ob_host_wait(s->host, e) && record(s, e)) {
 		double took = ob_clock_wall() - began;
 		ob_rerun_log_state(s->q.log, s->host, &next_state);
-		if (ob_server_take_wish(s->server, &wish)) {
+		const bool wished = ob_host_take_wish(s->host, &wish);
+		if (wished && wish.kind == OB_REQUEST_SAVE) {
+			save(s, &wish);
+		} else if (wished) {
 			if (!start_anew(s, &wish, e))
 				return false;
 			done = 0;
@@ -329,8 +373,6 @@ int ob_command_serve(const ob_arguments *a)
 	const char *path = a->value[OB_OPTION_LOG_REQUESTS];
 	const ob_request_log_head head = ob_rerun_head(&s.q.run, s.scene, s.q.room);
 	s.q.log = path ? ob_request_log_create(path, &head, &e) : NULL;
-	if (path)
-		s.q.server.fixed = "its requests are logged (--log-requests)";
 	ob_pace_begin(&pace, s.q.run.pace, s.q.paused);
 	int code = (!path || s.q.log) && start(&s, &e) ? carry_out(&s) : ob_command_fail(OB_EXIT_FAILED, e.text);
 	if (s.recorder && !ob_recorder_close(s.recorder, &e))

@@ -250,7 +250,8 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_confi
 	h->roster = ob_roster_create();
 	h->requests = ob_requests_create();
 	h->operations = ob_requests_create();
-	if (!h->requests || !h->operations || !h->roster)
+	h->wishes = ob_requests_create();
+	if (!h->requests || !h->operations || !h->wishes || !h->roster)
 		return ob_fail(e, "out of memory");
 	h->population = ob_population_create(scene, h->u, h->roster, e);
 	if (!h->population)
@@ -320,6 +321,10 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->limit = config->limit;
 	h->control = config->control;
 	h->returns = config->returns;
+	h->scene = scene;
+	h->takes_wishes = config->wishes;
+	h->fixed = config->fixed;
+	h->checkpoint = config->checkpoint;
 	h->pace = config->pace;
 	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;
 	pthread_mutex_init(&h->failure_lock, NULL);
@@ -468,6 +473,7 @@ void ob_host_stop(ob_host *h)
 	ob_population_destroy(h->population);
 	ob_requests_destroy(h->requests);
 	ob_requests_destroy(h->operations);
+	ob_requests_destroy(h->wishes);
 	ob_roster_destroy(h->roster);
 	pthread_mutex_destroy(&h->failure_lock);
 	pthread_mutex_destroy(&h->interval.lock);

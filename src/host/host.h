@@ -61,6 +61,9 @@ typedef struct ob_host_config {
 	double free_window; // s that its simulators may be ahead of the common time; 0: as far as memory reaches
 	ob_request_log *log; // input from outside; NULL = none. It must outlive the host
 	bool returns; // visitors may put the run back (ob_host_operate)
+	bool wishes; // the leader takes wishes of visitors (ob_host_take_wish)
+	const char *fixed; // why it does not start the scene anew; NULL: it does
+	const char *checkpoint; // path of the run's checkpoint; NULL = none. Both must outlive the host
 	struct ob_pace
 		*pace; // visitors may lead the run's time by it (pace.h); NULL = they may not. It must outlive the host
 	struct ob_control *control; // takes programs that control the run (control.h); NULL = refuses them. Likewise
@@ -126,6 +129,9 @@ bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e);
 // Carries out requests to keep a snapshot and to go back to one. Between a wait and the next go; returns true if the
 // universe was put back, to an earlier or later step. The first call keeps the start, where go begins.
 bool ob_host_operate(ob_host *h);
+// Takes the oldest wish of a visitor, which the leader is to carry out: OB_REQUEST_SET, _SEED or _SAVE. false: there is none.
+// Between a wait and the next go.
+bool ob_host_take_wish(ob_host *h, ob_request *out);
 // Requests that change objects, checked as by ob_host_request_add. Any thread.
 bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e);
 // With a trace: records an activity of the calling thread, the one that starts and stops the host, since begin

@@ -57,7 +57,7 @@ struct ob_host {
 	ob_fork_server *fork_server;
 	ob_worker_group *group;
 	ob_roster *roster;
-	ob_requests *requests, *operations; // operations: on the run as a whole
+	ob_requests *requests, *operations, *wishes; // operations: on the run as a whole; wishes: to its leader
 	ob_population *population;
 	ob_timeline *timeline; // NULL = not traced
 	ob_request_log *log; // NULL = none
@@ -74,6 +74,9 @@ struct ob_host {
 	ob_snapshots snapshots;
 	uint64_t start, kept; // snapshots for visitors; 0 = none
 	bool returns; // see ob_host_config; likewise the next
+	const ob_scene *scene;
+	bool takes_wishes;
+	const char *fixed, *checkpoint;
 	struct ob_pace *pace;
 	atomic_uint running_workers; // workers that have not ended
 	atomic_bool interrupted, failed, ending;

@@ -1,5 +1,6 @@
 // Requests of any thread to a run.
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "free/free.h"
@@ -66,9 +67,54 @@ static bool check_return(const ob_host *h, ob_error *e)
 	       ob_fail(e, "the one ODE world cannot be put back, as ODE does not show its whole state");
 }
 
-// Checks a request to the universe as a whole, or to the origin's pulls.
-static bool check_whole(const ob_host *h, const ob_request *r, ob_error *e)
+// Checks "name=value" of a parameter that has limits.
+static bool check_parameter(const ob_scene *s, const char *text, ob_error *e)
 {
+	const size_t name = strcspn(text, "=");
+	char *end;
+	const double value = text[name] ? strtod(text + name + 1, &end) : NAN;
+	for (uint32_t i = 0; i < s->params; i++) {
+		const ob_param_def *p = &s->param[i];
+		if (strlen(p->name) != name || memcmp(p->name, text, name) != 0)
+			continue;
+		if (text[name] && !*end && value >= p->min && value <= p->max && (!p->whole || value == floor(value)))
+			return true;
+		return ob_fail(e, "%s: expected a %snumber from %.10g to %.10g, got %s", p->name,
+			       p->whole ? "whole " : "", p->min, p->max, text + name + (text[name] != 0));
+	}
+	return ob_fail(e, "%.*s: the scene has no parameter of this name within limits", (int)name, text);
+}
+
+static bool check_save(const ob_host *h, const char *path, ob_error *e)
+{
+	if (ob_universe_settings(h->u)->monolith || ob_free_settings_of(h->u))
+		return ob_fail(e, "only object simulators in lockstep can be saved");
+	return *path == '/' || (!*path && h->checkpoint) ||
+	       ob_fail(e, *path ? "save: expected a path from the root on"
+				: "the server has no place for a checkpoint: start it with --checkpoint FILE");
+}
+
+// Checks a wish to the leader of the run.
+static bool check_wish(const ob_host *h, ob_request *r, ob_error *e)
+{
+	const char *text = (const char *)r->values;
+	r->values[sizeof r->values - 1] = 0;
+	if (!h->takes_wishes)
+		return ob_fail(e,
+			       "this run does not take this request: obsim serve does; a program that leads a run by "
+			       "obsim control has reset and save");
+	if (r->kind == OB_REQUEST_SAVE)
+		return check_save(h, text, e);
+	if (h->fixed)
+		return ob_fail(e, "the scene cannot start anew: %s", h->fixed);
+	return r->kind == OB_REQUEST_SEED || check_parameter(h->scene, text, e);
+}
+
+// Checks a request to the universe as a whole, or to the origin's pulls.
+static bool check_whole(const ob_host *h, ob_request *r, ob_error *e)
+{
+	if (r->kind >= OB_REQUEST_SET && r->kind <= OB_REQUEST_SAVE)
+		return check_wish(h, r, e);
 	return r->kind == OB_REQUEST_RELEASE || check_return(h, e);
 }
 
@@ -199,6 +245,10 @@ bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e)
 	case OB_REQUEST_RETURN:
 	case OB_REQUEST_RESTART:
 		return ob_requests_push(h->operations, r) || ob_fail(e, "out of memory");
+	case OB_REQUEST_SET:
+	case OB_REQUEST_SEED:
+	case OB_REQUEST_SAVE:
+		return ob_requests_push(h->wishes, r) || ob_fail(e, "out of memory");
 	case OB_REQUEST_PAUSE:
 	case OB_REQUEST_RESUME:
 	case OB_REQUEST_STEP:

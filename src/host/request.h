@@ -31,6 +31,9 @@ typedef enum ob_request_kind {
 	OB_REQUEST_KEEP, // a snapshot of the whole universe replaces the one kept before
 	OB_REQUEST_RETURN, // the universe goes back to that snapshot, or to its start if there is none
 	OB_REQUEST_RESTART, // the universe goes back to its start
+	OB_REQUEST_SET, // wish: the scene starts anew with another parameter, "name=value" in values
+	OB_REQUEST_SEED, // wish: with another seed
+	OB_REQUEST_SAVE, // wish: a checkpoint file at the path in values; "": where the run keeps its checkpoint
 	OB_REQUEST_PAUSE, // time stands; likewise below, of a run with a pace (pace.h)
 	OB_REQUEST_RESUME,
 	OB_REQUEST_STEP, // so many steps, while time stands
@@ -70,6 +73,7 @@ typedef struct ob_request {
 	double motor; // target: m/s, rad/s, or m, rad
 	uint64_t steps; // 1 to OB_REQUEST_STEPS
 	double until; // s, simulated
+	uint64_t seed;
 	double rate; // simulated s in a second, 0 to OB_REQUEST_RATE_MOST; 0: as fast as possible
 	uint32_t bytes; // of the message, or the joint
 	unsigned char values[512]; // flat (scene/flat.h)

@@ -79,6 +79,11 @@ static bool operate(ob_host *h, const ob_request *r, ob_error *e)
 	return false;
 }
 
+bool ob_host_take_wish(ob_host *h, ob_request *out)
+{
+	return ob_requests_take(h->wishes, out);
+}
+
 bool ob_host_operate(ob_host *h)
 {
 	ob_request r;

@@ -12,34 +12,21 @@
 #include "shape/shape.h"
 
 static const char *const kinds[OB_DO_KINDS] = {
-	[OB_DO_CREATE] = "create",
-	[OB_DO_REMOVE] = "remove",
-	[OB_DO_DRAG] = "drag",
-	[OB_DO_PUSH] = "push",
-	[OB_DO_TURN] = "turn",
-	[OB_DO_RELEASE] = "release",
-	[OB_DO_MESSAGE] = "message",
-	[OB_DO_EDIT] = "edit",
-	[OB_DO_KICK] = "kick",
-	[OB_DO_PATH] = "path",
-	[OB_DO_MOTOR] = "motor",
-	[OB_DO_UNJOIN] = "unjoin",
-	[OB_DO_KILL] = "kill",
-	[OB_DO_KEEP] = "keep",
-	[OB_DO_RETURN] = "return",
-	[OB_DO_RESTART] = "restart",
-	[OB_DO_PAUSE] = "pause",
-	[OB_DO_RESUME] = "resume",
-	[OB_DO_STEP] = "step",
-	[OB_DO_UNTIL] = "until",
-	[OB_DO_RATE] = "rate",
-	[OB_DO_CONTACTS] = "contacts",
-	[OB_DO_JOINTS] = "joints",
-	[OB_DO_INSPECT] = "inspect",
-	[OB_DO_SIMULATORS] = "simulators",
-	[OB_DO_ENERGY] = "energy",
-	[OB_DO_SET] = "set",
-	[OB_DO_ANEW] = "anew",
+	[OB_DO_CREATE] = "create",     [OB_DO_REMOVE] = "remove",
+	[OB_DO_DRAG] = "drag",         [OB_DO_PUSH] = "push",
+	[OB_DO_TURN] = "turn",         [OB_DO_RELEASE] = "release",
+	[OB_DO_MESSAGE] = "message",   [OB_DO_EDIT] = "edit",
+	[OB_DO_KICK] = "kick",         [OB_DO_PATH] = "path",
+	[OB_DO_MOTOR] = "motor",       [OB_DO_UNJOIN] = "unjoin",
+	[OB_DO_KILL] = "kill",         [OB_DO_KEEP] = "keep",
+	[OB_DO_RETURN] = "return",     [OB_DO_RESTART] = "restart",
+	[OB_DO_SET] = "set",           [OB_DO_SEED] = "seed",
+	[OB_DO_SAVE] = "save",         [OB_DO_PAUSE] = "pause",
+	[OB_DO_RESUME] = "resume",     [OB_DO_STEP] = "step",
+	[OB_DO_UNTIL] = "until",       [OB_DO_RATE] = "rate",
+	[OB_DO_CONTACTS] = "contacts", [OB_DO_JOINTS] = "joints",
+	[OB_DO_INSPECT] = "inspect",   [OB_DO_SIMULATORS] = "simulators",
+	[OB_DO_ENERGY] = "energy",     [OB_DO_ANEW] = "anew",
 };
 
 enum {
@@ -419,6 +406,15 @@ static bool put_words(reading *r, ob_request *q)
 	return q->bytes > 0 || fail(r, "expected words", "text") == 0;
 }
 
+static bool make_seed(reading *r, uint64_t *out)
+{
+	const double seed = r->value[VALUE][0], most = 9007199254740992; // 2^53: all whole numbers up to it are exact
+	if (!(seed >= 0 && seed <= most && seed == floor(seed)))
+		return fail(r, "expected a whole number from 0 to 2^53", "value") == 0;
+	*out = (uint64_t)seed;
+	return true;
+}
+
 // Makes the requests of a command that goes to the host.
 static bool make_requests(reading *r, ob_command *c)
 {
@@ -433,6 +429,8 @@ static bool make_requests(reading *r, ob_command *c)
 		[OB_DO_UNJOIN] = OB_REQUEST_UNJOIN,   [OB_DO_PAUSE] = OB_REQUEST_PAUSE,
 		[OB_DO_RESUME] = OB_REQUEST_RESUME,   [OB_DO_STEP] = OB_REQUEST_STEP,
 		[OB_DO_UNTIL] = OB_REQUEST_UNTIL,     [OB_DO_RATE] = OB_REQUEST_RATE,
+		[OB_DO_SET] = OB_REQUEST_SET,         [OB_DO_SEED] = OB_REQUEST_SEED,
+		[OB_DO_SAVE] = OB_REQUEST_SAVE,
 	};
 	ob_request *q = &c->request[0];
 	c->requests = 1;
@@ -447,6 +445,10 @@ static bool make_requests(reading *r, ob_command *c)
 	q->motor = q->until = r->value[VALUE][0];
 	q->steps = is_given(r, STEPS) ? (uint64_t)r->value[STEPS][0] : 1;
 	q->rate = r->value[RATE][0];
+	if (c->kind == OB_DO_SET)
+		snprintf((char *)q->values, sizeof q->values, "%s=%.10g", r->word[NAME], r->value[VALUE][0]);
+	if (c->kind == OB_DO_SEED)
+		return make_seed(r, &q->seed);
 	if (c->kind == OB_DO_EDIT)
 		return make_edit(r, c);
 	if (c->kind == OB_DO_MESSAGE)
@@ -478,6 +480,7 @@ static bool make(reading *r, ob_command *c)
 		[OB_DO_SIMULATORS] = 1u << ON,
 		[OB_DO_ENERGY] = 1u << ON,
 		[OB_DO_SET] = 1u << NAME | 1u << VALUE,
+		[OB_DO_SEED] = 1u << VALUE,
 	};
 	static const unsigned allowed[OB_DO_KINDS] = {
 		[OB_DO_CREATE] = 1u << ATTITUDE | 1u << VELOCITY | 1u << SPIN | 1u << COLOUR | 1u << FRICTION |
@@ -501,7 +504,6 @@ static bool make(reading *r, ob_command *c)
 		.kind = (ob_command_kind)kind,
 		.id = r->given & 1u << ID ? (uint32_t)r->value[ID][0] : UINT32_MAX,
 		.on = r->on,
-		.value = r->value[VALUE][0],
 	};
 	snprintf(c->name, sizeof c->name, "%s", r->word[NAME]);
 	if (kind <= OB_DO_RATE && !make_requests(r, c))

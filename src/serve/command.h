@@ -21,7 +21,8 @@
 //      step      steps (1), while it is paused
 //      until     value (s): goes on to this simulated time, and pauses
 //      rate      rate (s a s); 0: as fast as possible
-//      set       name, value: the scene starts anew with this value of a parameter
+//      set       name, value: the scene starts anew with this value of a parameter;  seed: value, likewise
+//      save      a checkpoint, where the server keeps one
 //      contacts  on;  joints, energy: likewise
 //      anew      the whole state once more, as at the start of a connection
 //      inspect   id
@@ -50,6 +51,9 @@ typedef enum ob_command_kind {
 	OB_DO_KEEP,
 	OB_DO_RETURN,
 	OB_DO_RESTART,
+	OB_DO_SET,
+	OB_DO_SEED,
+	OB_DO_SAVE,
 	OB_DO_PAUSE,
 	OB_DO_RESUME,
 	OB_DO_STEP,
@@ -60,7 +64,6 @@ typedef enum ob_command_kind {
 	OB_DO_INSPECT,
 	OB_DO_SIMULATORS,
 	OB_DO_ENERGY,
-	OB_DO_SET,
 	OB_DO_ANEW,
 	OB_DO_KINDS,
 } ob_command_kind;
@@ -73,8 +76,7 @@ typedef struct ob_command {
 	ob_request request[OB_COMMAND_REQUESTS]; // [requests] to the host, in this order; origin 0
 	uint32_t id; // inspect
 	bool on; // contacts, joints, simulators, energy
-	char name[OB_NAME_MAX]; // set; motor and unjoin: the joint, which the requests lack
-	double value; // set
+	char name[OB_NAME_MAX]; // motor and unjoin: the joint, which the requests lack
 } ob_command;
 
 enum { OB_COMMAND_BYTES_MAX = 2048 };

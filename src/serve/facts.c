@@ -56,7 +56,7 @@ static void put_offers(ob_message *m, const ob_scene *s)
 			put_numbers(m, "range", (double[]){ c->min, c->max }, 2);
 		ob_message_print(m, "}");
 	}
-	ob_message_print(m, "],\"avatar\":");
+	ob_message_print(m, "],\"seed\":%llu,\"avatar\":", (unsigned long long)s->seed);
 	ob_message_put_json(m, s->avatar ? s->avatar->passport.name : "");
 }
 
@@ -74,6 +74,7 @@ ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_u
 	put_text(m, "version", c->version);
 	put_text(m, "isolation", info->isolation);
 	put_text(m, "sync", c->free_run ? "free" : "lockstep");
+	ob_message_print(m, ",\"fixed\":%s,\"saves\":%s", c->fixed ? "true" : "false", c->saves ? "true" : "false");
 	ob_message_print(m, ",\"workers\":%u,\"role\":\"%s\",\"look_only\":%s,\"step_length\":%.17g", info->workers,
 			 ob_role_name(role), role == OB_ROLE_WATCH ? "true" : "false", info->step_length);
 	put_vec3(m, "gravity", info->gravity);

@@ -22,11 +22,6 @@ const char *ob_server_url(const ob_server *s, ob_role role)
 	return ((const ob_server_base *)s)->part->url(s, role);
 }
 
-bool ob_server_take_wish(ob_server *s, ob_define *out)
-{
-	return ((ob_server_base *)s)->part->take_wish(s, out);
-}
-
 void ob_server_notify(ob_server *s, const ob_error *text)
 {
 	((ob_server_base *)s)->part->notify(s, text);

@@ -9,7 +9,6 @@ typedef struct ob_serve_part {
 	ob_part_head head;
 	ob_server *(*start)(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e);
 	const char *(*url)(const ob_server *s, ob_role role);
-	bool (*take_wish)(ob_server *s, ob_define *out);
 	void (*notify)(ob_server *s, const ob_error *text);
 	void (*hold)(ob_server *s);
 	bool (*go_on)(ob_server *s, const ob_scene *scene, ob_host *h, ob_error *e);

@@ -44,15 +44,12 @@ typedef struct ob_server_config {
 	const ob_scene *scene;
 	const char *version;
 	bool free_run; // simulators have times of their own (free/free.h)
-	const char *fixed; // why the scene cannot start anew with other parameters; NULL: it can
+	bool fixed; // the scene cannot start anew with other parameters
+	bool saves; // the run has a place for a checkpoint
 	const ob_message *film; // shown instead of a universe (film.h), to each viewer at a time of its own; NULL: none
 } ob_server_config;
 
 enum { OB_SERVER_STUCK = 20 }; // s
-
-typedef struct ob_define {
-	char text[OB_NAME_MAX + 32];
-} ob_define;
 
 typedef struct ob_server ob_server;
 
@@ -64,8 +61,6 @@ ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace,
 // Address of the page for visitors of a role, with its token, if there is one. The first is for all that is allowed;
 // "" for another: the server gives out no address of its own for that role.
 const char *ob_server_url(const ob_server *s, ob_role role);
-// Takes the latest wish of an operator to start the scene anew: "name=value". false: there is none. Any thread.
-bool ob_server_take_wish(ob_server *s, ob_define *out);
 // Sends all viewers a line. Any thread.
 void ob_server_notify(ob_server *s, const ob_error *text);
 // Holds the server, whose viewers stay connected, and lets it go on with another run of the scene; before the host is stopped,

@@ -61,7 +61,6 @@ struct ob_server {
 	bool held; // the thread has ended
 	pthread_mutex_t lock; // guards the next three
 	bool ending;
-	ob_define wish; // for another run; "" = none
 	ob_error notice; // for all viewers; "" = none
 
 	struct lws_context *context; // this and all below: the thread's own
@@ -315,30 +314,6 @@ static void carry_out_requests(ob_server *s, ob_client *c, ob_command *asked)
 	}
 }
 
-// Notes that the scene is to start anew with another value of a parameter.
-static void wish(ob_server *s, ob_client *c, const ob_command *asked)
-{
-	const ob_scene *scene = s->config.scene;
-	const ob_param_def *p = NULL;
-	ob_error e = { "" };
-	for (uint32_t i = 0; i < scene->params && !p; i++)
-		p = strcmp(scene->param[i].name, asked->name) == 0 ? &scene->param[i] : NULL;
-	if (s->config.fixed)
-		ob_fail(&e, "the scene cannot start anew with another %s: %s", asked->name, s->config.fixed);
-	else if (!p)
-		ob_fail(&e, "%s: the scene has no parameter of this name within limits", asked->name);
-	else if (!(asked->value >= p->min && asked->value <= p->max))
-		ob_fail(&e, "%s: expected a number from %.10g to %.10g, got %.10g", p->name, p->min, p->max,
-			asked->value);
-	if (*e.text || !p) {
-		send_error(c, e.text);
-		return;
-	}
-	pthread_mutex_lock(&s->lock);
-	snprintf(s->wish.text, sizeof s->wish.text, p->whole ? "%s=%.0f" : "%s=%.10g", p->name, asked->value);
-	pthread_mutex_unlock(&s->lock);
-}
-
 static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 {
 	switch (asked->kind) {
@@ -367,8 +342,6 @@ static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 		break;
 	}
 	carry_out_requests(s, c, asked);
-	if (asked->kind == OB_DO_SET && may(c, OB_ROLE_OPERATE))
-		wish(s, c, asked);
 }
 
 static int refuse_client(ob_client *c, enum lws_close_status status, const char *why)
@@ -842,15 +815,6 @@ static const char *url_of(const ob_server *s, ob_role role)
 	return role == OB_ROLE_OPERATE ? s->url[most_of(s)] : most_of(s) == OB_ROLE_WATCH ? "" : s->url[role];
 }
 
-static bool take_wish(ob_server *s, ob_define *out)
-{
-	pthread_mutex_lock(&s->lock);
-	*out = s->wish;
-	s->wish.text[0] = 0;
-	pthread_mutex_unlock(&s->lock);
-	return *out->text;
-}
-
 static void notify(ob_server *s, const ob_error *text)
 {
 	pthread_mutex_lock(&s->lock);
@@ -898,7 +862,6 @@ static void stop_server(ob_server *s)
 OB_PART(ob_serve_part) = { OB_PART_HEAD(ob_serve_part),
 			   .start = start_server,
 			   .url = url_of,
-			   .take_wish = take_wish,
 			   .notify = notify,
 			   .hold = hold,
 			   .go_on = go_on,

@@ -413,6 +413,7 @@ controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 			other.until(lambda: sum(o["name"].startswith("box") for o in other.objects.values()) == n)
 			v.until(lambda: sum(o["name"].startswith("guest") for o in v.objects.values()) == 2)
 		self.assertIn("from 1 to 9, got 10", self.refused(v, do="set", name="n", value=10))
+		self.assertIn("a whole number from 1 to 9, got 2.5", self.refused(v, do="set", name="n", value=2.5))
 		self.assertIn("no parameter of this name", self.refused(v, do="set", name="m", value=1))
 		self.write("ground {}\n") # a scene that is wrong by now
 		v.send(do="set", name="n", value=4)
@@ -423,6 +424,37 @@ controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 		self.end()
 		self.serve("--log-requests", self.path("log"))
 		self.assertIn("--log-requests", self.refused(self.viewer(), do="set", name="n", value=4))
+		self.end()
+
+	def test_other_seed_and_checkpoint(self):
+		"""The scene starts anew with another seed, by the page's command and by obsim send, and keeps its parameters; a
+		checkpoint of it goes on, where the server keeps one or where obsim send wants it."""
+		scene = self.write("local n = param('n', 2, { min = 1, max = 9 })\nground {}\nfor i = 1, n do box { size = { .1, .1, .1 }, at = { random(-9, 9), i, 1 } } end\n")
+		kept, other = self.path("kept.ck"), self.path("other.ck")
+		self.serve_file(scene, "--listen", "127.0.0.1:0", "--seed", "3", "--checkpoint", kept)
+		v = self.viewer()
+		send = lambda *words: program.call("send", v.told["welcome"]["universe"], *words)
+		self.assertTrue(v.told["welcome"]["saves"])
+		for seed, ask in (7, lambda: v.send(do="seed", value=7)), (2**64 - 1, lambda: send("seed", str(2**64 - 1))):
+			self.assertFalse(v.told["welcome"]["seed"] == seed)
+			ask()
+			v.until(lambda: v.told["welcome"]["seed"] == seed)
+		self.assertEqual(send("set", "n", "5").returncode, 0)
+		v.until(lambda: v.told["welcome"]["params"][0]["value"] == 5)
+		self.assertEqual(v.told["welcome"]["seed"], 2**64 - 1)
+		self.assertIn("from 1 to 9, got 10", send("set", "n", "10").stderr)
+		self.assertEqual(send("wait", "30").returncode, 0)
+		self.assertIn("expected a whole number", send("wait", "x").stderr)
+		v.send(do="save")
+		v.until(lambda: "is saved as" in v.told.get("notice", ""))
+		done = send("save", other)
+		self.assertEqual(done.returncode, 0, done.stderr)
+		for path in kept, other:
+			report = program.report("--resume", path, "--duration", "2")
+			self.assertEqual((report["objects"], report["seed"]), (6, 2**64 - 1))
+		self.end()
+		self.serve_file(scene, "--listen", "127.0.0.1:0")
+		self.assertIn("--checkpoint FILE", self.refused(self.viewer(), do="save"))
 		self.end()
 
 	def test_logged_avatars(self):

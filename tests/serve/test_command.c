@@ -59,8 +59,12 @@ static void test_meaning(void)
 	      ob_scene_put_value("1", words, &bytes, sizeof words) &&
 	      ob_scene_put_value("-0.5", words, &bytes, sizeof words));
 	CHECK(q->bytes == bytes && memcmp(q->values, words, bytes) == 0);
-	CHECK(reads("{\"do\":\"set\",\"name\":\"n\",\"value\":12.5}", &c) && c.kind == OB_DO_SET && c.requests == 0);
-	CHECK(strcmp(c.name, "n") == 0 && c.value == 12.5);
+	CHECK(reads("{\"do\":\"set\",\"name\":\"n\",\"value\":12.5}", &c) && c.kind == OB_DO_SET && c.requests == 1);
+	CHECK(q->kind == OB_REQUEST_SET && strcmp((const char *)q->values, "n=12.5") == 0);
+	CHECK(reads("{\"do\":\"seed\",\"value\":7}", &c) && q->kind == OB_REQUEST_SEED && q->seed == 7);
+	CHECK(!reads("{\"do\":\"seed\",\"value\":.5}", &c) && !reads("{\"do\":\"seed\",\"value\":-1}", &c));
+	CHECK(reads("{\"do\":\"save\"}", &c) && q->kind == OB_REQUEST_SAVE && !q->values[0]);
+	CHECK(!reads("{\"do\":\"save\",\"name\":\"/etc/passwd\"}", &c));
 	CHECK(reads("{\"do\":\"energy\",\"on\":true}", &c) && c.kind == OB_DO_ENERGY && c.on);
 	CHECK(reads("{\"do\":\"restart\"}", &c) && q->kind == OB_REQUEST_RESTART && c.requests == 1);
 	CHECK(reads("{\"do\":\"pause\"}", &c) && c.requests == 1 && q->kind == OB_REQUEST_PAUSE);

@@ -261,6 +261,7 @@ panel.addEventListener('objects', (e) => {
 });
 panel.addEventListener('offers', (e) => { document.querySelector('#offers').hidden = !e.detail; });
 offers.addEventListener('set', (e) => universe.send({ do: 'set', ...e.detail }));
+offers.addEventListener('seed', (e) => universe.send({ do: 'seed', value: e.detail }));
 offers.addEventListener('control', ({ detail: { to, text } }) => {
 	const o = to ? [...universe.objects.values()].find((x) => x.name === to) : avatar;
 	if (o)
@@ -297,6 +298,7 @@ panel.addEventListener('link', () => {
 	navigator.clipboard?.writeText(address).catch(() => {});
 	panel.notice(`this viewpoint: ${address}`, 10);
 });
+panel.addEventListener('save', () => universe.send({ do: 'save' }));
 panel.addEventListener('restart', () => universe.send({ do: 'restart' }));
 for (const what of ['edit', 'message'])
 	panel.addEventListener(what, (e) => {

@@ -21,11 +21,11 @@ export class Offers extends EventTarget {
 	}
 
 	// The controls and parameters of a scene, as its welcome has them.
-	welcome({ controls, params, look_only, role }) {
+	welcome({ controls, params, seed, look_only, role, fixed }) {
 		this.letAll();
 		this.controls = look_only ? [] : controls ?? [];
 		$('#controls').replaceChildren(...this.controls.map((c) => (c.range ? this.slider(c) : this.button(c))));
-		$('#params').replaceChildren(...(role === 'operate' && params ? params.map((p) => this.param(p)) : []));
+		$('#params').replaceChildren(...(role === 'operate' && params && !fixed ? [...params.map((p) => this.param(p)), this.seed(seed)] : []));
 		const none = $('#controls').children.length + $('#params').children.length === 0;
 		$('[data-do=offers]').hidden = none;
 		return !none && this.controls.length > 0;
@@ -47,6 +47,16 @@ export class Offers extends EventTarget {
 
 	param(p) {
 		return this.range(p, 'change', (value) => this.dispatchEvent(new CustomEvent('set', { detail: { name: p.name, value } })));
+	}
+
+	// The seed as a number, and a button that chooses another one.
+	seed(now) {
+		const input = element('input', { type: 'number', min: 0, max: Number.MAX_SAFE_INTEGER, step: 1, value: now, name: 'seed' });
+		const button = element('button', { textContent: 'Another', title: 'Start anew with a seed by chance' });
+		const tell = (value) => this.dispatchEvent(new CustomEvent('seed', { detail: value }));
+		input.addEventListener('change', () => tell(Number(input.value)));
+		button.addEventListener('click', () => tell(Math.floor(Math.random() * 1e6)));
+		return element('label', {}, 'seed', input, button);
 	}
 
 	range({ name, min, max, value, whole, unit }, event, tell) {

@@ -120,6 +120,7 @@ export class Panel extends EventTarget {
 			for (const button of document.querySelectorAll(`[data-do=${what}]`))
 				button.disabled = w.look_only || (!operates && ['pause', 'step', 'restart'].includes(what));
 		$('#rate').disabled = !operates;
+		$('[data-do=save]').hidden = !(operates && w.saves);
 		this.looksOnly = w.look_only;
 		this.isolation = w.isolation;
 		this.free = w.sync === 'free';
