@@ -349,7 +349,7 @@ static void report_free(const run *r, ob_report *p)
 {
 	const ob_free_settings *free = &r->request.free;
 	p->update_rate = p->max_lag = p->jitter = p->delay = p->updates = p->waits = p->wait_s = NAN;
-	p->lag_mean_s = p->lag_max_s = NAN;
+	p->lag_mean_s = p->lag_max_s = p->energy_by_lag_j = NAN;
 	snprintf(p->sync, sizeof p->sync, "%s", r->request.is_free ? "free" : "lockstep");
 	if (!r->request.is_free)
 		return;
@@ -365,6 +365,8 @@ static void report_free(const run *r, ob_report *p)
 	p->wait_s = 1e-9 * (double)sums.counts.wait_ns;
 	p->lag_mean_s = 1e-9 * (double)sums.counts.lag_ns / (double)(sums.counts.readings + !sums.counts.readings);
 	p->lag_max_s = 1e-9 * (double)sums.counts.lag_most_ns;
+	if (free->coupling == OB_COUPLING_LEDGER)
+		p->energy_by_lag_j = sums.counts.worked - sums.counts.work_seen;
 }
 
 static void make_report(run *r, const char *outcome, ob_report *p)

@@ -157,6 +157,8 @@ void ob_free_sum(const ob_universe *u, ob_free_sums *out)
 		out->counts.late += c.late;
 		out->counts.readings += c.readings;
 		out->counts.lag_ns += c.lag_ns;
+		out->counts.worked += c.worked;
+		out->counts.work_seen += c.work_seen;
 		out->counts.lag_most_ns =
 			c.lag_most_ns > out->counts.lag_most_ns ? c.lag_most_ns : out->counts.lag_most_ns;
 		out->least_time = ob_min(out->least_time, ob_free_time(u, id));

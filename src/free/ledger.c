@@ -46,6 +46,19 @@ static ob_vec3 common(ob_vec3 a, ob_vec3 b)
 	return ob_norm2(a) < ob_norm2(b) ? a : b;
 }
 
+// Takes a step of h (s) into the load that has lasted: its mean over twice the delay, there and back, or the step's load
+// alone.
+static ob_vec3 lasting(const ob_free_scratch *x, double h, ob_vec3 before, ob_vec3 load)
+{
+	return ob_madd(before, ob_min(1, h / ob_max(h, 2 * x->free->delay)), ob_sub(load, before));
+}
+
+// Work, J, of an impulse and a twist on a body that goes from one state to another.
+static double work_of(ob_vec3 impulse, ob_vec3 twist, const ob_state *begin, ob_vec3 v, ob_vec3 w)
+{
+	return .5 * (ob_dot(impulse, ob_add(begin->v, v)) + ob_dot(twist, ob_add(begin->w, w)));
+}
+
 // ---- accounts
 
 static ob_account *find(ob_free_sim *s, uint32_t partner)
@@ -219,7 +232,8 @@ bool ob_ledger_deposit(ob_free_sim *s, const ob_free_scratch *x, ob_free_neighbo
 	add(own->sum, TURN, turn_between(turned(begin->pose.q, turn), end->q));
 	memcpy(own->rate, (double[6]){ rate.x, rate.y, rate.z, turning.x, turning.y, turning.z }, sizeof own->rate);
 	own->closed = 0;
-	n->load = load, n->twist = torque;
+	s->counts.work_seen += work_of(impulse, twist, begin, end->v, end->w);
+	n->load = lasting(x, h, n->load, load), n->twist = lasting(x, h, n->twist, torque);
 	return true;
 }
 
@@ -240,7 +254,8 @@ void ob_ledger_end(ob_free_sim *s, const ob_free_scratch *x, const ob_state *own
 			twist = ob_add(twist, part(s->ledger.account[i].rate, TWIST));
 			s->ledger.head.solvers += !s->ledger.account[i].closed;
 		}
-	s->load = load, s->twist = torque;
+	s->load = lasting(x, h, s->load, load), s->twist = lasting(x, h, s->twist, torque);
+	s->counts.worked += work_of(part(s->mailed, IMPULSE), part(s->mailed, TWIST), own, end->v, end->w);
 	end->a = ob_madd(outer, 1 / p->mass, force);
 	memcpy(s->ledger.head.torque, (double[3]){ twist.x, twist.y, twist.z }, sizeof s->ledger.head.torque);
 }

@@ -148,6 +148,7 @@ bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
 		const uint32_t until = ob_free_until(u);
 		if (until != w.until) {
 			w.until = until;
+			*ob_worker_counters(u, number) = w.scratch.solver.counters; // their host looks now and then
 			fine = adopt(&w) || ob_fail(e, "worker %u: no memory", number);
 		}
 		if (fine && replays)

@@ -270,15 +270,15 @@ bool ob_free_overlaps(const ob_universe *u, uint32_t id, const float box[6])
 void ob_free_put_counts(ob_universe *u, uint32_t id, const ob_free_counts *counts)
 {
 	ob_free_counts *to = &cell_of(u, id)->counts;
-	for (size_t i = 0; i < sizeof *to / sizeof(uint64_t); i++)
-		__atomic_store_n((uint64_t *)to + i, ((const uint64_t *)counts)[i], __ATOMIC_RELAXED);
+	for (size_t i = 0; i < sizeof *to / sizeof(ob_word); i++)
+		__atomic_store_n((ob_word *)to + i, ((const ob_word *)counts)[i], __ATOMIC_RELAXED);
 }
 
 void ob_free_get_counts(const ob_universe *u, uint32_t id, ob_free_counts *out)
 {
 	const ob_free_counts *from = &cell_of(u, id)->counts;
-	for (size_t i = 0; i < sizeof *from / sizeof(uint64_t); i++)
-		((uint64_t *)out)[i] = __atomic_load_n((const uint64_t *)from + i, __ATOMIC_RELAXED);
+	for (size_t i = 0; i < sizeof *from / sizeof(ob_word); i++)
+		((ob_word *)out)[i] = __atomic_load_n((const ob_word *)from + i, __ATOMIC_RELAXED);
 }
 
 // ---- waiting

@@ -83,6 +83,7 @@ typedef struct ob_free_counts {
 	uint64_t lag_ns,
 		lag_most_ns; // sum and maximum over readings: own time less the time of the version that was read
 	uint64_t readings;
+	double worked, work_seen; // J, by mail: on the object that received it; on partners, as the sender saw them
 } ob_free_counts;
 
 typedef struct ob_free_cell {
