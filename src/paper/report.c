@@ -193,7 +193,7 @@ static void write_medians(ob_page *p, const void *with)
 						 OB_PAPER_CPU,   OB_PAPER_PACE,  OB_PAPER_FPS, OB_PAPER_VIEWER,
 						 OB_PAPER_TESTS, OB_PAPER_MEMORY };
 	const ob_paper_report_model *m = with;
-	ob_table *t = ob_table_new("lrrrrrrr");
+	ob_table *t = ob_table_new("lrrrrrrrr");
 	if (!t)
 		return;
 	ob_table_add(t, "%s", "");
@@ -245,6 +245,8 @@ static void write_pair(ob_page *p, const ob_paper_report_model *m, const char *w
 static void write_never(ob_page *p, const void *with)
 {
 	ob_page_markup(p, "<ul>\n");
+	write_pair(p, with, "CPU time of OBS, against the same in lockstep", OB_PAPER_OBS, OB_PAPER_LOCKSTEP,
+		   OB_PAPER_TOTAL);
 	write_pair(p, with, "CPU time of OBS with the load, against OBS without", OB_PAPER_OBS_LOAD, OB_PAPER_OBS,
 		   OB_PAPER_TOTAL);
 	write_pair(p, with, "CPU time of OBS with the load, against the common environment with it", OB_PAPER_OBS_LOAD,

@@ -10,21 +10,27 @@ static const double odds = 10;
 static const char growth_prefix[] = "growth-", experiment_prefix[] = "experiment-";
 
 const ob_paper_setup ob_paper_setups[OB_PAPER_SCENARIOS] = {
-	[OB_PAPER_COMMON] = { "common", "common", "one simulator: one ODE world that holds all objects", true, false,
-			      false, 0 },
+	[OB_PAPER_COMMON] = { "common", "common", "one simulator: one ODE world that holds all objects",
+			      .monolith = true },
 	[OB_PAPER_COMMON_LOAD] = { "common_load", "common, load",
-				   "the same, and 1 to 1000 added up in each test of two boxes", true, false, false,
-				   PAPER_LOAD },
-	[OB_PAPER_OBS] = { "obs", "OBS", "a simulator for each object, each a process of its own", false, true, false,
-			   0 },
+				   "the same, and 1 to 1000 added up in each test of two boxes", .monolith = true,
+				   .load = PAPER_LOAD },
+	[OB_PAPER_OBS] = { "obs", "OBS",
+			   "a simulator for each object, each a process of its own that waits for no other",
+			   .each = true, .free = true },
 	[OB_PAPER_OBS_LOAD] = { "obs_load", "OBS, load", "the same, and 1 to 1000 added up in each test of two boxes",
-				false, true, false, PAPER_LOAD },
+				.each = true, .free = true, .load = PAPER_LOAD },
 	[OB_PAPER_OBS_OBB] = { "obs_obb", "OBS, OBB", "OBS, and objects touch where their true, turned shapes do",
-			       false, true, true, 0 },
+			       .each = true, .free = true, .oriented = true },
 	[OB_PAPER_COMMON_OBB] = { "common_obb", "common, OBB",
-				  "one ODE world, and objects touch where their true shapes do", true, false, true, 0 },
-	[OB_PAPER_POOL] = { "pool", "OBS, pool", "a simulator for each object, all of them run by one thread per core",
-			    false, false, false, 0 },
+				  "one ODE world, and objects touch where their true shapes do", .monolith = true,
+				  .oriented = true },
+	[OB_PAPER_POOL] = { "pool", "OBS, pool",
+			    "a simulator for each object, all of them run in lockstep by one thread per core",
+			    .each = false },
+	[OB_PAPER_LOCKSTEP] = { "obs_lockstep", "OBS, lockstep",
+				"a process for each object, and all wait for each other after each step",
+				.each = true },
 };
 
 #define METRIC(key, title, unit, scale) \

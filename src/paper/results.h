@@ -13,6 +13,7 @@ typedef enum ob_paper_scenario {
 	OB_PAPER_OBS_OBB,
 	OB_PAPER_COMMON_OBB,
 	OB_PAPER_POOL,
+	OB_PAPER_LOCKSTEP, // of OBS
 	OB_PAPER_SCENARIOS
 } ob_paper_scenario;
 
@@ -21,6 +22,7 @@ typedef struct ob_paper_setup {
 	const char *what; // way of running it
 	bool monolith, each; // one world; one process per object; neither (OBS): a pool of threads
 	bool oriented; // true shapes; otherwise axis-aligned boxes
+	bool free; // simulators at times of their own, each with its own response; otherwise in lockstep
 	uint32_t load; // numbers added up in each test of two boxes
 } ob_paper_setup;
 

@@ -68,13 +68,14 @@ static void wait_until(double due)
 		;
 }
 
-// Steps when it is due. A late step begins at once and does not catch up: the environment is slow.
+// Steps when it is due. A late step begins at once and does not catch up: the environment is slow. Free simulators have
+// the same clock, and catch up.
 static bool step(session *c, ob_error *e)
 {
 	double now = ob_clock_wall();
 	if (now < c->due)
 		wait_until(c->due);
-	else
+	else if (!c->setup->free)
 		c->due = now;
 	c->due += OB_PAPER_STEP_LENGTH;
 	ob_host_go(c->host, ++c->steps);
@@ -167,7 +168,16 @@ static bool measure_watched(session *c, double *metric, ob_error *e)
 static bool run(session *c, double *metric, ob_error *e)
 {
 	const ob_paper_setup *setup = c->setup;
+	const double rate = 1 / OB_PAPER_STEP_LENGTH;
+	const ob_free_settings free = { .update_rate = rate,
+					.rate_most = rate,
+					.max_lag = INFINITY,
+					.pace = 1,
+					.end = INFINITY,
+					.seed = c->trial->seed,
+					.coupling = OB_COUPLING_OWN };
 	ob_host_config config = {
+		.free = setup->free ? &free : NULL,
 		.isolation = setup->each ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
 		.workers = setup->each       ? 0
 			   : setup->monolith ? 1

@@ -10,7 +10,7 @@ import unittest
 
 import program
 
-SCENARIOS = ["common", "common_load", "obs", "obs_load", "obs_obb", "common_obb", "pool"]
+SCENARIOS = ["common", "common_load", "obs", "obs_load", "obs_obb", "common_obb", "pool", "obs_lockstep"]
 CLAIMS = ["runtime", "constant", "frames", "cpu", "load", "kept", "obb", "growth"]
 VERDICTS = ["holds", "holds_only_if", "does_not_hold", "cannot_be_told"]
 
