@@ -1,5 +1,6 @@
 // obsim compare --sync lockstep,free: reads the command line; compare/sync.h does the rest.
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -13,10 +14,12 @@
 #include "compare/compare.h"
 #include "compare/sync.h"
 #include "plot/plot.h"
+#include "ranks/ranks.h"
 #include "shape/shape.h"
 
-enum { USUAL_SEEDS = 3, WIDTH = 160 };
-static const double usual_duration = 2, rate = 1000, jitter = .3; // s, Hz, share
+enum { USUAL_SEEDS = 8, WIDTH = 160 };
+static const double usual_duration = 1.25, rate = 1000, jitter = .3; // s, Hz, share
+static const double budget = 480; // s: with fewer seeds than usual where they take longer
 
 static bool check(const ob_arguments *a, ob_error *e)
 {
@@ -101,8 +104,10 @@ static bool prepare(ob_sync_comparison *c, const ob_arguments *a, ob_error *e)
 		ob_comparison_read_points(points, a->value[OB_OPTION_VARY], e) &&
 		(!a->value[OB_OPTION_OUT] || ob_plot_check(e)) &&
 		(a->defines <= OB_SYNC_DEFINES || ob_fail(e, "more than %d parameters of the scene", OB_SYNC_DEFINES));
+	const bool timed = !a->value[OB_OPTION_SEEDS] && ob_ranks_started().ranks < 2; // ranks would not stop alike
 	*c = (ob_sync_comparison){ .scene = a->operand,
 				   .seeds = (uint32_t)seeds,
+				   .budget = timed ? budget : INFINITY,
 				   .duration = usual_duration,
 				   .rate = rate,
 				   .jitter = jitter };

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "experiment/analysis.h"
 #include "experiment/json.h"
 #include "experiment/process.h"
@@ -53,6 +54,10 @@ const ob_metric ob_sync_metrics[OB_SYNC_METRICS] = {
 	       "that over the median thickness of the bodies that move"),
 	METRIC(OB_SYNC_ENERGY, "energy_gain_max", "energy gained", "1", 1,
 	       "largest energy above that of the start, over it; work of prescribed motion is not counted"),
+	METRIC(OB_SYNC_BY_LAG, "energy_by_lag", "by late mail", "1", 1,
+	       "energy that late mail of the ledger has added, over the energy of the start: the sum over all pairs of "
+	       "each "
+	       "impulse's work on the body that received it, less its work on that body as the sender saw it"),
 	METRIC(OB_SYNC_MOMENTUM, "momentum_error", "momentum", "1", 1,
 	       "largest change of momentum that nothing explains, over its size; only in scenes without fixed bodies"),
 	METRIC(OB_SYNC_LAG, "lag_speed_over_size", "lag x speed / size", "1", 1,
@@ -107,6 +112,7 @@ static char **arguments(const job *j, uint64_t seed)
 static void read_report(const job *j, const char *r, double *m)
 {
 	const bool free = j->of->coupling != OB_SYNC_LOCKSTEP;
+	const double energy = ob_json_read_number(r, "energy_start");
 	const double simulated = ob_json_read_number(r, "simulated_s"), wall = ob_json_read_number(r, "wall_s"),
 		     steps = ob_json_read_number(r, "steps") * j->point->objects;
 	m[OB_SYNC_CPU] = ob_json_read_number(r, "cpu_s") / simulated / j->point->objects;
@@ -117,8 +123,9 @@ static void read_report(const job *j, const char *r, double *m)
 	m[OB_SYNC_WORST] = ob_json_read_number(r, "worst_penetration_m");
 	m[OB_SYNC_SIZES] = m[OB_SYNC_WORST] / j->point->size;
 	m[OB_SYNC_ENERGY] = ob_json_read_number(r, "energy_gain_max");
+	m[OB_SYNC_BY_LAG] = ob_json_read_number(r, "energy_by_lag_j") / (energy != 0 ? fabs(energy) : 1);
 	m[OB_SYNC_MOMENTUM] = ob_json_read_number(r, "momentum_error");
-	m[OB_SYNC_LOST] = ob_json_read_number(r, "energy_start") - ob_json_read_number(r, "energy_end");
+	m[OB_SYNC_LOST] = energy - ob_json_read_number(r, "energy_end");
 }
 
 static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
@@ -134,7 +141,7 @@ static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
 
 // ---- schedule
 
-static bool schedule(const ob_sync_comparison *c, job *all, ob_trials *s)
+static bool schedule(const ob_sync_comparison *c, uint32_t seeds, job *all, ob_trials *s)
 {
 	enum { LOCKSTEP_STEPS = 60 };
 	static const double step_s = 1e-5;
@@ -152,7 +159,7 @@ static bool schedule(const ob_sync_comparison *c, job *all, ob_trials *s)
 			if (!ob_trials_add(s, &t))
 				return false;
 		}
-	return ob_trials_repeat(s, 0, c->seeds, OB_ORDER_TO_AND_FRO, true);
+	return ob_trials_repeat(s, 0, seeds, OB_ORDER_TO_AND_FRO, true);
 }
 
 // Finds the speed of each point, and with it lag x speed / size of each record.
@@ -170,26 +177,52 @@ static void scale_lags(ob_sync_comparison *c)
 	}
 }
 
+// CPU of a run, s, at most: a heap that explodes takes long.
+static double limit_of(const ob_sync_comparison *c)
+{
+	double bodies = 0;
+	for (uint32_t i = 0; i < c->points; i++)
+		bodies = fmax(bodies, c->point[i].objects);
+	return 10 + .1 * bodies * c->duration;
+}
+
+// Runs all configurations with so many seeds, as far as they have not been run. fresh: again.
+static bool run_seeds(const ob_sync_comparison *c, uint32_t seeds, const ob_experiment *x, const char *folder,
+		      bool fresh, ob_records *records, ob_error *e)
+{
+	job *all = calloc(OB_SYNC_POINTS * OB_SYNC_CONFIGURATIONS, sizeof *all);
+	ob_trials s = { 0 };
+	bool fine = (all && schedule(c, seeds, all, &s)) || ob_fail(e, "out of memory");
+	if (fine && fresh)
+		ob_records_drop(records, &s);
+	fine = fine && ob_experiment_run(x, &s, records, folder, e);
+	ob_trials_finish(&s);
+	free(all);
+	return fine;
+}
+
 bool ob_sync_run(ob_sync_comparison *c, const char *commit, const char *folder, bool fresh, ob_error *e)
 {
-	static const double longest = 60; // s of CPU: a heap that explodes takes long
 	const ob_experiment x = { .name = "compare-sync",
 				  .commit = commit,
 				  .metrics = OB_SYNC_METRICS,
 				  .metric = ob_sync_metrics,
 				  .run = run_trial,
-				  .limit_s = longest };
-	job *all = calloc(OB_SYNC_POINTS * OB_SYNC_CONFIGURATIONS, sizeof *all);
-	ob_trials s = { 0 };
-	bool fine = (all && schedule(c, all, &s)) || ob_fail(e, "out of memory");
-	fine = fine && ob_experiment_open(&x, folder, &c->records, e);
-	if (fine && fresh)
-		ob_records_drop(&c->records, &s);
-	fine = fine && ob_experiment_run(&x, &s, &c->records, folder, e);
+				  .limit_s = limit_of(c) };
+	const double begun = ob_clock_wall();
+	const uint32_t first = isfinite(c->budget) ? 1 : c->seeds;
+	uint32_t seeds = first;
+	double longest = 0; // s
+	bool fine = ob_experiment_open(&x, folder, &c->records, e);
+	for (bool more = fine; more; seeds++) {
+		const double since = ob_clock_wall();
+		fine = run_seeds(c, seeds, &x, folder, fresh && seeds == first, &c->records, e);
+		longest = fmax(longest, ob_clock_wall() - since);
+		more = fine && seeds < c->seeds && ob_clock_wall() - begun + longest < c->budget;
+	}
+	c->seeds = seeds - 1;
 	if (fine)
 		scale_lags(c);
-	ob_trials_finish(&s);
-	free(all);
 	return fine;
 }
 
@@ -279,11 +312,16 @@ void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char
 	}
 	const ob_sync_configuration *of = &ob_sync_table[free];
 	const double error = median(c, p, free, OB_SYNC_WORST), ratio = median(c, p, free, OB_SYNC_CPU) / cost;
+	const ob_statistics ratios =
+		ob_records_ratio(&c->records, p->key, of->key, ob_sync_table[0].key, OB_SYNC_CPU, true);
+	char interval[64] = "";
+	if (!isnan(ratios.mean_low) && c->seeds > 2)
+		snprintf(interval, sizeof interval, " (%.2g to %.2g)", exp(ratios.mean_low), exp(ratios.mean_high));
 	size_t n = (size_t)snprintf(
 		to, room,
 		"Lockstep kept bodies within %.3g mm of each other's surfaces. The most accurate free form "
-		"(%s) let them sink in by %.3g mm, and took %.2g times the CPU. ",
-		1e3 * exact, of->title, 1e3 * error, ratio);
+		"(%s) let them sink in by %.3g mm, and took %.2g times the CPU%s. ",
+		1e3 * exact, of->title, 1e3 * error, ratio, interval);
 	n += (size_t)snprintf(to + n, room - n, "%s ",
 			      error <= exact && ratio <= 1
 				      ? "So free running costs nothing here: take it where simulators must not wait."

@@ -36,6 +36,7 @@ typedef enum ob_sync_metric {
 	OB_SYNC_WORST,
 	OB_SYNC_SIZES, // worst penetration over the bodies' size
 	OB_SYNC_ENERGY,
+	OB_SYNC_BY_LAG, // energy that late mail has added, over that of the start
 	OB_SYNC_MOMENTUM,
 	OB_SYNC_LAG, // lag x speed / size
 	OB_SYNC_SHOWN = OB_SYNC_LAG, // from here on for diagrams and files
@@ -57,7 +58,9 @@ typedef struct ob_sync_point {
 typedef struct ob_sync_comparison {
 	const char *scene; // path
 	const char *define[OB_SYNC_DEFINES]; // "name=value" of -D
-	uint32_t defines, seeds, points;
+	uint32_t defines, points;
+	uint32_t seeds; // at most; after ob_sync_run: number that was run
+	double budget; // s, wall: no further seed is begun that would not be done by then; the first is run in any case
 	double duration, rate, jitter; // s, Hz, share: of free runs
 	ob_sync_point point[OB_SYNC_POINTS];
 	ob_records records; // after ob_sync_run

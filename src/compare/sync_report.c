@@ -10,6 +10,8 @@
 #include "experiment/table.h"
 #include "sync_texts.h"
 
+#define BY_LAG_TITLE "Energy by late mail / energy at the start"
+
 static const char *const coupling_title[OB_SYNC_COUPLINGS] = { "lockstep", "ledger", "own", "own, heavy" };
 
 static bool was_run(const ob_sync_comparison *c, const ob_sync_point *p, int w)
@@ -112,8 +114,9 @@ static void add_point(ob_chart *d, const ob_sync_comparison *c, const ob_sync_po
 		return;
 	snprintf(hint, sizeof hint, "%s: %.3g, %.3g", ob_sync_table[w].title, sx * x.median, sy * y.median);
 	ob_plot_point *at = ob_chart_add(d, sx * x.median, sy * y.median, "", hint);
-	at->low = y.n > 1 ? sy * y.least : 0;
-	at->high = y.n > 1 ? sy * y.most : 0;
+	const bool known = !isnan(y.median_low);
+	at->low = known ? sy * y.median_low : y.n > 1 ? sy * y.least : 0;
+	at->high = known ? sy * y.median_high : y.n > 1 ? sy * y.most : 0;
 }
 
 // An error over lag x speed / size, a curve for each coupling, on two threads.
@@ -242,6 +245,7 @@ static void write_points(ob_page *p, const void *with)
 		write_figure(p, chart_lags(c, at, OB_SYNC_SIZES, "Worst penetration / size", true));
 		write_slopes(p, c, at);
 		write_figure(p, chart_lags(c, at, OB_SYNC_ENERGY, "Energy gained / energy at the start", false));
+		write_figure(p, chart_lags(c, at, OB_SYNC_BY_LAG, BY_LAG_TITLE, false));
 		write_figure(p, chart_cost(c, at));
 		ob_sync_recommend(c, at, text, sizeof text);
 		write_paragraph(p, "note", text);
@@ -271,9 +275,10 @@ static void write_threats(ob_page *p, const void *with)
 	if (c->seeds < FEW)
 		ob_page_markup(p,
 			       "<li><b>%" PRIu32
-			       " seeds</b> give no interval of 95 %%: free runs of one scene differ by a factor of up "
-			       "to two. --seeds 6 gives intervals.</li>\n",
-			       c->seeds);
+			       " seeds</b> give no interval of 95 %%, which takes %d: free runs of one scene differ by "
+			       "a factor of up to two. The same command with the same --out adds seeds; bars of "
+			       "diagrams go from the least to the most.</li>\n",
+			       c->seeds, FEW);
 	if (c->points < 2)
 		ob_page_markup(
 			p, "<li>One number of objects. --vary n=10,100,1000 compares several, where the scene has a "
@@ -312,6 +317,8 @@ bool ob_sync_write_folder(const ob_sync_comparison *c, const char *folder, ob_er
 		       ob_chart_write_point(
 			       chart_lags(c, p, OB_SYNC_ENERGY, "Energy gained / energy at the start", false), folder,
 			       "energy", p->define, e) &&
+		       ob_chart_write_point(chart_lags(c, p, OB_SYNC_BY_LAG, BY_LAG_TITLE, false), folder, "by_lag",
+					    p->define, e) &&
 		       ob_chart_write_point(chart_cost(c, p), folder, "cost", p->define, e);
 	}
 	return fine;
