@@ -32,6 +32,8 @@ typedef enum ob_shape {
 	// of points (ob/hull.h); size = radius of the bounding ball, half the least width, radius of the inscribed
 	// ball, both balls about the centre of mass
 	OB_SHAPE_HULL,
+	// surface of triangles; size = half extents of a box about the origin that holds it; always static
+	OB_SHAPE_TERRAIN,
 } ob_shape;
 
 enum { // ob_passport.flags
@@ -235,6 +237,10 @@ size_t ob_universe_get_contacts(const ob_universe *u, ob_contact_point *out, siz
 // universe's clock; ids ascend. Returns their number (may exceed max); 0 without such a sensor. An object that passes it
 // between two step boundaries is not found. While the universe runs, some motions may be a step newer.
 size_t ob_universe_get_inside(const ob_universe *u, uint32_t sensor, uint32_t *ids, size_t max);
+
+// Copies the terrains of a universe in obsim's own format, which differs between versions. Returns their bytes, of which
+// at most room are copied; 0: there are none.
+size_t ob_universe_get_terrains(const ob_universe *u, void *to, size_t room);
 
 #pragma GCC visibility pop
 

@@ -104,6 +104,8 @@ static bool check(const ob_run_request *r, const ob_scene *s, ob_error *e)
 		return ob_fail(e, "--sync free: the scene has joints, which hold in lockstep alone");
 	if (has_compounds(s))
 		return ob_fail(e, "--sync free: the scene has compounds, which collide in lockstep alone");
+	if (s->terrains)
+		return ob_fail(e, "--sync free: the scene has heightfields or meshes, which collide in lockstep alone");
 	if (r->free.coupling == OB_COUPLING_LEDGER &&
 	    (r->run.solver != OB_SOLVER_COLOURED || r->run.integrator != OB_INTEGRATOR_EXACT))
 		return ob_fail(e, "--coupling ledger: a pair has one impulse, so leave --solver and --integrator away");

@@ -28,7 +28,12 @@
 	PAIR(CYLINDER, CYLINDER, ob_manifold_cylinder_edged) \
 	PAIR(CYLINDER, HULL, ob_manifold_cylinder_edged) \
 	PAIR(HULL, PLANE, ob_manifold_hull_plane) \
-	PAIR(HULL, HULL, ob_manifold_polytopes)
+	PAIR(HULL, HULL, ob_manifold_polytopes) \
+	PAIR(SPHERE, TERRAIN, ob_manifold_terrain) \
+	PAIR(BOX, TERRAIN, ob_manifold_terrain) \
+	PAIR(CAPSULE, TERRAIN, ob_manifold_terrain) \
+	PAIR(CYLINDER, TERRAIN, ob_manifold_terrain) \
+	PAIR(HULL, TERRAIN, ob_manifold_terrain)
 
 void ob_manifold_spheres(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_sphere_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
@@ -44,6 +49,8 @@ void ob_manifold_capsules(const ob_placed *a, const ob_placed *b, double margin,
 void ob_manifold_cylinder_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_cylinder_sphere(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_cylinder_edged(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
+// b: its hull is an ob_terrain_part.
+void ob_manifold_terrain(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_hull_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 
 #endif

@@ -39,6 +39,7 @@ static ob_universe *open_universe(const ob_world *w, const ob_run_settings *run,
 				    .capacity = w->objects,
 				    .workers = 1,
 				    .hulls = w->hulls,
+				    .terrains = w->terrains,
 				    .isolation = "thread",
 				    .run = *run };
 	ob_universe *u = ob_universe_create(&setup, e);

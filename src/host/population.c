@@ -93,6 +93,8 @@ static bool check_parts(const ob_population *p, const ob_passport *pass, ob_erro
 	const ob_hull *h = ob_hull_of(p->u, pass);
 	if (pass->mesh > p->scene->meshes)
 		return ob_fail(e, "object \"%s\": its mesh is not one of its scene", pass->name);
+	if (ob_shape_is(pass->shape, OB_SURFACED) && !ob_terrain_of(p->u, pass))
+		return ob_fail(e, "object \"%s\": it has no terrain of this universe", pass->name);
 	if (!ob_shape_is(pass->shape, OB_HULLED) ||
 	    (h && pass->size.x == h->radius && pass->size.y == .5 * h->thickness && pass->size.z == h->inner))
 		return true;

@@ -94,7 +94,7 @@ uint64_t ob_measure_hash(const ob_snapshot *s)
 enum { LEAF = 8, ASKED_EVERY = 256 };
 
 // Cost of the depth of a pair, in tests of two boxes, some 2 ns each; and the limit.
-enum { WORK_OF_DEPTH = 32, WORK_OF_SEARCH = 8192 };
+enum { WORK_OF_DEPTH = 32, WORK_OF_COLUMN = 256, WORK_OF_SEARCH = 8192 };
 static const uint64_t most_work = UINT64_C(1) << 31;
 
 struct box {
@@ -186,6 +186,19 @@ static bool may_overlap(const struct search *s, uint32_t a, uint32_t b)
 	return s->joined_count && bsearch(&key, s->joined, s->joined_count, sizeof key, by_ids);
 }
 
+static void note_depth(struct search *s, uint32_t a, uint32_t b, double depth)
+{
+	if (!(depth > 0))
+		return;
+	s->total += depth;
+	s->out->pairs++;
+	if (depth > s->out->max_m) {
+		s->out->max_m = depth;
+		s->out->worst_a = a < b ? a : b;
+		s->out->worst_b = a < b ? b : a;
+	}
+}
+
 static void add_depth(struct search *s, struct item *a, struct item *b)
 {
 	if (a->id == b->id || (a->fixed && b->fixed) ||
@@ -194,16 +207,65 @@ static void add_depth(struct search *s, struct item *a, struct item *b)
 	a->overlaps++;
 	b->overlaps++;
 	s->effort.work += work_of(&a->solid, &b->solid);
-	double depth = ob_depth(&a->solid, &b->solid);
-	if (!(depth > 0))
+	note_depth(s, a->id, b->id, ob_depth(&a->solid, &b->solid));
+}
+
+static double greater(double a, double b)
+{
+	return a > b ? a : b;
+}
+
+// Depth of a solid in the ground below a triangle (m).
+static double depth_in_column(const ob_terrain *t, uint32_t triangle, ob_pose pose, const ob_solid *x)
+{
+	const ob_mat3 r = ob_quat_matrix(pose.q);
+	const double radius = ob_shape_radius(x->shape, x->size);
+	ob_hull column;
+	ob_vec3 centre;
+	ob_terrain_column(t, triangle, 2 * radius, &column, &centre);
+	const ob_solid ground = { OB_SHAPE_HULL, ob_v3(column.radius, .5 * column.thickness, column.inner),
+				  ob_add(pose.p, ob_rotate(&r, centre)), r, &column };
+	return ob_depth(x, &ground);
+}
+
+// Adds the depth of a solid with this box in a terrain.
+static void add_depth_in_terrain(struct search *s, const ob_terrain *t, uint32_t id, ob_pose pose, struct item *x,
+				 const double *box)
+{
+	const ob_mat3 r = ob_quat_matrix(pose.q);
+	const ob_vec3 half = ob_v3(.5 * (box[3] - box[0]), .5 * (box[4] - box[1]), .5 * (box[5] - box[2])),
+		      at = ob_rotate_back(&r, ob_sub(ob_v3(box[0] + half.x, box[1] + half.y, box[2] + half.z), pose.p)),
+		      centre = ob_rotate_back(&r, ob_sub(x->solid.p, pose.p));
+	const double middle[3] = { at.x, at.y, at.z };
+	double low[3], high[3], most = 0;
+	if (x->fixed || !ob_passport_collides(&s->passport[id], &s->passport[x->id]) || may_overlap(s, id, x->id))
 		return;
-	s->total += depth;
-	s->out->pairs++;
-	if (depth > s->out->max_m) {
-		s->out->max_m = depth;
-		s->out->worst_a = a->id < b->id ? a->id : b->id;
-		s->out->worst_b = a->id < b->id ? b->id : a->id;
+	for (int i = 0; i < 3; i++) {
+		const double reach = fabs(r.m[0][i]) * half.x + fabs(r.m[1][i]) * half.y + fabs(r.m[2][i]) * half.z;
+		low[i] = middle[i] - reach, high[i] = middle[i] + reach;
 	}
+	ob_terrain_search near;
+	uint32_t triangle;
+	ob_terrain_begin(t, low, high, &near);
+	while (ob_terrain_next(&near, &triangle) && !is_over(&s->effort)) {
+		const ob_terrain_region *region = &ob_terrain_regions(t)[ob_terrain_triangles(t)[triangle].region];
+		s->effort.work += WORK_OF_COLUMN;
+		if (t->solid || ob_dot(region->normal, centre) > region->offset)
+			most = greater(most, depth_in_column(t, triangle, pose, &x->solid));
+	}
+	note_depth(s, id, x->id, most);
+}
+
+static void add_terrain(struct search *x, const ob_snapshot *s, uint32_t id, uint32_t solids)
+{
+	const ob_terrain *t = ob_terrain_at(s->terrains, s->passport[id].hull);
+	for (uint32_t i = 0; t && i < solids && !is_over(&x->effort); i++)
+		add_depth_in_terrain(x, t, id, ob_snapshot_state(s, id).pose, &x->item[i], x->box[i].bounds);
+}
+
+static bool is_terrain(const ob_passport *p)
+{
+	return p->flags & OB_OBJECT_PRESENT && ob_shape_is(p->shape, OB_SURFACED);
 }
 
 static bool boxes_overlap(const double *a, const double *b)
@@ -244,7 +306,7 @@ static void collect_solids(const ob_snapshot *s, struct search *x, uint32_t *sol
 	*solids = *planes = 0;
 	for (uint32_t id = 0; id < s->count; id++) {
 		const ob_passport *p = &s->passport[id];
-		if (!(p->flags & OB_OBJECT_PRESENT) || p->shape == OB_SHAPE_NONE)
+		if (!(p->flags & OB_OBJECT_PRESENT) || p->shape == OB_SHAPE_NONE || is_terrain(p))
 			continue;
 		const bool plane = ob_shape_is(p->shape, OB_UNBOUNDED);
 		for (uint32_t k = 0; k < solids_of(s, id); k++) {
@@ -275,11 +337,6 @@ static bool is_before(const struct box *a, const struct box *b, int axis)
 static double lesser(double a, double b)
 {
 	return a < b ? a : b;
-}
-
-static double greater(double a, double b)
-{
-	return a > b ? a : b;
 }
 
 // Bounds all boxes of a node; returns the axis with the largest spread of centres.
@@ -420,6 +477,11 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 		for (uint32_t k = 0; k < planes; k++)
 			for (uint32_t i = 0; i < solids && !is_over(&x.effort); i++)
 				add_depth(&x, &x.item[x.items - 1 - k], &x.item[i]);
+		for (uint32_t id = 0; id < s->count; id++)
+			if (is_terrain(
+				    &s->passport
+					     [id])) // the boxes are in the order of the solids until the tree is built
+				add_terrain(&x, s, id, solids);
 		x.node[0] = (struct node){ .count = solids };
 		x.nodes = 1;
 		if (solids) {
@@ -447,8 +509,8 @@ void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out)
 // Distance (m) of two objects, and the work of finding it; 0 if they overlap.
 static double gap_between(const ob_snapshot *s, uint32_t a, uint32_t b, uint64_t *work)
 {
-	double gap = INFINITY;
-	for (uint32_t i = 0; i < solids_of(s, a); i++)
+	double gap = is_terrain(&s->passport[a]) || is_terrain(&s->passport[b]) ? 0 : INFINITY; // not measured there
+	for (uint32_t i = 0; gap > 0 && i < solids_of(s, a); i++)
 		for (uint32_t j = 0; j < solids_of(s, b); j++) {
 			const ob_solid one = solid_of(s, a, i), other = solid_of(s, b, j);
 			*work += work_of(&one, &other);

@@ -9,6 +9,8 @@
 #include <ob/joint.h>
 #include <ob/motion.h>
 
+#include "terrain/terrain.h"
+
 // Copy of all motions at one step boundary.
 typedef struct ob_snapshot {
 	uint64_t step;
@@ -29,6 +31,7 @@ typedef struct ob_snapshot {
 	uint64_t created; // instant of creation of the hulls' universe
 	uint32_t hulls;
 	ob_hull **hull; // [hulls], those used by objects so far; others NULL
+	ob_terrain_set *terrains; // NULL: there are none, or they are unknown, as of a record
 } ob_snapshot;
 
 // Copies the universe into s, growing its memory. s starts zeroed. The snapshot is of one step only if the universe

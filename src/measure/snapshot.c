@@ -57,6 +57,23 @@ static void drop_hulls(ob_snapshot *s)
 	free(s->hull);
 	s->hull = NULL;
 	s->hulls = 0;
+	free(s->terrains);
+	s->terrains = NULL;
+}
+
+// Copies the terrains of a universe, which never change.
+static bool take_terrains(ob_snapshot *s, const ob_universe *u)
+{
+	const size_t bytes = s->terrains ? 0 : ob_universe_get_terrains(u, NULL, 0);
+	if (!bytes)
+		return true;
+	s->terrains = malloc(bytes);
+	if (s->terrains && ob_universe_get_terrains(u, s->terrains, bytes) == bytes &&
+	    ob_terrain_set_makes_sense(s->terrains, bytes))
+		return true;
+	free(s->terrains);
+	s->terrains = NULL;
+	return false;
 }
 
 // Makes room for the hulls of a universe, which never change: present ones stay, and others may come.
@@ -160,6 +177,8 @@ bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, 
 	ob_universe_get_info(u, &info);
 	if (!grow_objects(s, info.capacity) || !expect_hulls(s, info.created, info.hulls))
 		return ob_fail(e, "no memory for a snapshot of %u objects", info.capacity);
+	if (!take_terrains(s, u))
+		return ob_fail(e, "no memory for the terrain, or it makes no sense");
 	s->step = info.step;
 	s->time = info.time;
 	s->count = info.capacity;
@@ -181,6 +200,12 @@ static bool copy_hulls(ob_snapshot *to, const ob_snapshot *from)
 		if (!to->hull[i])
 			return false;
 		*to->hull[i] = *from->hull[i];
+	}
+	if (from->terrains && !to->terrains) {
+		to->terrains = malloc(from->terrains->bytes);
+		if (!to->terrains)
+			return false;
+		memcpy(to->terrains, from->terrains, from->terrains->bytes);
 	}
 	return true;
 }

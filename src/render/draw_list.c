@@ -138,7 +138,9 @@ bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapsh
 	for (uint32_t i = 0; i < now->count; i++) {
 		const ob_passport *p = &now->passport[i];
 		const bool unbounded = ob_shape_is(p->shape, OB_UNBOUNDED);
-		if (!(p->flags & OB_OBJECT_PRESENT) || !(unbounded || ob_shape_is_bounded(p->shape)) ||
+		if (!(p->flags & OB_OBJECT_PRESENT) ||
+		    !(unbounded || ob_shape_is_bounded(p->shape) ||
+		      (ob_shape_is(p->shape, OB_SURFACED) && look_of(b, p))) ||
 		    (ob_shape_is(p->shape, OB_HULLED) && !ob_snapshot_hull(now, i)))
 			continue;
 		ob_pose pose = pose_at(prev, now, i, t);

@@ -82,7 +82,9 @@ const ob_material *ob_builder_material(const ob_builder *b, const char *name);
 void ob_builder_find_file(lua_State *L, const ob_builder *b, const char *where, const char *field, const char *name,
 			  char path[PATH_MAX]);
 // 1 + the number of the scene's mesh from this source, which is read if it is new. Raises an error if it is invalid.
-uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ob_mesh_source *source);
+// field: the one that names the file.
+uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const char *field,
+			const ob_mesh_source *source);
 // Number of the script in an object's field `script`, which is added if it is new. Raises an error if it is invalid.
 uint32_t ob_builder_script(lua_State *L, ob_builder *b, const char *where, const char *script);
 // Adds a script, and takes ownership of its text, from malloc; NULL: no memory. Raises an error if there are too many.
@@ -103,6 +105,8 @@ int ob_scene_call_sky(lua_State *L);
 int ob_scene_call_sun(lua_State *L);
 int ob_scene_call_ground(lua_State *L);
 int ob_scene_call_compound(lua_State *L);
+int ob_scene_call_heightfield(lua_State *L);
+int ob_scene_call_mesh(lua_State *L);
 int ob_scene_call_material(lua_State *L);
 int ob_scene_call_camera(lua_State *L);
 int ob_scene_call_param(lua_State *L);
@@ -121,6 +125,13 @@ void ob_scene_add(lua_State *L, ob_shape shape);
 const ob_hull *ob_builder_hull(lua_State *L, ob_builder *b, const ob_points *p, ob_vec3 inertia);
 // The same for a compound of the list of parts at the top of the stack; their hulls follow it. density: kg/m^3, their
 // mean; NAN: they have none.
+// Terrain of the fields size, cells and height of the table at index 1.
+ob_terrain *ob_builder_heights(lua_State *L);
+// Terrain of a file's triangles; *look: 1 + the number of its mesh.
+ob_terrain *ob_builder_triangles(lua_State *L, ob_builder *b, const char *file, double scale, uint8_t *look);
+// Adds a terrain, and frees it. *look: 1 + the number of its mesh; 0: it gets one. kind: name of the call, for messages.
+// Returns its number.
+uint32_t ob_builder_terrain(lua_State *L, ob_builder *b, const char *kind, ob_terrain *t, uint8_t *look);
 const ob_hull *ob_builder_compound(lua_State *L, ob_builder *b, ob_vec3 inertia, double *density);
 
 // Sets the tolerance if it is a share of the thinnest object's thickness; a scene in which nothing moves keeps the

@@ -166,7 +166,7 @@ static fit fit_objects(const ob_scene *s, const view *v)
 	double ground = ground_height(s);
 	for (uint32_t i = 0; i < s->objects; i++) {
 		const ob_object_def *o = &s->object[i];
-		if (ob_shape_is(o->passport.shape, OB_UNBOUNDED))
+		if (ob_shape_is(o->passport.shape, OB_UNBOUNDED | OB_SURFACED))
 			continue;
 		ob_vec3 p = o->state.pose.p;
 		double r = o->passport.mesh ? s->mesh[o->passport.mesh - 1].radius

@@ -130,6 +130,10 @@ typedef struct body {
 	double mesh_scale;
 	ob_points points;
 	const ob_hull *hull; // in the scene; NULL: another shape
+	const char *file; // a mesh that collides
+	double scale;
+	uint8_t look; // 1 + that of its mesh; 0: the object has the field mesh, or none
+	bool cells, sides, heights;
 	float colour[4];
 	bool fixed, grid, path, varying_force, avatar, inputs, outputs, parameters, parts;
 	bool own_colour, own_surface; // set by the object or its material
@@ -181,6 +185,23 @@ static const ob_field ground_fields[] = {
 	F(grid, .kind = OB_FIELD_BOOLEAN),
 	SURFACE,
 };
+#define STANDING \
+	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), WITHIN(at, OB_PLACE_MOST), \
+		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
+		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
+		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
+		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN), SURFACE
+static const ob_field heightfield_fields[] = {
+	OB_FIELD(body, sides, .name = "size", .kind = OB_FIELD_TABLE, .required = true),
+	OB_FIELD(body, heights, .name = "height", .kind = OB_FIELD_FUNCTION, .required = true),
+	F(cells, .kind = OB_FIELD_TABLE, .required = true),
+	STANDING,
+};
+static const ob_field mesh_fields[] = {
+	F(file, .kind = OB_FIELD_TEXT, .high = OB_SCENE_MESH_NAME_MAX - 1, .required = true),
+	F(scale, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e6),
+	STANDING,
+};
 #define STATE_BYTES 1024 // the universe's size for an object's state (table/script_data.h)
 
 static const body nothing = {
@@ -203,6 +224,7 @@ static const body nothing = {
 	.colour = { NAN },
 	.grid = true,
 	.hits = UINT32_MAX,
+	.scale = 1,
 };
 
 // Objects without a colour take these in turn (sRGB).
@@ -399,13 +421,14 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 		      : isnan(d->mass)   ? d->density * ob_shape_volume(shape, size, d->hull)
 					 : d->mass;
 	const ob_mesh_source source = source_of_mesh(d);
-	const uint8_t mesh = d->mesh && !b->options->joining ? ob_builder_mesh(L, b, kind, &source) : 0;
+	if (d->mesh && !b->options->joining)
+		d->look = ob_builder_mesh(L, b, kind, "mesh", &source);
 	ob_object_def *o = ob_builder_add(L, b, kind, d->name);
 	ob_passport *p = &o->passport;
-	p->mesh = mesh;
-	o->look = d->mesh && !mesh ? ob_mesh_key(source.file, source.scale, source.pose) : 0;
-	p->flags |= d->mesh && !d->own_colour ? OB_OBJECT_MESH_COLOUR : 0;
-	p->flags |= d->mesh && !d->own_surface ? OB_OBJECT_MESH_SURFACE : 0;
+	p->mesh = d->look;
+	o->look = d->mesh && !d->look ? ob_mesh_key(source.file, source.scale, source.pose) : 0;
+	p->flags |= (d->mesh || d->file) && !d->own_colour ? OB_OBJECT_MESH_COLOUR : 0;
+	p->flags |= (d->mesh || d->file) && !d->own_surface ? OB_OBJECT_MESH_SURFACE : 0;
 	p->flags |= d->kind == STATIC ? OB_OBJECT_STATIC : d->kind == KINEMATIC ? OB_OBJECT_KINEMATIC : 0;
 	p->flags |= d->sensor ? OB_OBJECT_SENSOR : 0;
 	p->flags |= d->group << OB_OBJECT_GROUP | ~d->hits << OB_OBJECT_PASSES;
@@ -545,6 +568,37 @@ int ob_scene_call_compound(lua_State *L)
 	if (isnan(d.mass) && !isnan(density))
 		d.density = density;
 	add(L, "compound", OB_SHAPE_HULL, ob_hull_size(d.hull), &d);
+	return 0;
+}
+
+// Adds an object of a terrain, which is made of the table at index 1.
+static void add_terrain(lua_State *L, const char *kind, const ob_field *field, size_t fields)
+{
+	ob_builder *b = ob_sandbox_user(L);
+	body d = nothing;
+	d.fixed = true;
+	ob_fields_read(L, 1, kind, field, fields, &d);
+	if (!d.fixed)
+		ob_sandbox_fail(L, "%s.static: expected true or nothing: it never moves", kind);
+	if (b->options->joining)
+		ob_sandbox_fail(L, "%s: expected in a scene: what is added to a run has a shape that can move", kind);
+	ob_terrain *t = d.file ? ob_builder_triangles(L, b, d.file, d.scale, &d.look) : ob_builder_heights(L);
+	const ob_vec3 size = ob_terrain_size(t);
+	const uint32_t terrain = ob_builder_terrain(L, b, kind, t, &d.look);
+	add(L, kind, OB_SHAPE_TERRAIN, size, &d)->passport.hull = (uint16_t)terrain;
+}
+
+// heightfield { size = {..}, cells = {..}, height = function(x, y) .. end, ... }
+int ob_scene_call_heightfield(lua_State *L)
+{
+	add_terrain(L, "heightfield", heightfield_fields, sizeof heightfield_fields / sizeof *heightfield_fields);
+	return 0;
+}
+
+// mesh { file = "floor.glb", ... }
+int ob_scene_call_mesh(lua_State *L)
+{
+	add_terrain(L, "mesh", mesh_fields, sizeof mesh_fields / sizeof *mesh_fields);
 	return 0;
 }
 

@@ -361,6 +361,13 @@ static void read_table(const reader *r)
 	*(bool *)r->to = true;
 }
 
+static void read_function(const reader *r)
+{
+	if (!lua_isfunction(r->L, -1))
+		fail(r, "a function");
+	*(bool *)r->to = true;
+}
+
 static void (*const read_kind[])(const reader *r) = {
 	[OB_FIELD_NUMBER] = read_number,       [OB_FIELD_WHOLE] = read_whole,
 	[OB_FIELD_COUNT] = read_count,         [OB_FIELD_BOOLEAN] = read_boolean,
@@ -371,6 +378,7 @@ static void (*const read_kind[])(const reader *r) = {
 	[OB_FIELD_COLOUR] = read_colour,       [OB_FIELD_FLAT] = read_flat,
 	[OB_FIELD_SOURCE] = read_source,       [OB_FIELD_TABLE] = read_table,
 	[OB_FIELD_LENGTH] = read_length,       [OB_FIELD_SET] = read_set,
+	[OB_FIELD_FUNCTION] = read_function,
 };
 
 static _Noreturn void fail_unknown(lua_State *L, const char *where, const char *name, const ob_field *field,

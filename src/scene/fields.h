@@ -29,6 +29,7 @@ typedef enum ob_field_kind {
 	OB_FIELD_SOURCE, // const char *, valid as long as the table: text of any characters, at most high bytes
 	OB_FIELD_SET, // uint32_t from a list of whole numbers within low..high, each below 32: bit n, for n
 	OB_FIELD_TABLE, // bool: it is present; the caller reads its contents
+	OB_FIELD_FUNCTION, // bool: it is present; the caller calls it
 	OB_FIELD_POINTS, // ob_points from {{x, y, z}, ..}, each within low..high
 	OB_FIELD_LENGTH, // ob_length: a number within low..high (m), or a share as ".1%", up to 100%
 	OB_FIELD_COLOUR, // float[4], linear, from {r, g, b [, a]} or "#rrggbb[aa]" (sRGB)

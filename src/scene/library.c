@@ -513,10 +513,8 @@ static const char *const foreign[][2] = {
 	{ "cone", "obsim has no cones: hull { points = ... } makes one of its points" },
 	{ "ellipsoid", "obsim has no ellipsoids: hull { points = ... } comes near one" },
 	{ "torus", "obsim has no tori, nor any other hollow shape" },
-	{ "mesh",
-	  "obsim has no shapes of meshes: hull { points = ... } collides, and an object's field mesh is drawn" },
-	{ "heightfield", "obsim has no height fields: ground is flat, and static boxes and hulls make relief" },
-	{ "terrain", "obsim has no terrain: ground is flat, and static boxes and hulls make relief" },
+	{ "terrain", "terrain is a heightfield { ... }, or a mesh { ... }" },
+	{ "trimesh", "triangles of a file are a mesh { ... }, which stands still" },
 	{ "light", "obsim has no lights: sun { ... } says where light comes from" },
 };
 

@@ -31,6 +31,12 @@ static bool check_size(const ob_passport *p, ob_error *e)
 	if (ob_shape_is(shape, OB_UNBOUNDED))
 		return (p->flags & OB_OBJECT_PRESCRIBED) == OB_OBJECT_STATIC ||
 		       ob_fail(e, "%s: expected to be static", ob_shape_name(shape));
+	if (ob_shape_is(shape, OB_SURFACED))
+		return ((p->flags & OB_OBJECT_PRESCRIBED) == OB_OBJECT_STATIC ||
+			ob_fail(e, "%s: expected to be static", ob_shape_name(shape))) &&
+		       within("size", " m", 0, 2 * OB_LENGTH_MOST, size[0], e) &&
+		       within("size", " m", 0, 2 * OB_LENGTH_MOST, size[1], e) &&
+		       within("size", " m", 0, 2 * OB_LENGTH_MOST, size[2], e);
 	if (!ob_shape_is_bounded(shape))
 		return ob_fail(e, "shape: expected from %d to %d, got %u", OB_SHAPE_NONE + 1, OB_SHAPE_KINDS - 1,
 			       shape);

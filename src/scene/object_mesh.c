@@ -16,17 +16,17 @@ static size_t bytes_of_all(const ob_scene *s)
 	return bytes;
 }
 
-static void make_room(lua_State *L, ob_builder *b, const char *where)
+static void make_room(lua_State *L, ob_builder *b, const char *where, const char *field)
 {
 	ob_scene *s = b->scene;
 	if (s->meshes == OB_SCENE_MESHES_MAX)
-		ob_sandbox_fail(L, "%s.mesh: expected at most %d different meshes in a scene", where,
+		ob_sandbox_fail(L, "%s.%s: expected at most %d different meshes in a scene", where, field,
 				OB_SCENE_MESHES_MAX);
 	if (!OB_GROW(s->mesh, s->meshes + 1))
-		ob_sandbox_fail(L, "%s.mesh: no memory left on this machine", where);
+		ob_sandbox_fail(L, "%s.%s: no memory left on this machine", where, field);
 }
 
-uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ob_mesh_source *source)
+uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const char *field, const ob_mesh_source *source)
 {
 	ob_scene *s = b->scene;
 	char path[PATH_MAX];
@@ -35,18 +35,18 @@ uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ob
 	for (uint32_t i = 0; i < s->meshes; i++)
 		if (s->mesh[i].key == key)
 			return (uint8_t)(i + 1);
-	ob_builder_find_file(L, b, where, "mesh", source->file, path);
-	make_room(L, b, where);
+	ob_builder_find_file(L, b, where, field, source->file, path);
+	make_room(L, b, where, field);
 	ob_mesh *m = &s->mesh[s->meshes];
 	if (!ob_mesh_load(m, path, &e))
-		ob_sandbox_fail(L, "%s.mesh: cannot read %s: %s", where, path, e.text);
+		ob_sandbox_fail(L, "%s.%s: cannot read %s: %s", where, field, path, e.text);
 	m->key = key;
 	s->meshes++; // from now on it is freed with the scene
 	ob_sandbox_spend(L, MESH_INSTRUCTIONS + (unsigned)(ob_mesh_bytes(m) / MESH_BYTES));
 	if (!ob_mesh_place(m, source->scale, source->pose, &e))
-		ob_sandbox_fail(L, "%s.mesh: cannot place %s: %s", where, path, e.text);
+		ob_sandbox_fail(L, "%s.%s: cannot place %s: %s", where, field, path, e.text);
 	if (bytes_of_all(s) > OB_SCENE_MESH_BYTES)
-		ob_sandbox_fail(L, "%s.mesh: all meshes of the scene are larger than %u MiB", where,
+		ob_sandbox_fail(L, "%s.%s: all meshes of the scene are larger than %u MiB", where, field,
 				OB_SCENE_MESH_BYTES >> 20);
 	return (uint8_t)s->meshes;
 }

@@ -46,6 +46,8 @@ static int open_library(lua_State *L)
 	ob_library_open(L);
 	lua_pushglobaltable(L);
 	for (int shape = OB_SHAPE_NONE + 1; shape < OB_SHAPE_KINDS; shape++) {
+		if (ob_shape_is((ob_shape)shape, OB_SURFACED)) // heightfields and meshes have calls of their own
+			continue;
 		lua_pushinteger(L, shape);
 		lua_pushcclosure(L, call_shape, 1);
 		lua_setfield(L, -2, ob_shape_name((ob_shape)shape));
@@ -70,6 +72,8 @@ static bool offer_calls(ob_sandbox *s, ob_error *e)
 		{ NULL, "sun", ob_scene_call_sun },
 		{ NULL, "ground", ob_scene_call_ground },
 		{ NULL, "compound", ob_scene_call_compound },
+		{ NULL, "heightfield", ob_scene_call_heightfield },
+		{ NULL, "mesh", ob_scene_call_mesh },
 		{ NULL, "material", ob_scene_call_material },
 		{ NULL, "camera", ob_scene_call_camera },
 		{ NULL, "script", ob_scene_call_script },
@@ -189,6 +193,7 @@ void ob_scene_free(ob_scene *s)
 	free(s->joint);
 	free(s->hull);
 	free(s->hull_corners);
+	free(s->terrains);
 	for (uint32_t i = 0; i < s->meshes; i++)
 		ob_mesh_finish(&s->mesh[i]);
 	free(s->mesh);

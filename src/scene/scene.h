@@ -8,6 +8,7 @@
 #include "fmu/instance.h"
 #include "hull/hull.h"
 #include "mesh/mesh.h"
+#include "terrain/terrain.h"
 #include "motion/force.h"
 #include "motion/path.h"
 #include "settings/free.h"
@@ -91,6 +92,7 @@ typedef struct ob_scene {
 	uint32_t hulls;
 	ob_hull *hull; // [hulls], by the number in passports
 	ob_hull_corners *hull_corners; // [hulls], in the scene's frame
+	ob_terrain_set *terrains; // by the number in passports; NULL: there are none
 	uint32_t meshes;
 	ob_mesh *mesh; // [meshes], by the number in passports, less 1; in the frame of the bodies
 	uint32_t cameras;

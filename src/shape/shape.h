@@ -14,6 +14,7 @@ typedef enum ob_shape_property {
 	OB_CORNERED = 1 << 4, // a polyhedron
 	OB_SIDED = 1 << 5, // a polyhedron: its size is half of its sides along the axes
 	OB_HULLED = 1 << 6, // a polyhedron: needs an ob_hull
+	OB_SURFACED = 1 << 7, // a surface of triangles (terrain/terrain.h), always static
 	OB_ROUND = OB_ISOTROPIC | OB_AXIAL,
 } ob_shape_property;
 
@@ -24,7 +25,8 @@ typedef enum ob_shape_property {
 	SHAPE(PLANE, plane, OB_UNBOUNDED) \
 	SHAPE(CAPSULE, capsule, OB_AXIAL) \
 	SHAPE(CYLINDER, cylinder, OB_AXIAL | OB_RIMMED) \
-	SHAPE(HULL, hull, OB_CORNERED | OB_HULLED)
+	SHAPE(HULL, hull, OB_CORNERED | OB_HULLED) \
+	SHAPE(TERRAIN, terrain, OB_SURFACED)
 
 #define OB_SHAPE_COUNTED(NAME, name, properties) +1
 #define OB_SHAPE_BIT(NAME, name, properties) | (any & (properties) ? 1u << OB_SHAPE_##NAME : 0)
@@ -40,10 +42,11 @@ static inline bool ob_shape_is(ob_shape shape, unsigned any)
 	return (0u OB_SHAPES(OB_SHAPE_BIT)) >> ((unsigned)shape & 31) & 1;
 }
 
-// True for a known shape with a size: one that can move, and that others can create.
+// True for a known shape with a size that can move, and that others can create.
 static inline bool ob_shape_is_bounded(ob_shape shape)
 {
-	return shape != OB_SHAPE_NONE && (unsigned)shape < OB_SHAPE_KINDS && !ob_shape_is(shape, OB_UNBOUNDED);
+	return shape != OB_SHAPE_NONE && (unsigned)shape < OB_SHAPE_KINDS &&
+	       !ob_shape_is(shape, OB_UNBOUNDED | OB_SURFACED);
 }
 
 // Sum of a box with these half extents, a disc across z, and a ball: all points x + y + z with x in the box, y in the

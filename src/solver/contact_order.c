@@ -16,6 +16,13 @@ static float relative_distance(const ob_body *a, const ob_body *b)
 	return (float)(ob_norm(between) / (a->radius + b->radius));
 }
 
+// The same from a region of a terrain.
+static float distance_of_region(const ob_body *body, const ob_body *terrain, const ob_hull *region)
+{
+	const ob_vec3 centre = ob_add(terrain->p, ob_rotate(&terrain->r, region->centre));
+	return (float)(ob_norm(ob_sub(body->p, centre)) / (body->radius + region->radius));
+}
+
 // Sorts by the upper half of the keys, stably. Bits of non-negative floats sort as their values do. other: memory for n
 // keys.
 static void sort_keys(uint64_t *key, uint64_t *other, uint32_t n)
@@ -50,6 +57,10 @@ void ob_contact_order(ob_solver *s, const ob_island_input *in, uint32_t *order)
 	for (uint32_t i = 0; i < in->pairs; i++) {
 		const ob_island_pair *k = &in->pair[i];
 		float x = relative_distance(&w->body[w->row_of[k->a]], &w->body[w->row_of[k->b]]);
+		if (k->part[0] && ob_shape_is(w->body[w->row_of[k->a]].shape, OB_SURFACED))
+			x = distance_of_region(&w->body[w->row_of[k->b]], &w->body[w->row_of[k->a]], k->part[0]);
+		else if (k->part[1] && ob_shape_is(w->body[w->row_of[k->b]].shape, OB_SURFACED))
+			x = distance_of_region(&w->body[w->row_of[k->a]], &w->body[w->row_of[k->b]], k->part[1]);
 		uint32_t bits;
 		memcpy(&bits, &x, sizeof bits);
 		key[i] = (uint64_t)bits << 32 | i;

@@ -13,6 +13,7 @@
 #include "step/budget.h"
 #include "step/now.h"
 #include "step/publish.h"
+#include "step/terrain.h"
 
 // ---- impacts on planes
 
@@ -132,10 +133,13 @@ static ob_vec3 running_velocity(const ob_universe *u, uint32_t plane, const ob_h
 }
 
 // Applies the impact of all points on the plane to the velocities. Returns false if the object does not rebound here.
-static bool apply_plane_impact(ob_sim *s, uint32_t id, uint32_t plane, ob_state *state)
+static bool apply_plane_impact(ob_sim *s, const ob_course *c, ob_state *state)
 {
+	const uint32_t id = c->id, plane = c->plane;
+	if (plane == UINT32_MAX)
+		return false;
 	const ob_passport *passport = ob_passport_of(s->u, id), *other = ob_passport_of(s->u, plane);
-	const ob_half_space ground = half_space(s->u, plane);
+	const ob_half_space ground = c->ground;
 	const double mu = ob_pair_friction(passport->friction, other->friction),
 		     e = ob_pair_restitution(passport->restitution, other->restitution);
 	ob_impact_point point[SUPPORT_POINTS];
@@ -320,6 +324,44 @@ static void begin(ob_sim *s, uint32_t id, ob_course *c)
 	take_rotation(s, c);
 }
 
+// True if the object's fat AABB holds its bounding sphere about this centre.
+static bool is_in_bounds(const ob_sim *s, uint32_t id, ob_vec3 centre)
+{
+	const ob_passport *body = ob_passport_of(s->u, id);
+	const float *b = s->data->bounds[id];
+	const double at[3] = { centre.x, centre.y, centre.z }, r = ob_shape_radius(body->shape, body->size);
+	bool in = true;
+	for (int i = 0; i < 3; i++)
+		in &= at[i] - r >= (double)b[i] && at[i] + r <= (double)b[i + 3];
+	return in;
+}
+
+// Finds an earlier landing of a course on terrain that is a plane as far as its fat AABB reaches. A landing beyond is found
+// when the object comes near, and by the contact solver if that is within the step. first: s, of its first landing so far.
+static void land_on_terrain(ob_sim *s, ob_course *c, const ob_flier *flier, double *first)
+{
+	const ob_step_data *data = s->data;
+	const double end = (double)(ob_step_count(s->u) + 1) * s->settings->step_length;
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[c->id]; ob_pair_at(data, link, &at); link = ob_pair_next(data, at)) {
+		const ob_pair_key *k = &data->pair[at.pair];
+		ob_terrain_view view;
+		if (!k->region || k->part_a || k->part_b || !ob_terrain_see(s->u, k, &view) || !view.flat)
+			continue;
+		const ob_mat3 r = ob_quat_matrix(view.plane.q);
+		const ob_vec3 n = ob_column(&r, 2);
+		const ob_half_space ground = { n, ob_dot(n, view.plane.p) };
+		const double time = c->m.t0 + ob_landing_time(flier, &ground, c->since - c->m.t0,
+							      ob_min(c->horizon, *first) - c->m.t0);
+		const bool known = (time <= end && !c->impacts) || is_in_bounds(s, c->id, ob_centre_at(&c->m, time));
+		if (!(time < *first) || (!known && time > end))
+			continue;
+		*first = time;
+		c->ground = ground;
+		c->plane = !known ? UINT32_MAX : at.side ? k->a : k->b;
+	}
+}
+
 void ob_courses_find_landings(ob_sim *s, ob_course *const *c, uint32_t n)
 {
 	enum { WORK_OF_LANDING = 32 };
@@ -345,10 +387,12 @@ void ob_courses_find_landings(ob_sim *s, ob_course *const *c, uint32_t n)
 		for (uint32_t k = 0; k < n; k++)
 			if (c[k]->m.t0 + of[k].time < first[k] &&
 			    ob_passport_collides(ob_passport_of(s->u, c[k]->id), ob_passport_of(s->u, data->plane[i])))
-				first[k] = c[k]->m.t0 + of[k].time, c[k]->plane = data->plane[i];
+				first[k] = c[k]->m.t0 + of[k].time, c[k]->plane = data->plane[i], c[k]->ground = ground;
 	}
+	for (uint32_t k = 0; k < n && ob_universe_has_terrains(s->u); k++)
+		land_on_terrain(s, c[k], &flier[k], &first[k]);
 	for (uint32_t k = 0; k < n; k++)
-		c[k]->m.valid_until = ob_min(c[k]->horizon, ob_max(first[k], from[k]));
+		c[k]->m.valid_until = ob_min(c[k]->horizon, ob_max(first[k], c[k]->since));
 }
 
 void ob_courses_begin(ob_sim *s, const uint32_t *id, ob_course *c, uint32_t n)
@@ -414,7 +458,7 @@ bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at, uint16_t mos
 bool ob_course_rebound(ob_sim *s, ob_course *c)
 {
 	ob_state at = ob_course_state(s, c);
-	return apply_plane_impact(s, c->id, c->plane, &at) && ob_course_set_off(s, c, &at, ob_course_deviation(s, c));
+	return apply_plane_impact(s, c, &at) && ob_course_set_off(s, c, &at, ob_course_deviation(s, c));
 }
 
 void ob_course_publish(ob_sim *s, ob_course *c)

@@ -1,6 +1,7 @@
 // Free flight. An object that touches nothing follows a closed form from the start of its flight. When it is solved,
 // its next impact on a plane is computed ahead (conservative advancement), and no step solves it before that. The
-// forecast detects other objects that may touch it (late_contacts.h); two flying objects that meet are moved together.
+// forecast detects other objects that may touch it (late_contacts.h); two flying objects that meet are moved together. Terrain
+// that is flat as far as the fat AABB reaches (terrain.h) is a plane to a flight that the forecast has ended.
 //
 //   solved              not solved              solved
 //   ──┬───────────────┬───────────── … ──────┬──────────┬──
@@ -48,7 +49,8 @@ typedef struct ob_course {
 	ob_motion m; // flight since the last impact; at valid_until it meets a plane, or is not computed further
 	ob_spin *spin; // rotation of m; NULL: none, or none visible
 	ob_spin own;
-	uint32_t plane; // plane met at valid_until
+	uint32_t plane; // plane met at valid_until, or terrain; UINT32_MAX: the contact solver must find what it meets
+	ob_half_space ground; // of that plane
 	uint64_t work; // work of the search for landings (step/budget.h); the object's share notes it
 	double since, horizon; // s: present time of the course; bound of the time for which it is computed
 } ob_course;

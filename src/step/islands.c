@@ -10,6 +10,7 @@
 #include "step/now.h"
 #include "step/pairs.h"
 #include "step/profile.h"
+#include "step/terrain.h"
 #include "step/verify.h"
 
 // ---- the solver's input
@@ -29,6 +30,47 @@ static void read_object(ob_sim *s, ob_island_object *to, uint32_t id, bool membe
 		to->torque = ob_script_torque(s->data, id);
 }
 
+// Reads the region of a pair with a terrain. Where it is flat it is a plane, an object of its own.
+static void read_region(ob_sim *s, ob_island_pair *to, const ob_pair_key *k)
+{
+	ob_island_scratch *x = &s->scratch;
+	const int side = !ob_terrain_is_first(s->u, k);
+	const uint32_t number = x->terrains++;
+	ob_terrain_view view;
+	if (!ob_terrain_see(s->u, k, &view))
+		return;
+	if (!view.flat) {
+		ob_terrain_take(view.terrain, view.region, &x->terrain[number]);
+		to->part[side] = &x->terrain[number].hull;
+		return;
+	}
+	const ob_passport *p = ob_passport_of(s->u, side ? k->b : k->a);
+	ob_passport *plane = &x->plane[number];
+	*plane = *p;
+	plane->shape = OB_SHAPE_PLANE;
+	plane->size = ob_v3(0, 0, 0);
+	ob_island_object *object = &x->object[x->in.objects];
+	*object = x->object[to->fixed];
+	object->passport = plane;
+	object->now.pose = view.plane;
+	*(side ? &to->b : &to->a) = to->fixed = x->in.objects++;
+}
+
+// Makes room for the terrains' regions of an island, and for planes in their place.
+static void reserve_terrains(ob_sim *s, const ob_island *is)
+{
+	ob_island_scratch *x = &s->scratch;
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < is->pairs; i++)
+		n += s->data->pair[s->data->island_pair[is->first_pair + i]].region > 0;
+	x->terrains = 0;
+	if (n <= x->terrains_max)
+		return;
+	x->terrains_max = n + n / 2;
+	x->terrain = ob_reallocate(x->terrain, x->terrains_max * sizeof *x->terrain);
+	x->plane = ob_reallocate(x->plane, x->terrains_max * sizeof *x->plane);
+}
+
 // Reads pair "pair" of the universe. The objects of the island that it names for the first time are read, too.
 static void read_pair(ob_sim *s, ob_island_pair *to, uint32_t pair)
 {
@@ -39,7 +81,8 @@ static void read_pair(ob_sim *s, ob_island_pair *to, uint32_t pair)
 										   : UINT32_MAX;
 	if (fixed != UINT32_MAX) {
 		const uint32_t at = x->index_of[fixed];
-		if (at >= x->in.objects || at < x->in.members || x->object[at].id != fixed) {
+		if (at >= x->in.objects || at < x->in.members || x->object[at].id != fixed ||
+		    (k->region && x->object[at].passport->shape == OB_SHAPE_PLANE)) {
 			x->index_of[fixed] = x->in.objects;
 			read_object(s, &x->object[x->in.objects++], fixed, false);
 		}
@@ -52,10 +95,12 @@ static void read_pair(ob_sim *s, ob_island_pair *to, uint32_t pair)
 				.limit = k->limit,
 				.kept = k->record != OB_NO_RECORD,
 				.before = before };
-	if (ob_pair_parts(k))
+	if (k->part_a | k->part_b)
 		for (int side = 0; side < 2; side++)
 			to->part[side] = ob_part_of(s->u, ob_passport_of(s->u, side ? k->b : k->a),
 						    side ? k->part_b : k->part_a);
+	if (k->region)
+		read_region(s, to, k);
 	if (before) {
 		const ob_pair_record *r = &s->data->record[k->record];
 		to->newest = r->stamp[before - r->version] == x->in.step + 1;
@@ -117,7 +162,11 @@ static uint32_t count_joints(const ob_sim *s, const ob_island *is)
 static const ob_island_input *read_island(ob_sim *s, const ob_island *is)
 {
 	ob_island_scratch *x = &s->scratch;
-	const uint32_t objects = is->members + is->pairs + count_joints(s, is); // at most one fixed for each
+	const bool terrain = ob_universe_has_terrains(s->u);
+	const uint32_t objects =
+		is->members + (terrain ? 2 : 1) * is->pairs + count_joints(s, is); // fixed ones at most
+	if (terrain)
+		reserve_terrains(s, is);
 	if (objects > x->objects_max) {
 		x->objects_max = objects + objects / 2;
 		x->object = ob_reallocate(x->object, x->objects_max * sizeof *x->object);
@@ -159,6 +208,8 @@ void ob_island_scratch_finish(ob_sim *s)
 	free(s->scratch.object);
 	free(s->scratch.pair);
 	free(s->scratch.joint);
+	free(s->scratch.terrain);
+	free(s->scratch.plane);
 }
 
 // ---- requests and reports of the solver
@@ -239,6 +290,15 @@ static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 
 // ---- ballistic advance
 
+// True if the pair is one with a plane, or with a terrain that is a plane there.
+static bool is_with_plane(const ob_sim *s, const ob_pair_key *k)
+{
+	ob_terrain_view view;
+	return s->data->schedule[k->a].state == OB_SCHEDULE_PLANE ||
+	       s->data->schedule[k->b].state == OB_SCHEDULE_PLANE ||
+	       (k->region && !k->part_a && !k->part_b && ob_terrain_see(s->u, k, &view) && view.flat);
+}
+
 // True for a body near planes only, or two that are no compounds near each other and planes, with no resting contact, and
 // no late contact in this step: a ballistic advance may suffice. A contact rests if it carried a load, or if the body has
 // been slow.
@@ -256,11 +316,11 @@ static bool may_advance_ballistically(const ob_sim *s, const ob_island *is)
 			return false;
 	for (uint32_t i = 0; i < is->pairs; i++) {
 		const ob_pair_key *k = &data->pair[data->island_pair[is->first_pair + i]];
-		const bool a = data->schedule[k->a].state == OB_SCHEDULE_PLANE,
-			   b = data->schedule[k->b].state == OB_SCHEDULE_PLANE;
 		const bool met = data->result_island[k->a] == data->result_island[k->b] && !ob_pair_parts(k);
-		if ((!a && !b && !met) || (k->active && (ob_newest_motion(s->u, a ? k->b : k->a)->rest_time > 0 ||
-							 ob_pair_carried_load(ob_pair_state_before(s->u, k)))))
+		const uint32_t body = ob_schedule_is_dynamic(&data->schedule[k->a]) ? k->a : k->b;
+		if ((k->active && (ob_newest_motion(s->u, body)->rest_time > 0 ||
+				   ob_pair_carried_load(ob_pair_state_before(s->u, k)))) ||
+		    (!met && !is_with_plane(s, k)))
 			return false;
 	}
 	return true;

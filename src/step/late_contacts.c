@@ -15,6 +15,7 @@
 #include "step/now.h"
 #include "step/pairs.h"
 #include "step/prefetch.h"
+#include "step/terrain.h"
 
 static const double contact_gap = 2e-4; // m: a forecast takes bodies this near to be touching,
 static const double contact_gap_share = .05; // but no nearer than this share of the thinner one's thickness
@@ -61,6 +62,22 @@ static ob_placed shape_of(const pair_check *c, uint32_t id, uint32_t part, const
 	return out;
 }
 
+// Puts the region of a terrain, or the plane that it is for the other object, in its place.
+static void see_terrain(const pair_check *c, const ob_pair_key *k, ob_placed at[2])
+{
+	ob_placed *x = &at[!ob_terrain_is_first(c->u, k)];
+	ob_terrain_view view;
+	if (!ob_terrain_see(c->u, k, &view))
+		return;
+	if (view.flat) {
+		x->shape = OB_SHAPE_PLANE;
+		x->p = view.plane.p, x->r = ob_quat_matrix(view.plane.q);
+		return;
+	}
+	ob_terrain_take(view.terrain, view.region, &c->s->checked);
+	x->hull = &c->s->checked.hull;
+}
+
 static moving_pair moving_pair_of(const pair_check *c, const ob_pair_key *k)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
@@ -72,6 +89,8 @@ static moving_pair moving_pair_of(const pair_check *c, const ob_pair_key *k)
 		p.at[i] = shape_of(c, id, i ? k->part_b : k->part_a, ob_result_of(c->u, id), c->steps);
 		p.thin = ob_min(p.thin, ob_shape_thickness(p.at[i].shape, p.at[i].size));
 	}
+	if (k->region)
+		see_terrain(c, k, p.at);
 	return p;
 }
 
@@ -104,6 +123,10 @@ static bool passed_through(const pair_check *c, const ob_pair_key *k, const movi
 	for (int i = 0; i < 2; i++) {
 		start.at[i] = shape_of(c, id[i], i ? k->part_b : k->part_a, ob_newest_motion(c->u, id[i]), step);
 		start.at[i].v = ob_scale(ob_sub(end->at[i].p, start.at[i].p), 1 / end->h);
+	}
+	if (k->region) {
+		start.at[!ob_terrain_is_first(c->u, k)].v = ob_v3(0, 0, 0);
+		see_terrain(c, k, start.at);
 	}
 	if (relative_speed(&start.at[0], &start.at[1], end->h) * end->h < tunnel_share * end->thin)
 		return false;

@@ -13,6 +13,7 @@
 #include "step/now.h"
 #include "step/prefetch.h"
 #include "step/sort_ids.h"
+#include "step/terrain.h"
 
 // ---- lists
 
@@ -148,8 +149,9 @@ static double plane_distance(const ob_universe *u, uint32_t plane, ob_vec3 at, d
 }
 
 // Lower bound of the distance between two objects (m): from their boxes and bounding spheres, or a sphere and a plane.
-static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
+static double pair_distance(const ob_universe *u, const ob_pair_key *k, uint64_t steps)
 {
+	const uint32_t a = k->a, b = k->b;
 	const ob_passport *pa = ob_passport_of(u, a), *pb = ob_passport_of(u, b);
 	const ob_motion *ma = ob_result_of(u, a), *mb = ob_result_of(u, b);
 	// Axis-aligned boxes reach beyond the bounding sphere.
@@ -166,6 +168,8 @@ static double pair_distance(const ob_universe *u, uint32_t a, uint32_t b, uint64
 	double box_a[6], box_b[6], distance = 0;
 	ob_tight_aabb(u, pa, ob_state_now(u, a, ma, steps).pose, box_a);
 	ob_tight_aabb(u, pb, ob_state_now(u, b, mb, steps).pose, box_b);
+	if (k->region)
+		ob_terrain_region_bounds(u, k, ob_terrain_is_first(u, k) ? box_a : box_b);
 	for (int c = 0; c < 3; c++)
 		distance = ob_max(distance, ob_max(box_a[c] - box_b[3 + c], box_b[c] - box_a[3 + c]));
 	return ob_max(distance, spheres);
@@ -184,7 +188,7 @@ double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t 
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	const uint32_t a = k->a, b = k->b;
-	double distance = pair_distance(u, a, b, steps);
+	double distance = pair_distance(u, k, steps);
 	double paths = ob_schedule_path(&data->schedule[a], steps) + ob_schedule_path(&data->schedule[b], steps);
 	// They may have touched in the solved step if they moved farther in it than their distance.
 	return distance > path_in_step(u, a, b, paths, steps) ? paths + distance : -1;
@@ -203,20 +207,88 @@ static void add_pair(ob_universe *u, const ob_pair_key *key, uint64_t steps)
 		data->check[data->count->checks++] = pair;
 }
 
-// Adds a pair of the two, or one for each part of a compound. A plane touches the hull of all parts.
+// Returns the index of "wanted" in id[], which ascends; n: it is not there.
+static uint32_t place_of(const uint32_t *id, uint32_t n, uint32_t wanted)
+{
+	uint32_t first = 0, end = n;
+	while (first < end) {
+		const uint32_t middle = first + (end - first) / 2;
+		if (id[middle] < wanted)
+			first = middle + 1;
+		else
+			end = middle;
+	}
+	return first < n && id[first] == wanted ? first : n;
+}
+
+// Adds a pair for each part of a compound, or one if it is none. k: the rest of their key.
+static void add_part_pairs(ob_universe *u, ob_pair_key k, uint32_t of_a, uint32_t of_b, uint64_t steps)
+{
+	for (uint32_t i = of_a > 0; i <= of_a; i++)
+		for (uint32_t j = of_b > 0; j <= of_b; j++) {
+			k.part_a = i & OB_HULL_PARTS_MAX, k.part_b = j & OB_HULL_PARTS_MAX;
+			add_pair(u, &k, steps);
+		}
+}
+
+// Marks the regions, of n that ascend, with which the object has a pair already; ends other pairs with that terrain, but
+// for those with a record.
+static void keep_regions(ob_universe *u, uint32_t terrain, uint32_t id, const uint32_t *region, uint32_t n, bool *had)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_place at;
+	for (uint32_t link = data->first_pair[id], next; ob_pair_at(data, link, &at); link = next) {
+		const ob_pair_key *k = &data->pair[at.pair];
+		next = ob_pair_next(data, at);
+		if ((at.side ? k->a : k->b) != terrain)
+			continue;
+		const uint32_t place = place_of(region, n, k->region - 1u);
+		if (place < n)
+			had[place] = true;
+		else if (k->record == OB_NO_RECORD)
+			drop_pair(u, at.pair);
+	}
+}
+
+// Renews the pairs of an object with a terrain: one for each region near its fat AABB.
+static void renew_regions(ob_universe *u, uint32_t terrain, uint32_t id, uint64_t steps)
+{
+	enum { USUALLY = 256 };
+	uint32_t few[USUALLY], *region = few, n = ob_terrain_near(u, terrain, id, few, USUALLY);
+	if (n > USUALLY) {
+		region = ob_allocate(n * sizeof *region);
+		n = ob_terrain_near(u, terrain, id, region, n);
+	}
+	bool *had = ob_allocate_zeroed(n + 1);
+	const bool first = terrain < id;
+	const uint32_t parts = ob_parts_of(u, ob_passport_of(u, id));
+	ob_pair_key k = { .a = first ? terrain : id, .b = first ? id : terrain, .record = OB_NO_RECORD, .limit = NAN };
+	keep_regions(u, terrain, id, region, n, had);
+	for (uint32_t i = 0; i < n; i++) {
+		k.region = (region[i] + 1) & OB_TERRAIN_REGIONS_MAX;
+		if (!had[i])
+			add_part_pairs(u, k, first ? 0 : parts, first ? parts : 0, steps);
+	}
+	free(had);
+	if (region != few)
+		free(region);
+}
+
+// Adds a pair of the two, or one for each part of a compound. A plane touches the hull of all parts, a terrain each of
+// them.
 static void add_pairs(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps)
 {
 	ob_pair_key k = {
 		.a = id < other ? id : other, .b = id < other ? other : id, .record = OB_NO_RECORD, .limit = NAN
 	};
 	const ob_passport *a = ob_passport_of(u, k.a), *b = ob_passport_of(u, k.b);
+	if (ob_terrain_of(u, a) || ob_terrain_of(u, b)) {
+		renew_regions(u, ob_terrain_of(u, a) ? k.a : k.b, ob_terrain_of(u, a) ? k.b : k.a, steps);
+		return;
+	}
 	const bool plane = ob_shape_is(a->shape, OB_UNBOUNDED) || ob_shape_is(b->shape, OB_UNBOUNDED);
 	const uint32_t of_a = plane ? 0 : ob_parts_of(u, a), of_b = plane ? 0 : ob_parts_of(u, b);
-	for (uint32_t i = of_a > 0; i <= of_a; i++)
-		for (uint32_t j = of_b > 0; j <= of_b; j++) {
-			k.part_a = i & OB_HULL_PARTS_MAX, k.part_b = j & OB_HULL_PARTS_MAX;
-			add_pair(u, &k, steps);
-		}
+	add_part_pairs(u, k, of_a, of_b, steps);
 }
 
 void ob_pairs_measure(ob_universe *u, uint64_t steps)
@@ -241,20 +313,6 @@ static bool is_immobile(const ob_step_data *data, uint32_t id)
 static bool decides(const ob_universe *u, uint32_t id, uint32_t other)
 {
 	return id < other || !ob_requery_lists(u, other);
-}
-
-// Returns the index of "wanted" in id[], which ascends; n: it is not there.
-static uint32_t place_of(const uint32_t *id, uint32_t n, uint32_t wanted)
-{
-	uint32_t first = 0, end = n;
-	while (first < end) {
-		const uint32_t middle = first + (end - first) / 2;
-		if (id[middle] < wanted)
-			first = middle + 1;
-		else
-			end = middle;
-	}
-	return first < n && id[first] == wanted ? first : n;
 }
 
 // Changes of an object's pairs: n of them, of which the first max are listed.
@@ -297,7 +355,7 @@ static void compare_pairs(const ob_universe *u, uint32_t id, const uint32_t *fou
 		ob_prefetch_link(u, ob_pair_next(data, at));
 		const uint32_t other = at.side ? k->a : k->b, place = place_of(found, n, other);
 		if (place < n)
-			had[place] = 1;
+			had[place] = !k->region; // regions are looked for anew
 		else if (may_end(data, id, k) && decides(u, id, other))
 			add_change(to, OB_PAIR_ENDS | at.pair);
 	}
@@ -305,6 +363,19 @@ static void compare_pairs(const ob_universe *u, uint32_t id, const uint32_t *fou
 		if (!had[i] && decides(u, id, found[i]) && (!is_immobile(data, id) || !is_immobile(data, found[i])) &&
 		    ob_may_touch(u, id, found[i]))
 			add_change(to, found[i]);
+}
+
+// Number of regions near an object, of the terrains among its n neighbours: as many neighbours as there are objects at
+// most, all together.
+static uint32_t count_regions(const ob_universe *u, uint32_t id, const uint32_t *found, uint32_t n)
+{
+	uint32_t regions = 0;
+	const bool looks = ob_universe_has_terrains(u) && !is_immobile(ob_universe_step_data(u), id);
+	for (uint32_t i = 0; i < n && looks; i++)
+		if (ob_terrain_of(u, ob_passport_of(u, found[i])))
+			regions += ob_terrain_near(u, found[i], id, NULL, 0);
+	const uint32_t most = ob_universe_ids(u) - n;
+	return regions < most ? regions : most;
 }
 
 void ob_pairs_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
@@ -325,7 +396,7 @@ void ob_pairs_query(ob_universe *u, uint32_t id, uint64_t *box_tests)
 		c = (changes){ .max = c.n, .list = more };
 		compare_pairs(u, id, found, n, had, &c);
 	}
-	ob_commit_neighbours(u, id, n, c.list, c.n);
+	ob_commit_neighbours(u, id, n + count_regions(u, id, found, n), c.list, c.n);
 	free(more);
 	if (found != few)
 		free(found);

@@ -17,7 +17,9 @@ typedef struct ob_island_scratch {
 	ob_island_object *object;
 	ob_island_pair *pair;
 	ob_island_joint *joint;
-	uint32_t objects_max, pairs_max, joints_max;
+	ob_terrain_part *terrain; // of pairs with a terrain
+	ob_passport *plane; // of those where it is flat
+	uint32_t objects_max, pairs_max, joints_max, terrains, terrains_max;
 	uint32_t *index_of; // [object of the universe]: its place in the input, if it is there
 } ob_island_scratch;
 
@@ -29,6 +31,7 @@ struct ob_sim {
 	ob_solver solver;
 	void (*fly)(ob_sim *s, const uint32_t *id, uint32_t n, bool *done); // ob_ballistic_advance, or by ODE
 	ob_island_scratch scratch;
+	ob_terrain_part checked; // by a check of a pair with a terrain
 	ob_rotation_cache rotations;
 	struct ob_probe *verifier; // step/verify.h; NULL: the run is not verified
 	struct ob_committer *committer; // NULL unless this is the arranger (commit.h)

@@ -34,7 +34,8 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 	clock_gettime(CLOCK_REALTIME, &now);
 	ob_layout_plan(h, &(ob_layout_plan_of){ setup->capacity, setup->workers, setup->hulls, setup->traced,
 						setup->harden & 1 << OB_HARDEN_OUTBOX, setup->script_cells,
-						setup->script_bytes, setup->history, setup->ledgers, setup->joints });
+						setup->script_bytes, setup->history, setup->ledgers, setup->joints,
+						setup->terrains ? (uint32_t)setup->terrains->bytes : 0 });
 	h->version = OB_LAYOUT_VERSION;
 	h->host_pid = getpid();
 	h->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
@@ -58,6 +59,10 @@ static bool fill(ob_universe *u, const ob_universe_setup *setup, ob_error *e)
 		return ob_fail(e, "/dev/shm is full: no room for the scene's scripts");
 	if (setup->script_bytes)
 		memcpy(u->base + u->header.area[OB_AREA_SCRIPT_TEXT], setup->script_text, setup->script_bytes);
+	if (!ob_pages_take(u, OB_AREA_TERRAIN, 0, u->header.sizes.terrain_bytes))
+		return ob_fail(e, "/dev/shm is full: no room for the scene's terrain");
+	if (setup->terrains)
+		memcpy(u->base + u->header.area[OB_AREA_TERRAIN], setup->terrains, setup->terrains->bytes);
 	if (setup->history)
 		u->free.control->settings = *setup->free;
 	memcpy(u->base, &u->header, sizeof u->header);

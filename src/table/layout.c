@@ -8,7 +8,9 @@ enum {
 	HULLS_LIMIT = UINT16_MAX,
 	SCRIPT_BYTES_LIMIT = 1 << 28,
 	VERSIONS_LIMIT = 1 << 16,
-	JOINTS_LIMIT = 1 << 24
+	JOINTS_LIMIT = 1 << 24,
+	TERRAIN_BYTES_LIMIT = 1 << 30,
+	TERRAIN_PAIRS = 1 << 20 // with a terrain: an object has many
 };
 
 static uint32_t power_of_two_from(uint32_t least)
@@ -41,7 +43,7 @@ uint64_t ob_layout_element(ob_area area)
 {
 #define BYTES(name, pointer, count) [OB_AREA_##name] = sizeof *((ob_universe *)NULL)->pointer,
 	static const size_t bytes[OB_AREAS] = { OB_LAYOUT_AREAS(BYTES) };
-	return area == OB_AREA_SCRIPT_TEXT ? 1 : bytes[area];
+	return area == OB_AREA_SCRIPT_TEXT || area == OB_AREA_TERRAIN ? 1 : bytes[area];
 }
 
 uint64_t ob_layout_elements_of(const ob_layout_sizes *s, ob_area area, uint32_t ids)
@@ -89,8 +91,11 @@ void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p)
 				      .script_bytes = p->script_bytes,
 				      .history = p->history,
 				      .ledgers = p->ledgers,
-				      .joints = p->joints };
+				      .joints = p->joints,
+				      .terrain_bytes = p->terrain_bytes };
 	h->sizes.pairs_max = most_pairs(capacity);
+	if (p->terrain_bytes && h->sizes.pairs_max < TERRAIN_PAIRS)
+		h->sizes.pairs_max = TERRAIN_PAIRS;
 	h->sizes.buckets = power_of_two_from(2 * capacity);
 	h->sizes.neighbours_max = 2 * h->sizes.pairs_max + capacity; // either object of a pair may find the other
 	h->sizes.trace_events = p->traced ? ring_events(workers) : 0;
@@ -127,25 +132,25 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	if (s->script_cells > s->capacity || s->script_bytes > SCRIPT_BYTES_LIMIT ||
 	    (s->script_cells > 0) != (s->script_bytes >= sizeof(ob_script_directory)))
 		return false;
-	if (s->joints > JOINTS_LIMIT)
+	if (s->joints > JOINTS_LIMIT || s->terrain_bytes > TERRAIN_BYTES_LIMIT)
 		return false;
 	if (s->history == 1 || s->history > VERSIONS_LIMIT || s->ledgers == 1 || s->ledgers > s->history)
 		return false;
 	ob_header expected;
 	ob_layout_plan(&expected, &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
 							s->outbox_bytes > 0, s->script_cells, s->script_bytes,
-							s->history, s->ledgers, s->joints });
+							s->history, s->ledgers, s->joints, s->terrain_bytes });
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       (h->harden & 1 << OB_HARDEN_OUTBOX) == (s->outbox_bytes ? 1 << OB_HARDEN_OUTBOX : 0) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&
 	       memchr(h->isolation, 0, sizeof h->isolation);
 }
 
-// Pointers to what a universe without scripts, or without room for joints, does not have are NULL.
+// Pointers to what a universe without scripts, room for joints or terrains does not have are NULL.
 static bool is_bound(const ob_layout_sizes *s, ob_area area)
 {
-	const bool optional =
-		(area >= OB_AREA_SCRIPT_COUNTS && area <= OB_AREA_FIRST_JOINT) || area == OB_AREA_SCRIPT_TEXT;
+	const bool optional = (area >= OB_AREA_SCRIPT_COUNTS && area <= OB_AREA_FIRST_JOINT) ||
+			      area == OB_AREA_SCRIPT_TEXT || area == OB_AREA_TERRAIN;
 	return !optional || count_of(s, area) > 0;
 }
 

@@ -15,7 +15,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 43, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
+enum { OB_LAYOUT_VERSION = 44, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
 
 // Areas in their order: the name, the pointer of ob_universe to the first element, and the number of elements by the sizes s
 // (layout.c).
@@ -30,6 +30,7 @@ enum { OB_LAYOUT_VERSION = 43, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 
 	X(PASSPORT, passport, s->capacity) \
 	X(PASSPORT_EVEN, passport_even, s->capacity) \
 	X(HULL, hull, s->hulls) \
+	X(TERRAIN, terrains, s->terrain_bytes) /* bytes: an ob_terrain_set; empty unless the scene has terrains */ \
 	X(STEP_CLOCK, step_clock, 1) \
 	X(PIN, step_data.pin, s->capacity) \
 	X(REQUERY, requery, s->capacity) /* ids */ \
@@ -101,6 +102,7 @@ typedef struct ob_layout_sizes {
 	uint32_t history; // versions of each motion that a free run keeps; 0 = the run is in lockstep
 	uint32_t ledgers; // same of each object's mail; 0 = it has none
 	uint32_t joints;
+	uint32_t terrain_bytes;
 } ob_layout_sizes;
 
 // The first two fields have the same place in all versions. A file with the same magic is owned through its lock
@@ -203,6 +205,7 @@ struct ob_universe {
 	ob_passport_slot *passport;
 	ob_passport *passport_even;
 	ob_hull *hull;
+	const ob_terrain_set *terrains;
 	uint32_t *requery;
 	uint64_t *requery_bit;
 	ob_step_data step_data;
@@ -226,6 +229,7 @@ typedef struct ob_layout_plan_of {
 	bool traced, contained;
 	uint32_t script_cells, script_bytes;
 	uint32_t history, ledgers, joints;
+	uint32_t terrain_bytes;
 } ob_layout_plan_of;
 
 // Fills sizes (from the input), offsets and bytes.

@@ -237,6 +237,14 @@ bool ob_universe_get_hull(const ob_universe *u, uint32_t hull, ob_hull *out)
 	return ob_hull_makes_sense(out);
 }
 
+size_t ob_universe_get_terrains(const ob_universe *u, void *to, size_t room)
+{
+	const size_t bytes = u->header.sizes.terrain_bytes;
+	if (bytes)
+		memcpy(to, u->terrains, bytes < room ? bytes : room);
+	return bytes;
+}
+
 bool ob_motion_makes_sense(const ob_motion *m)
 {
 	double norm = m->q.w * m->q.w + m->q.x * m->q.x + m->q.y * m->q.y + m->q.z * m->q.z;

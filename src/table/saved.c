@@ -236,8 +236,7 @@ static bool check_pairs(const ob_saved_universe *s, ob_error *e)
 				 (!last || ob_pairs_by_ids(last, k) < 0);
 		const bool moves = ids && (ob_schedule_is_dynamic(&s->schedule[k->a]) ||
 					   ob_schedule_is_dynamic(&s->schedule[k->b]));
-		const bool flags = k->active <= 1 && k->in_island <= 1;
-		if (!moves || !flags || isnan(k->limit) || (k->active && k->record == OB_NO_RECORD))
+		if (!moves || isnan(k->limit) || (k->active && k->record == OB_NO_RECORD))
 			return ob_fail(e, "pair %u makes no sense", i);
 		if (k->record == OB_NO_RECORD)
 			continue;

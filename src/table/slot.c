@@ -73,6 +73,16 @@ const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
 	return ob_shape_is(p->shape, OB_HULLED) ? ob_hull_at(u, p->hull) : NULL;
 }
 
+bool ob_universe_has_terrains(const ob_universe *u)
+{
+	return u->terrains;
+}
+
+const ob_terrain *ob_terrain_of(const ob_universe *u, const ob_passport *p)
+{
+	return ob_shape_is(p->shape, OB_SURFACED) ? ob_terrain_at(u->terrains, p->hull) : NULL;
+}
+
 uint32_t ob_parts_of(const ob_universe *u, const ob_passport *p)
 {
 	const ob_hull *h = ob_hull_of(u, p);

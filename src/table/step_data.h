@@ -50,13 +50,14 @@ static inline ob_pair_state *ob_pair_write(ob_pair_record *r, uint64_t steps)
 typedef struct ob_pair_key {
 	uint32_t a, b; // ids, a < b
 	uint32_t record; // index of its ob_pair_record; OB_NO_RECORD = none: it did not touch when the step began
-	uint8_t active; // 1 = touching: its record has points
-	uint8_t expected : 1; // 1 = apart, and expected to touch in the coming step
+	uint32_t active : 1; // 1 = touching: its record has points
+	uint32_t expected : 1; // 1 = apart, and expected to touch in the coming step
 	// 1 = a late contact: it touched in this step unexpectedly; both islands are merged and solved again
-	uint8_t late : 1;
+	uint32_t late : 1;
+	uint32_t in_island : 1; // 1 = its island's solver handles it in this step
 	// Parts of compounds, from 1: each part that may touch has a pair. 0: the object as a whole.
-	uint8_t part_a : 4, part_b : 4;
-	uint8_t in_island; // 1 = its island's solver handles it in this step
+	uint32_t part_a : 4, part_b : 4;
+	uint32_t region : 20; // of a terrain, if one of the two is, from 1: each region that is near has a pair
 	double limit; // m: the pair cannot touch before path_a + path_b exceeds this
 	uint32_t
 		clear_until; // the pair cannot touch before this step (from 0) either, provided that neither object has
@@ -65,7 +66,7 @@ typedef struct ob_pair_key {
 
 static inline uint32_t ob_pair_parts(const ob_pair_key *k)
 {
-	return (uint32_t)k->part_a << 4 | k->part_b;
+	return (uint32_t)k->part_a << 28 | (uint32_t)k->part_b << 24 | k->region;
 }
 
 // For qsort: by ids, then by parts, ascending. Places in pair[] depend on the run, so code that needs an order sorts.

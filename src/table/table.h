@@ -18,6 +18,7 @@
 #include "settings/settings.h"
 #include "table/counters.h"
 #include "table/step_data.h"
+#include "terrain/terrain.h"
 
 // Phase that the gate opens with. The phases of a step in their order; step/step.c describes the workers' actions in
 // each.
@@ -58,6 +59,7 @@ typedef struct ob_universe_setup {
 	uint32_t ledgers; // same of each object's mail; 0: no ledger
 	const struct ob_free_settings *free; // of a free run
 	uint32_t joints; // at the same time
+	const ob_terrain_set *terrains; // NULL: there are none
 } ob_universe_setup;
 
 // Creates the shared segment /dev/shm/obsim.<name>, zeroed, state STARTING. Removes stale segments, without an owner
@@ -189,6 +191,8 @@ const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p); // NULL: 
 // Hull of a part of a compound, from 1; part 0: as ob_hull_of.
 const ob_hull *ob_part_of(const ob_universe *u, const ob_passport *p, uint32_t part);
 uint32_t ob_parts_of(const ob_universe *u, const ob_passport *p); // 0: not a compound
+bool ob_universe_has_terrains(const ob_universe *u);
+const ob_terrain *ob_terrain_of(const ob_universe *u, const ob_passport *p); // NULL: not a terrain
 // The data of the step (step_data.h); ordered by the gate.
 ob_step_data *ob_universe_step_data(const ob_universe *u);
 

@@ -138,6 +138,19 @@ ob_world_body ob_world_compound(ob_world *w, double mass, const ob_hull_part *pa
 	return b;
 }
 
+ob_world_body ob_world_terrain(ob_world *w, ob_terrain *t, ob_vec3 p)
+{
+	const uint32_t number = w->terrains ? (uint32_t)w->terrains->count : 0;
+	if (!t || !ob_terrain_set_add(&w->terrains, t)) {
+		fprintf(stderr, "terrain: there is none, or no room\n");
+		abort();
+	}
+	const ob_world_body b = ob_world_add(w, OB_SHAPE_TERRAIN, ob_terrain_size(t), 0, p);
+	b.passport->hull = (uint16_t)number;
+	free(t);
+	return b;
+}
+
 ob_world_body ob_world_ground(ob_world *w)
 {
 	return ob_world_add(w, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(0, 0, 0));

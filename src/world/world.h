@@ -12,6 +12,7 @@
 
 #include "hull/hull.h"
 #include "motion/path.h"
+#include "terrain/terrain.h"
 
 #define OB_WORLD_GRAVITY 9.81 // m/s^2
 
@@ -29,6 +30,7 @@ typedef struct ob_world {
 	} * path; // [paths]
 	uint32_t hulls;
 	ob_hull *hull; // [hulls], by the number in passports
+	ob_terrain_set *terrains; // by the number in passports; NULL: there are none
 } ob_world;
 
 // Body to edit freely; both pointers hold until the next body is built.
@@ -64,6 +66,8 @@ ob_world_body ob_world_capsule(ob_world *w, double mass, double radius, double h
 ob_world_body ob_world_hull(ob_world *w, double mass, const ob_vec3 *point, uint32_t points, ob_vec3 p);
 // Adds a compound of these parts, with the origin of their points at p.
 ob_world_body ob_world_compound(ob_world *w, double mass, const ob_hull_part *part, uint32_t parts, ob_vec3 p);
+// Adds a terrain, and frees it; NULL ends the program. p: its origin.
+ob_world_body ob_world_terrain(ob_world *w, ob_terrain *t, ob_vec3 p);
 // Plane z = 0, and the same turned by "angle" (rad) about y: bodies on it slide towards +x.
 ob_world_body ob_world_ground(ob_world *w);
 ob_world_body ob_world_slope(ob_world *w, double angle);

@@ -138,7 +138,7 @@ static void test_names(void)
 		for (int b = OB_SHAPE_SPHERE; b < a; b++)
 			CHECK(strcmp(ob_shape_name((ob_shape)a), ob_shape_name((ob_shape)b)) != 0);
 	}
-	CHECK(!*ob_shape_name(OB_SHAPE_NONE) && !*ob_shape_name((ob_shape)(OB_SHAPE_HULL + 1)));
+	CHECK(!*ob_shape_name(OB_SHAPE_NONE) && !*ob_shape_name((ob_shape)(OB_SHAPE_TERRAIN + 1)));
 }
 
 int main(void)

@@ -130,7 +130,7 @@ static int files(void)
 int main(int argc, char **argv)
 {
 	folder = argc > 2 ? argv[2] : "scenes";
-	CHECK(files() == 25);
+	CHECK(files() == 26);
 	check_count("falling_boxes", NULL, 101, true);
 	check_count("falling_boxes", "n=1", 2, true);
 	check_count("falling_boxes", "n=1000", 1001, true);
@@ -159,6 +159,7 @@ int main(int argc, char **argv)
 	check_count("wrecking_ball", NULL, 47, false);
 	check_count("bridge", NULL, 29, false);
 	check_objects("crane", 14);
+	check_objects("hills", 30);
 	check_objects("strings", 23); // the bounding spheres of strings and rails reach far beyond them
 	check_count("fall", NULL, 29, false);
 	check_objects("flock", 67); // birds come from behind the viewpoint, too

@@ -150,6 +150,31 @@ static void check_compounds(void)
 	ob_scene_free(s);
 }
 
+// A heightfield: its terrain, and a mesh that shows it.
+static void check_heightfields(void)
+{
+	ob_scene *s = load_good("heightfield { size = { 4, 2 }, cells = { 4, 1 }, at = { 1, 2, 3 }, friction = .7,\n"
+				"\theight = function(x, y) return x > .5 and x - y or 0 end }\n"
+				"heightfield { name = 'flat', size = { 1, 1 }, cells = { 3, 3 },\n"
+				"\theight = function() return -2 end, static = true }");
+	CHECK(s);
+	if (!s)
+		return;
+	const ob_passport *p = &s->object[0].passport, *q = &s->object[1].passport;
+	const ob_terrain *t = ob_terrain_at(s->terrains, p->hull), *flat = ob_terrain_at(s->terrains, q->hull);
+	CHECK(s->objects == 2 && s->terrains->count == 2 && s->meshes == 2 && p->mesh == 1 && q->mesh == 2);
+	CHECK(p->shape == OB_SHAPE_TERRAIN && p->flags & OB_OBJECT_STATIC && p->mass == 0 && p->friction == .7);
+	CHECK(strcmp(p->name, "heightfield#0") == 0 && strcmp(q->name, "flat") == 0);
+	CHECK(t && t->vertices == 10 && t->triangles == 8 && t->solid && flat && flat->regions == 1);
+	check_vec(s->object[0].state.pose.p, 1, 2, 3);
+	if (t) {
+		check_vec(ob_terrain_vertices(t)[0], -2, -1, 0);
+		check_vec(ob_terrain_vertices(t)[9], 2, 1, 1);
+		CHECK(s->mesh[0].vertices == 10 && s->mesh[0].indices == 24 && s->mesh[0].vertex[9].position[2] == 1);
+	}
+	ob_scene_free(s);
+}
+
 static void check_free(void)
 {
 	ob_scene *s = load_good("scene { sync = 'free', update_rate = 500, max_lag = .01 }\nground {}");
@@ -309,6 +334,7 @@ int main(void)
 	check_groups();
 	check_inertia();
 	check_compounds();
+	check_heightfields();
 	check_free();
 	check_exactness();
 	check_share();

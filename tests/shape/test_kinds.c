@@ -18,7 +18,7 @@ static ob_vec3 random_direction(uint64_t *seed)
 
 static bool has_end(ob_shape s)
 {
-	return !ob_shape_is(s, OB_UNBOUNDED | OB_HULLED);
+	return !ob_shape_is(s, OB_UNBOUNDED | OB_HULLED | OB_SURFACED);
 }
 
 static void test_names(void)

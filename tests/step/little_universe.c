@@ -48,6 +48,7 @@ ob_universe *little_populate(const little_scene *s, uint32_t workers)
 				    .capacity = s->capacity ? s->capacity : s->world.objects,
 				    .workers = workers,
 				    .hulls = s->world.hulls,
+				    .terrains = s->world.terrains,
 				    .isolation = "thread",
 				    .checked = s->checked,
 				    .harden = s->harden,

@@ -24,6 +24,7 @@ const SHAPES = [
 		make: (wide) => ({ size: [wide / 2, wide / 2, 0], volume: Math.PI / 4 * wide ** 3 }),
 	},
 	{ name: 'hull', hulled: true },
+	{ name: 'terrain', outline: (s) => ({ half: [s[0], s[1], 0], rim: 0, ball: 0 }) }, // until its mesh has come
 ];
 
 const kindOf = (shape) => SHAPES[shape] ?? SHAPES[0]; // an unknown shape is none

@@ -1,2 +1,2 @@
--- expect: :2: mesh: unknown name: obsim has no shapes of meshes: hull { points = ... } collides, and an object's field mesh is drawn
+-- expect: :2: mesh.file: cannot read
 mesh { file = "pin.glb" }

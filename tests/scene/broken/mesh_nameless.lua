@@ -1,0 +1,2 @@
+-- expect: mesh.file: expected
+mesh { at = { 0, 0, 1 } }
