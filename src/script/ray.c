@@ -5,10 +5,17 @@
 #include "script/runner.h"
 #include "shape/shape.h"
 
-static double enter(const ob_passport *o, ob_vec3 p, ob_vec3 d, ob_vec3 *n)
+static double enter(lua_State *L, const ob_universe *u, const ob_passport *o, ob_vec3 p, ob_vec3 d, double length,
+		    ob_vec3 *n)
 {
+	const ob_terrain *terrain = ob_terrain_of(u, o);
 	const ob_shape_kind *kind = ob_shape_kind_of((ob_shape)o->shape);
-	return kind->enter ? kind->enter(o->size, p, d, n) : INFINITY;
+	if (!terrain)
+		return kind->enter ? kind->enter(o->size, p, d, n) : INFINITY;
+	uint32_t tests;
+	const double t = ob_terrain_enter(terrain, p, d, length, n, &tests);
+	ob_sandbox_spend(L, tests);
+	return t;
 }
 
 // True if the ray intersects the object's fat AABB.
@@ -50,8 +57,8 @@ bool ob_ray_cast(lua_State *L, const ob_universe *u, ob_vec3 from, ob_vec3 direc
 		const ob_state s = ob_published_at(ob_newest_motion(u, id), o, time);
 		const ob_mat3 r = ob_quat_matrix(s.pose.q);
 		ob_vec3 n = { 0 };
-		const double t =
-			enter(o, ob_rotate_back(&r, ob_sub(from, s.pose.p)), ob_rotate_back(&r, direction), &n);
+		const double t = enter(L, u, o, ob_rotate_back(&r, ob_sub(from, s.pose.p)),
+				       ob_rotate_back(&r, direction), hit->distance, &n);
 		if (!(t < hit->distance)) // at equal distances the lower id
 			continue;
 		*hit = (ob_ray_hit){ id, t, ob_rotate(&r, n) };
