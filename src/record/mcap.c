@@ -25,6 +25,7 @@ typedef struct text {
 
 typedef struct writer {
 	FILE *file;
+	const ob_scene *scene;
 	text record, json;
 	uint32_t numbers[3]; // messages so far, by channel
 	uint64_t now; // ns
@@ -212,14 +213,18 @@ static void print_round(text *t, const ob_outline *o, const float c[4])
 	print(t, "],\"triangles\":[]");
 }
 
+static void print_point(text *t, bool first, double x, double y, double z)
+{
+	print(t, "%s{\"x\":%.9g,\"y\":%.9g,\"z\":%.9g}", first ? "" : ",", x, y, z);
+}
+
 static void print_hull(text *t, const ob_hull *h, const float c[4])
 {
 	print(t, "{");
 	print_pose(t, 0);
 	print(t, ",\"points\":[");
 	for (uint32_t i = 0; i < h->corners; i++)
-		print(t, "%s{\"x\":%.9g,\"y\":%.9g,\"z\":%.9g}", i ? "," : "", h->corner[i].x, h->corner[i].y,
-		      h->corner[i].z);
+		print_point(t, i == 0, h->corner[i].x, h->corner[i].y, h->corner[i].z);
 	print(t, "],\"indices\":[");
 	bool first = true;
 	for (uint32_t f = 0; f < h->faces; f++)
@@ -230,7 +235,25 @@ static void print_hull(text *t, const ob_hull *h, const float c[4])
 	print(t, "}");
 }
 
-static void print_body(text *t, const ob_snapshot *s, uint32_t id)
+// Terrain, by its look: a record has no other triangles of it.
+static void print_mesh(text *t, const ob_mesh *m, const float c[4])
+{
+	print(t, "\"cubes\":[],\"spheres\":[],\"cylinders\":[],\"triangles\":[{");
+	print_pose(t, 0);
+	print(t, ",\"points\":[");
+	for (uint32_t i = 0; i < m->vertices; i++) {
+		const float *p = m->vertex[i].position;
+		print_point(t, i == 0, (double)p[0], (double)p[1], (double)p[2]);
+	}
+	print(t, "],\"indices\":[");
+	for (uint32_t i = 0; i < m->indices; i++)
+		print(t, "%s%u", i ? "," : "", m->index[i]);
+	print(t, "],\"colors\":[]");
+	print_colour(t, c);
+	print(t, "}]");
+}
+
+static void print_body(text *t, const writer *w, const ob_snapshot *s, uint32_t id)
 {
 	const ob_passport *p = &s->passport[id];
 	ob_outline o;
@@ -242,6 +265,8 @@ static void print_body(text *t, const ob_snapshot *s, uint32_t id)
 			print_hull(t, ob_snapshot_part(s, id, i), p->colour);
 		}
 		print(t, "]");
+	} else if (ob_shape_is(p->shape, OB_SURFACED) && p->mesh && p->mesh <= w->scene->meshes) {
+		print_mesh(t, &w->scene->mesh[p->mesh - 1], p->colour);
 	} else if (ob_shape_outline(p->shape, p->size, &o)) {
 		if (o.rim == 0 && o.ball == 0)
 			print_cube(t, o.half, 0, p->colour);
@@ -263,7 +288,7 @@ static void print_entity(text *t, const writer *w, const ob_snapshot *s, uint32_
 	      id, id);
 	print_name(t, s->passport[id].name);
 	print(t, "}],\"arrows\":[],\"lines\":[],\"texts\":[],\"models\":[],");
-	print_body(t, s, id);
+	print_body(t, w, s, id);
 	print(t, "}");
 }
 
@@ -370,7 +395,7 @@ static bool write_states(writer *w, ob_recording *r, const char *record, double 
 
 bool ob_mcap_write(ob_recording *r, const char *record, const char *path, double seconds, ob_error *e)
 {
-	writer w = { .file = fopen(path, "wbe") };
+	writer w = { .file = fopen(path, "wbe"), .scene = &ob_recording_get_info(r)->scene };
 	if (!w.file)
 		return ob_fail(e, "%s: %s", path, strerror(errno));
 	write_head(&w, ob_recording_get_info(r)->version);
