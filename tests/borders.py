@@ -36,7 +36,7 @@ ARROWS = {
     'schedule': 'table settings base',
     'cluster': 'schedule table elementary settings base',
     'exchange': 'cluster schedule solver table settings base',
-    'baseline': 'exchange ode table settings base',
+    'baseline': 'terrain exchange ode table settings base',
     'step': 'terrain baseline exchange cluster schedule solver contact shape motion elementary table settings base',
     'free': 'step solver contact shape motion table settings base exchange/results.h',
     'fmu': 'base',

@@ -108,6 +108,19 @@ static void forget_touches(ob_ode_baseline *m, uint32_t id)
 	l->count = kept;
 }
 
+static void add_object(ob_ode_baseline *m, const ob_passport *p, const ob_state *s)
+{
+	const ob_terrain *t = ob_terrain_of(m->u, p);
+	if (!t) {
+		ob_ode_world_add(m->world, p, s);
+		return;
+	}
+	const ob_ode_triangles triangles = { ob_terrain_vertices(t), ob_terrain_triangles(t)->corner, t->vertices,
+					     t->triangles, sizeof(ob_terrain_triangle) };
+	if (!ob_ode_world_add_triangles(m->world, p, s, &triangles))
+		ob_step_fail(m->u, OB_STEP_ENGINE, p->id);
+}
+
 // Takes in and drops objects as the passports say, which the host changes between steps.
 static void follow_passports(ob_ode_baseline *m)
 {
@@ -127,7 +140,7 @@ static void follow_passports(ob_ode_baseline *m)
 			continue;
 		const ob_motion *first = ob_newest_motion(m->u, id);
 		ob_state s = { { first->p, first->q }, first->v, first->w };
-		ob_ode_world_add(m->world, p, &s);
+		add_object(m, p, &s);
 		*h = (struct held_object){ true, p->generation };
 	}
 }

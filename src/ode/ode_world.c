@@ -93,11 +93,13 @@ static int collide_aabbs(dGeomID a, dGeomID b, dContactGeom point[4])
 
 // ---- the world
 
-enum { PAIR_POINTS = 4, CAP_POINTS = 8 }; // on a cap, ODE lists 8 points around its rim: the first 4 lie on one side
+// On a cap, ODE lists 8 points around its rim: the first 4 lie on one side. On triangles it lists those of each in turn.
+enum { PAIR_POINTS = 4, CAP_POINTS = 8 };
 
 struct object {
 	dBodyID body; // NULL: static, or no such object
 	dGeomID geom; // its data points to this object; NULL: no shape, or no such object
+	dTriMeshDataID triangles; // of that geometry; NULL: it has none
 	uint32_t id;
 	bool touching;
 	double friction, restitution;
@@ -172,6 +174,8 @@ static void clear_object(struct object *m)
 {
 	if (m->geom)
 		dGeomDestroy(m->geom);
+	if (m->triangles)
+		dGeomTriMeshDataDestroy(m->triangles);
 	if (m->body)
 		dBodyDestroy(m->body);
 	*m = (struct object){ 0 };
@@ -255,8 +259,17 @@ void ob_ode_world_kick(ob_ode_world *w, uint32_t id, ob_vec3 impulse, ob_vec3 tw
 	dBodyEnable(m->body);
 }
 
+static void set_geometry(struct object *m, dGeomID geom, const ob_passport *p)
+{
+	m->geom = geom;
+	dGeomSetData(geom, m);
+	dGeomSetCategoryBits(geom, 1ul << ob_passport_group(p));
+	dGeomSetCollideBits(geom, ~(unsigned long)(p->flags >> OB_OBJECT_PASSES));
+}
+
 void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 {
+	const dGeomID geom = p->flags & OB_OBJECT_SENSOR ? NULL : ob_ode_geom_create(w->space, p->shape, p->size);
 	struct object *m = &w->object[p->id];
 	*m = (struct object){
 		.id = p->id,
@@ -267,12 +280,8 @@ void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 		.surface_velocity = p->flags & OB_OBJECT_PRESCRIBED ? p->surface_velocity : ob_v3(0, 0, 0),
 		.placed = *s,
 	};
-	m->geom = p->flags & OB_OBJECT_SENSOR ? NULL : ob_ode_geom_create(w->space, p->shape, p->size);
-	if (m->geom) {
-		dGeomSetData(m->geom, m);
-		dGeomSetCategoryBits(m->geom, 1ul << ob_passport_group(p));
-		dGeomSetCollideBits(m->geom, ~(unsigned long)(p->flags >> OB_OBJECT_PASSES));
-	}
+	if (geom)
+		set_geometry(m, geom, p);
 	if (m->kinematic || (!(p->flags & OB_OBJECT_STATIC) && p->mass > 0)) {
 		add_body(w, m, p, s);
 		if (m->geom)
@@ -280,6 +289,21 @@ void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s)
 	} else if (m->geom) {
 		ob_ode_geom_place(m->geom, s->pose);
 	}
+}
+
+bool ob_ode_world_add_triangles(ob_ode_world *w, const ob_passport *p, const ob_state *s, const ob_ode_triangles *t)
+{
+	struct object *m = &w->object[p->id];
+	const dTriMeshDataID triangles = dGeomTriMeshDataCreate();
+	if (!triangles)
+		return false;
+	dGeomTriMeshDataBuildDouble(triangles, t->vertex, sizeof *t->vertex, (int)t->vertices, t->corner,
+				    3 * (int)t->triangles, (int)t->stride);
+	ob_ode_world_add(w, p, s);
+	m->triangles = triangles;
+	set_geometry(m, dCreateTriMesh(w->space, triangles, NULL, NULL, NULL), p);
+	ob_ode_geom_place(m->geom, s->pose);
+	return true;
 }
 
 // Wakes sleepers that lean on the object: their boxes overlap.
@@ -389,7 +413,8 @@ static void collide_pair(void *data, dGeomID one, dGeomID other)
 	w->box_tests++;
 	ob_synthetic_load(w->setup.load);
 	dContactGeom point[CAP_POINTS];
-	bool cap = dGeomGetClass(a->geom) == dCylinderClass || dGeomGetClass(b->geom) == dCylinderClass;
+	bool cap = dGeomGetClass(a->geom) == dCylinderClass || dGeomGetClass(b->geom) == dCylinderClass ||
+		   a->triangles || b->triangles;
 	int n = w->setup.boxed ? collide_aabbs(a->geom, b->geom, point)
 			       : dCollide(a->geom, b->geom, cap ? CAP_POINTS : PAIR_POINTS, point, sizeof *point);
 	struct contact_pair *p = n > 0 ? next_pair(w) : NULL;

@@ -32,6 +32,14 @@ ob_ode_world *ob_ode_world_create(const ob_ode_world_setup *s); // NULL: no memo
 void ob_ode_world_destroy(ob_ode_world *w); // NULL is allowed
 // Adds an object; p->id must be free.
 void ob_ode_world_add(ob_ode_world *w, const ob_passport *p, const ob_state *s);
+// Triangles in the frame of their object, m. The arrays stay as they are while it is in the world.
+typedef struct ob_ode_triangles {
+	const ob_vec3 *vertex;
+	const uint32_t *corner; // three vertices of the first triangle; those of the next lie "stride" bytes on
+	uint32_t vertices, triangles, stride;
+} ob_ode_triangles;
+// Adds a static object of triangles. false: no memory.
+bool ob_ode_world_add_triangles(ob_ode_world *w, const ob_passport *p, const ob_state *s, const ob_ode_triangles *t);
 // Sets the pose and velocity of a kinematic object before the next step.
 void ob_ode_world_drive(ob_ode_world *w, uint32_t id, const ob_state *s);
 // Sets the constant force (N) and torque (N m) of an object; it wakes if they change.
