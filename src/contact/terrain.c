@@ -31,6 +31,7 @@ static const double cap = .9999; // cosine: a direction this near to a cylinder'
 static const double same_place = 1e-9; // relative to the body's radius: points nearer to each other are one
 
 enum { OTHERS = 24 };
+enum { FEW = 32 }; // triangles of a region that are looked at one by one
 
 // Search for the contact of a body and a region.
 typedef struct contact {
@@ -102,9 +103,14 @@ static bool is_endless(const contact *c, double border, bool *own)
 	double low[3], high[3];
 	ob_terrain_search s;
 	uint32_t i;
+	const uint32_t *listed = ob_terrain_by_region(c->terrain) + c->region->first;
 	bool endless = true;
 	*own = false;
 	box_of(c, border, low, high);
+	for (i = 0; i < c->region->triangles && i < FEW; i++)
+		*own |= ob_terrain_overlaps(c->terrain, listed[i], low, high);
+	if (!*own && c->region->triangles <= FEW)
+		return false;
 	ob_terrain_begin(c->terrain, low, high, &s);
 	while (ob_terrain_next(&s, &i)) {
 		const bool in = triangle[i].region == c->number;
@@ -242,10 +248,17 @@ static void touch(contact *c, uint32_t triangle)
 
 static void touch_all(contact *c)
 {
+	const uint32_t *own = ob_terrain_by_region(c->terrain) + c->region->first;
 	double low[3], high[3];
 	ob_terrain_search s;
 	uint32_t i;
 	box_of(c, c->margin, low, high);
+	if (c->region->triangles <= FEW) {
+		for (i = 0; i < c->region->triangles; i++)
+			if (ob_terrain_overlaps(c->terrain, own[i], low, high))
+				touch(c, own[i]);
+		return;
+	}
 	ob_terrain_begin(c->terrain, low, high, &s);
 	while (ob_terrain_next(&s, &i))
 		if (ob_terrain_triangles(c->terrain)[i].region == c->number)

@@ -16,6 +16,7 @@ typedef struct draft {
 	uint32_t vertices, triangles, regions;
 	ob_terrain_triangle *triangle;
 	ob_terrain_region *region;
+	uint32_t *by_region; // [triangles]
 	uint32_t *first, *entry; // of columns
 	uint32_t columns[2], entries;
 	double low[3], high[3], per_metre[2];
@@ -159,8 +160,8 @@ static void hold(const draft *d, ob_terrain_region *r, uint32_t triangle)
 		}
 }
 
-// Begins a region with a triangle; list: its triangles, which grows while their neighbours are added.
-static void grow_region(draft *d, uint32_t first, uint32_t *list)
+// Begins a region with a triangle; list: its triangles, which grows while their neighbours are added. Returns their number.
+static uint32_t grow_region(draft *d, uint32_t first, uint32_t *list)
 {
 	const double near =
 		same_plane * ob_norm(ob_v3(d->high[0] - d->low[0], d->high[1] - d->low[1], d->high[2] - d->low[2]));
@@ -184,20 +185,22 @@ static void grow_region(draft *d, uint32_t first, uint32_t *list)
 		}
 	}
 	d->regions++;
+	return n;
 }
 
-static bool find_regions(draft *d)
+static void find_regions(draft *d)
 {
-	uint32_t *list = malloc(d->triangles * sizeof *list);
-	if (!list)
-		return false;
+	uint32_t listed = 0;
 	for (uint32_t i = 0; i < d->triangles; i++)
 		d->triangle[i].region = UINT32_MAX;
-	for (uint32_t i = 0; i < d->triangles; i++)
-		if (d->triangle[i].region == UINT32_MAX)
-			grow_region(d, i, list);
-	free(list);
-	return true;
+	for (uint32_t i = 0; i < d->triangles; i++) {
+		ob_terrain_region *r = &d->region[d->regions];
+		if (d->triangle[i].region != UINT32_MAX)
+			continue;
+		r->first = listed;
+		r->triangles = grow_region(d, i, d->by_region + listed);
+		listed += r->triangles;
+	}
 }
 
 // ---- columns
@@ -270,10 +273,11 @@ static void plan_columns(draft *d, const uint32_t cells[2])
 static ob_terrain *pack(const draft *d, bool solid)
 {
 	const size_t vertices = d->vertices * sizeof *d->vertex, regions = d->regions * sizeof *d->region,
-		     triangles = d->triangles * sizeof *d->triangle,
+		     triangles = d->triangles * sizeof *d->triangle, by_region = d->triangles * sizeof *d->by_region,
 		     columns = (d->columns[0] * d->columns[1] + 1) * sizeof *d->first,
 		     entries = d->entries * sizeof *d->entry;
-	const size_t bytes = (sizeof(ob_terrain) + vertices + regions + triangles + columns + entries + 63) / 64 * 64;
+	const size_t bytes =
+		(sizeof(ob_terrain) + vertices + regions + triangles + by_region + columns + entries + 63) / 64 * 64;
 	ob_terrain *t = calloc(1, bytes);
 	if (!t)
 		return NULL;
@@ -291,7 +295,8 @@ static ob_terrain *pack(const draft *d, bool solid)
 	memcpy(at, d->vertex, vertices);
 	memcpy(at += vertices, d->region, regions);
 	memcpy(at += regions, d->triangle, triangles);
-	memcpy(at += triangles, d->first, columns);
+	memcpy(at += triangles, d->by_region, by_region);
+	memcpy(at += by_region, d->first, columns);
 	memcpy(at + columns, d->entry, entries);
 	return t;
 }
@@ -307,17 +312,21 @@ ob_terrain *ob_terrain_build(const ob_vec3 *vertex, uint32_t vertices, const uin
 	}
 	d.triangle = calloc(triangles, sizeof *d.triangle);
 	d.region = calloc(triangles, sizeof *d.region);
-	if (!d.triangle || !d.region) {
+	d.by_region = malloc(triangles * sizeof *d.by_region);
+	if (!d.triangle || !d.region || !d.by_region) {
 		ob_fail(e, "no memory left on this machine");
 	} else if (check_vertices(&d, e) && take_triangles(&d, corner, e)) {
 		plan_columns(&d, cells);
-		if (connect(&d) && find_regions(&d) && fill_columns(&d))
-			t = pack(&d, solid);
+		const bool fine = connect(&d) && fill_columns(&d);
+		if (fine)
+			find_regions(&d);
+		t = fine ? pack(&d, solid) : NULL;
 		if (!t)
 			ob_fail(e, "no memory left on this machine");
 	}
 	free(d.triangle);
 	free(d.region);
+	free(d.by_region);
 	free(d.first);
 	free(d.entry);
 	return t;
@@ -371,7 +380,8 @@ static uint64_t bytes_of(const ob_terrain *t)
 	    t->triangles > most || t->regions > most || t->entries > most)
 		return 0;
 	return (sizeof *t + t->vertices * sizeof(ob_vec3) + t->regions * sizeof(ob_terrain_region) +
-		t->triangles * sizeof(ob_terrain_triangle) + (columns + t->entries) * sizeof(uint32_t) + 63) /
+		t->triangles * sizeof(ob_terrain_triangle) + (t->triangles + columns + t->entries) * sizeof(uint32_t) +
+		63) /
 	       64 * 64;
 }
 
@@ -383,6 +393,11 @@ static bool triangles_make_sense(const ob_terrain *t)
 		for (int k = 0; k < 3; k++)
 			sense &= x[i].corner[k] < t->vertices && x[i].across[k] <= t->triangles &&
 				 x[i].region < t->regions;
+	for (uint32_t i = 0; i < t->regions; i++)
+		sense &= ob_terrain_regions(t)[i].first <= t->triangles &&
+			 ob_terrain_regions(t)[i].triangles <= t->triangles - ob_terrain_regions(t)[i].first;
+	for (uint32_t i = 0; i < t->triangles; i++)
+		sense &= ob_terrain_by_region(t)[i] < t->triangles;
 	return sense;
 }
 

@@ -59,6 +59,18 @@ void ob_terrain_begin(const ob_terrain *t, const double low[3], const double hig
 		enter_column(s);
 }
 
+bool ob_terrain_overlaps(const ob_terrain *t, uint32_t triangle, const double low[3], const double high[3])
+{
+	ob_vec3 c[3];
+	bool apart = false;
+	corners_of(t, triangle, c);
+	for (int i = 0; i < 3; i++) {
+		const double a = component(c[0], i), b = component(c[1], i), d = component(c[2], i);
+		apart |= ob_min(a, ob_min(b, d)) > high[i] || ob_max(a, ob_max(b, d)) < low[i];
+	}
+	return !apart;
+}
+
 // True if the boxes overlap, and the search meets the triangle first in this column.
 static bool is_found(const ob_terrain_search *s, uint32_t triangle)
 {

@@ -28,6 +28,7 @@ typedef struct ob_terrain_region {
 	ob_vec3 normal; // unit
 	double offset;
 	float low[3], high[3]; // box
+	uint32_t first, triangles; // in the list of triangles by region
 } ob_terrain_region;
 
 typedef struct ob_terrain {
@@ -56,9 +57,15 @@ static inline const ob_terrain_triangle *ob_terrain_triangles(const ob_terrain *
 	return (const ob_terrain_triangle *)(ob_terrain_regions(t) + t->regions);
 }
 
-static inline const uint32_t *ob_terrain_first(const ob_terrain *t)
+// Numbers of all triangles, region by region.
+static inline const uint32_t *ob_terrain_by_region(const ob_terrain *t)
 {
 	return (const uint32_t *)(ob_terrain_triangles(t) + t->triangles);
+}
+
+static inline const uint32_t *ob_terrain_first(const ob_terrain *t)
+{
+	return ob_terrain_by_region(t) + t->triangles;
 }
 
 // Builds a terrain of these triangles. Each has an area; neighbours have an edge's two vertices in common. cells: about
@@ -85,6 +92,9 @@ typedef struct ob_terrain_search {
 void ob_terrain_begin(const ob_terrain *t, const double low[3], const double high[3], ob_terrain_search *s);
 // Returns false at the end. Each triangle is found once, in an order that depends on the box.
 bool ob_terrain_next(ob_terrain_search *s, uint32_t *triangle);
+
+// True if a triangle's box overlaps a box.
+bool ob_terrain_overlaps(const ob_terrain *t, uint32_t triangle, const double low[3], const double high[3]);
 
 // Finds the regions with such triangles, ascending. Writes up to max numbers; returns their number, which may exceed max.
 uint32_t ob_terrain_find_regions(const ob_terrain *t, const double low[3], const double high[3], uint32_t *out,
