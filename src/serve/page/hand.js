@@ -1,7 +1,7 @@
 // A visitor's hand: drags an object by a spring from the grabbed point to the pointer, and pushes.
 import { turned } from './motion.js';
 
-const INTERVAL = 33; // ms between two requests
+const INTERVAL = 33; // ms at least between two requests
 const PUSH = 15; // m/s2: force of a push by the object's mass
 
 const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
@@ -13,6 +13,7 @@ export class Hand {
 		this.camera = camera;
 		this.held = null; // { id, generation, point: in the body's frame, target, plane: { at, normal } }
 		this.sentAt = 0;
+		this.due = null; // timer of the next request
 	}
 
 	// Takes hold of a body at a place on it.
@@ -27,12 +28,13 @@ export class Hand {
 		const { at, normal } = this.held.plane, s = dot(add(at, from, -1), normal) / dot(ray, normal);
 		if (s > 0)
 			this.held.target = add(from, ray, s);
-		if (performance.now() - this.sentAt > INTERVAL)
-			this.ask();
+		this.due ??= setTimeout(() => this.held && this.ask(), Math.max(0, this.sentAt + INTERVAL - performance.now()));
 	}
 
 	ask() {
 		const { id, generation, point, target } = this.held;
+		clearTimeout(this.due);
+		this.due = null;
 		this.sentAt = performance.now();
 		this.universe.send({ do: 'drag', id, generation, point, target });
 	}
@@ -40,7 +42,8 @@ export class Hand {
 	let() {
 		if (this.held)
 			this.universe.send({ do: 'release', id: this.held.id });
-		this.held = null;
+		clearTimeout(this.due);
+		this.held = this.due = null;
 	}
 
 	// Pushes away from the viewer, and a little upwards, until it lets go.
