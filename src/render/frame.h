@@ -20,7 +20,7 @@ bool ob_ortho_contains(const ob_ortho *m, const ob_draw_item *body);
 // Column-major matrix from positions relative to the eye to 0..1; z grows away from the light.
 void ob_ortho_matrix(const ob_ortho *m, ob_vec3 eye, float out[16]);
 
-enum { OB_SHADOW_TEXELS = 1280, OB_OCCLUSION_TEXELS = 256, OB_SKY_MAPS_MAX = 12 };
+enum { OB_SHADOW_TEXELS = 1280, OB_OCCLUSION_TEXELS = 128, OB_SKY_MAPS_MAX = 12 };
 
 // std140 layout of the block Frame in shaders/frame.glsl.
 typedef struct ob_frame_block {

@@ -605,7 +605,8 @@ static void blur_occlusion(const ob_passes *p, const ob_targets *t, int from, fl
 	glActiveTexture(GL_TEXTURE0 + OB_UNIT_SOURCE);
 	glBindTexture(GL_TEXTURE_2D, t->occlusion_texture[from]);
 	glUseProgram(program);
-	glUniform2f(glGetUniformLocation(program, "direction"), x / OB_OCCLUSION_TEXELS, y / OB_OCCLUSION_TEXELS);
+	glUniform2f(glGetUniformLocation(program, "direction"), .5f * x / OB_OCCLUSION_TEXELS,
+		    .5f * y / OB_OCCLUSION_TEXELS);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 

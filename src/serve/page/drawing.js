@@ -4,7 +4,7 @@ import { isEndless, isHulled, outlineOf } from './shapes.js';
 import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes, hullVertices } from './meshes.js';
 import { turned } from './motion.js';
 
-const SAMPLES = 4, SHADOW_TEXELS = 1280, SKY_TEXELS = 512, OCCLUSION_TEXELS = 256, MARGIN = 4; // texels; MARGIN: border for the
+const SAMPLES = 4, SHADOW_TEXELS = 1280, SKY_TEXELS = 512, OCCLUSION_TEXELS = 128, MARGIN = 4; // texels; MARGIN: border for the
                                                                                   // filter
 const SKY_MAPS = 12; // as in light.glsl
 const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2, UNIT_PLAIN = 3, UNIT_SKY = 4, UNIT_COLOUR_IMAGE = 5, UNIT_SURFACE_IMAGE = 6;
@@ -269,12 +269,24 @@ export class Drawing {
 			return { framebuffer, texture };
 		};
 		this.shadow = map(gl.DEPTH_ATTACHMENT, gl.DEPTH_COMPONENT16, gl.DEPTH_COMPONENT, gl.UNSIGNED_SHORT, SHADOW_TEXELS);
+		this.shadow.texels = SHADOW_TEXELS;
 		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
 		gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
 		gl.drawBuffers([gl.NONE]);
 		if (!this.draft)
 			this.createSkyMaps();
 		this.occlusion = [0, 1].map(() => map(gl.COLOR_ATTACHMENT0, gl.R8, gl.RED, gl.UNSIGNED_BYTE, OCCLUSION_TEXELS));
+	}
+
+	sizeShadowMap(texels) {
+		const gl = this.gl;
+		if (this.shadow.texels === texels)
+			return;
+		this.shadow.texels = texels;
+		gl.activeTexture(gl.TEXTURE0 + UNIT_SHADOW);
+		gl.bindTexture(gl.TEXTURE_2D, this.shadow.texture);
+		gl.texImage2D(gl.TEXTURE_2D, 0, gl.DEPTH_COMPONENT16, texels, texels, 0, gl.DEPTH_COMPONENT, gl.UNSIGNED_SHORT, null);
+		gl.bindTexture(gl.TEXTURE_2D, null); // it will be the target
 	}
 
 	createSkyMaps() {
@@ -302,13 +314,15 @@ export class Drawing {
 	// ---- a frame
 
 	// bodies: { shape, size, p, q, radius, shown: linear RGB; mesh: one of looks, if it has one }; look: the
-	// scene's (welcome). overlay: see drawSegments. smooth: with several samples a pixel.
-	draw(bodies, view, look, overlay, smooth = true) {
+	// scene's (welcome). overlay: see drawSegments. smooth: with several samples a pixel. share: of the full resolution,
+	// for the shadow map, too.
+	draw(bodies, view, look, overlay, smooth = true, share = 1) {
 		const gl = this.gl, width = this.canvas.width, height = this.canvas.height;
 		const solid = bodies.filter((b) => !isEndless(b.shape)), planes = bodies.filter((b) => isEndless(b.shape));
 		const ground = planes.find((b) => turned(b.q, [0, 0, 1])[2] > 0.999);
+		this.sizeShadowMap(64 * Math.round(SHADOW_TEXELS * share / 64));
 		const sun = Math.hypot(...look.sun) > 0 ? unit(look.sun) : [0, 0, 1];
-		const f = { view, ground, shadow: fitOrtho(sun, solid, view, SHADOW_TEXELS) };
+		const f = { view, ground, shadow: fitOrtho(sun, solid, view, this.shadow.texels) };
 		const up = ground ? turned(ground.q, [0, 0, 1]) : [0, 0, 1];
 		f.level = ground ? dot(ground.p, up) : 0;
 		f.occlusion = fitOrtho(up, solid, view, OCCLUSION_TEXELS);
@@ -356,7 +370,7 @@ export class Drawing {
 	setBlock(f, sun, look, width, height) {
 		const gl = this.gl, v = f.view, fog = Math.max(FOG_LEAST, FOG_RANGES * v.range);
 		const top = look.sky_top, horizon = look.sky_horizon, below = f.ground ? look.ground : horizon;
-		const sky = add(scale(top, 0.35), horizon, 0.65), texel = 2 * Math.max(f.shadow.halfX, f.shadow.halfY) / SHADOW_TEXELS;
+		const sky = add(scale(top, 0.35), horizon, 0.65), texel = 2 * Math.max(f.shadow.halfX, f.shadow.halfY) / this.shadow.texels;
 		const shines = f.ground ? SUNSHINE[1] * Math.max(sun[2], 0) + FROM_SKY : 0.6, deep = SUN_RADIUS * (f.shadow.high - f.shadow.low) / 2;
 		const unused = new Array(SKY_MAPS - f.sky.length), none = new Array(16).fill(0);
 		const block = new Float32Array([
@@ -365,7 +379,7 @@ export class Drawing {
 			...sun, texel, ...SUNSHINE, 0, ...top, 1 / (fog * fog), ...horizon, f.ground ? 1 : 0,
 			...scale(sky, FROM_SKY), 0, ...scale(add(scale(below, 0.8), sky, 0.2), FROM_GROUND), 0,
 			...scale(below, 0.75 * shines), 0,
-			width, height, 1 / width, 1 / height, 1 / SHADOW_TEXELS, 1 / SHADOW_TEXELS, deep / f.shadow.halfX, deep / f.shadow.halfY,
+			width, height, 1 / width, 1 / height, 1 / this.shadow.texels, 1 / this.shadow.texels, deep / f.shadow.halfX, deep / f.shadow.halfY,
 			...f.sky.flatMap(({ map }) => orthoMatrix(map, v.eye)), ...unused.fill(none).flat(),
 			...f.sky.flatMap(({ ray, map }) => [...ray, 2 * Math.max(map.halfX, map.halfY) / SKY_TEXELS]), ...unused.fill(none.slice(12)).flat(),
 		]);
@@ -503,7 +517,7 @@ export class Drawing {
 	}
 
 	drawShadowMap(casters, view, height) {
-		this.target(this.shadow.framebuffer, SHADOW_TEXELS, SHADOW_TEXELS);
+		this.target(this.shadow.framebuffer, this.shadow.texels, this.shadow.texels);
 		this.gl.useProgram(this.program.shadow.id);
 		this.drawDepth(casters, view, height);
 	}
@@ -550,7 +564,7 @@ export class Drawing {
 			gl.bindTexture(gl.TEXTURE_2D, null); // it is the target
 			gl.activeTexture(gl.TEXTURE0 + UNIT_SOURCE);
 			gl.bindTexture(gl.TEXTURE_2D, this.occlusion[from].texture);
-			gl.uniform2f(uniform('direction'), x / OCCLUSION_TEXELS, y / OCCLUSION_TEXELS);
+			gl.uniform2f(uniform('direction'), 0.5 * x / OCCLUSION_TEXELS, 0.5 * y / OCCLUSION_TEXELS);
 			gl.drawArrays(gl.TRIANGLES, 0, 3);
 		}
 		gl.bindTexture(gl.TEXTURE_2D, null);

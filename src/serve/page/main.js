@@ -71,10 +71,10 @@ function accompany(list, seconds) {
 	panel.follows(camera.holds);
 }
 
-function draw(list, view, width, height, smooth) {
+function draw(list, view, width, height, smooth, share) {
 	if (canvas.width !== width || canvas.height !== height)
 		[canvas.width, canvas.height] = [width, height];
-	drawing.draw(list, view, look, overlay(list, view), smooth);
+	drawing.draw(list, view, look, overlay(list, view), smooth, share);
 }
 
 let before = performance.now();
@@ -97,7 +97,7 @@ function frame(now) {
 	const changes = seen !== shown, share = drawing.software && !explore.recorder ? sharpness.next(seconds, changes) : 1;
 	const smooth = !drawing.software || !changes, form = `${share} ${smooth}`;
 	if (changes || form !== shownForm)
-		draw(list, view, Math.round(width * share), Math.round(height * share), smooth);
+		draw(list, view, Math.round(width * share), Math.round(height * share), smooth, share);
 	[shown, shownForm] = [seen, form];
 	panel.clock(universe.time, universe.rate, universe.paused);
 	frames++;

@@ -14,6 +14,12 @@ const MORE = new Set(['friction', 'restitution', 'island of', 'substeps']); // d
 const $ = (selector) => document.querySelector(selector);
 const number = (x, digits = 3) => (Math.abs(x) < 5e-4 ? '0' : Number(x.toPrecision(digits)).toString());
 const linear = (x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+// Changes what an element shows, if it shows something else: a changed page is composed anew.
+const show = (selector, property, value) => {
+	const e = $(selector);
+	if (e[property] !== value)
+		e[property] = value;
+};
 const vector = (v) => v.map((x) => number(x)).join('  ');
 
 export class Panel extends EventTarget {
@@ -175,12 +181,12 @@ export class Panel extends EventTarget {
 	}
 
 	clock(time, rate, paused) {
-		$('#clock').value = `${time.toFixed(2)} s`;
-		$('#time').value = time;
-		$('#pause').textContent = paused ? '▶' : '❚❚';
+		show('#clock', 'value', `${time.toFixed(2)} s`);
+		show('#time', 'value', `${time}`);
+		show('#pause', 'textContent', paused ? '▶' : '❚❚');
 		const option = [...$('#rate').options].find((o) => Number(o.value) === (Number.isFinite(rate) ? Number(rate.toPrecision(6)) : 0));
 		if (option && document.activeElement !== $('#rate'))
-			$('#rate').value = option.value;
+			show('#rate', 'value', option.value);
 	}
 
 	// null: none is picked
