@@ -17,7 +17,7 @@ static const double least_lead = 1e-3, most_lead = 1; // s
 // Bright for even turns of the hue, darker for odd ones.
 void ob_colour_of_number(uint32_t number, float out[3])
 {
-	const double hue = 6 * fmod(golden_turn * number, 1), value = number / 3 % 2 ? .42 : .78, least = .06;
+	const double hue = 6 * fmod(golden_turn * number, 1), value = number / 3 % 2 ? .36 : .66, least = .11;
 	for (int i = 0; i < 3; i++) {
 		const double at = fmod(hue + 4 - 2 * i, 6); // distance from the channel's own hue, in sixths
 		const double share = fmax(0, fmin(1, fabs(at - 3) - 1));

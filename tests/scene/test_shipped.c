@@ -164,7 +164,7 @@ int main(int argc, char **argv)
 	check_count("fall", NULL, 29, false);
 	check_objects("flock", 67); // birds come from behind the viewpoint, too
 #ifdef MESHES
-	check_count("bowling", NULL, 13, false);
+	check_count("bowling", NULL, 23, false);
 	check_seeds("bowling", false);
 #endif
 	check_seeds("flock", true);

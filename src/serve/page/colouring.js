@@ -10,7 +10,7 @@ const RESTS_FROM = 2;
 export const KEYS = ['own', 'simulator', 'worker', 'process', 'rank', 'island', 'rest', 'cost', 'lag'];
 
 export function colourOfNumber(number) {
-	const hue = 6 * ((GOLDEN_TURN * number) % 1), value = Math.floor(number / 3) % 2 ? 0.42 : 0.78, least = 0.06;
+	const hue = 6 * ((GOLDEN_TURN * number) % 1), value = Math.floor(number / 3) % 2 ? 0.36 : 0.66, least = 0.11;
 	return [0, 1, 2].map((i) => {
 		const at = (hue + 4 - 2 * i) % 6, share = Math.max(0, Math.min(1, Math.abs(at - 3) - 1));
 		return least + share * (value - least);
