@@ -62,9 +62,10 @@ typedef struct ob_joint_axis {
 	uint32_t motor, reserved; // ob_joint_motor
 	double target, most; // m/s or m; N, may be infinite
 	double motor_stiffness, motor_damping; // N/m, N s/m
+	double armature; // kg, kg m^2: inertia of a rotor that moves at the axis' rate, beside that of the objects
 } ob_joint_axis;
 
-// Properties of a joint. It holds while both objects are present with these generations, and until it breaks. 304 bytes.
+// Properties of a joint. It holds while both objects are present with these generations, and until it breaks. 312 bytes.
 typedef struct ob_joint_passport {
 	uint32_t object[2]; // ids; the second may be OB_JOINT_WORLD
 	uint32_t generation[2]; // of the objects

@@ -30,7 +30,7 @@ class Pose(ctypes.Structure):
 class JointAxis(ctypes.Structure):
     _fields_ = [*((name, ctypes.c_double) for name in ('low', 'high', 'restitution', 'stiffness', 'rest', 'damping', 'friction')),
                 ('motor', ctypes.c_uint32), ('reserved', ctypes.c_uint32),
-                *((name, ctypes.c_double) for name in ('target', 'most', 'motor_stiffness', 'motor_damping'))]
+                *((name, ctypes.c_double) for name in ('target', 'most', 'motor_stiffness', 'motor_damping', 'armature'))]
 
 
 class Joint(ctypes.Structure):

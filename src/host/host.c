@@ -52,10 +52,12 @@ static bool check_ode_joints(const ob_scene *scene, ob_error *e)
 {
 	for (uint32_t i = 0; i < scene->joints; i++)
 		if (!ob_ode_has_joint(&scene->joint[i]))
-			return ob_fail(e,
-				       "arch: the one ODE world has no joint as \"%s\": neither distances that change "
-				       "nor two of friction, spring and motor along an axis; take object simulators",
-				       scene->joint[i].name);
+			return ob_fail(
+				e,
+				"arch: the one ODE world has no joint as \"%s\": neither distances that change, "
+				"nor armatures, nor two of friction, spring and motor along an axis; take object "
+				"simulators",
+				scene->joint[i].name);
 	return true;
 }
 

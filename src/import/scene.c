@@ -484,13 +484,13 @@ static bool has_one_axis(const writer *w, int joint)
 	return w->m->jnt_type[joint] == mjJNT_HINGE || w->m->jnt_type[joint] == mjJNT_SLIDE;
 }
 
-// True if limits, springs, dampers, friction or servos act along the joint.
+// True if limits, springs, dampers, friction, rotors or servos act along the joint.
 static bool acts(const writer *w, int joint)
 {
 	const mjModel *m = w->m;
 	const int dof = m->jnt_dofadr[joint];
 	return m->jnt_limited[joint] || m->jnt_stiffness[joint] > 0 || m->dof_damping[dof] > 0 ||
-	       m->dof_frictionloss[dof] > 0 || servo_of(w, joint) >= 0;
+	       m->dof_frictionloss[dof] > 0 || m->dof_armature[dof] > 0 || servo_of(w, joint) >= 0;
 }
 
 // True if a scene may have the limits (call_joint.c).
@@ -517,7 +517,7 @@ static void list_lost(writer *w, int joint)
 		leave_out(w, "%s: its damping, %.4g, is left out", name, m->dof_damping[dof]);
 	if (ball && m->dof_frictionloss[dof] > 0)
 		leave_out(w, "%s: its frictionloss, %.4g, is left out", name, m->dof_frictionloss[dof]);
-	if (m->dof_armature[dof] > 0)
+	if (!axis && m->dof_armature[dof] > 0)
 		leave_out(w, "%s: its armature, %.4g, is left out", name, m->dof_armature[dof]);
 }
 
@@ -559,6 +559,8 @@ static void write_axis(const writer *w, int joint)
 		write_number(w, "damping", m->dof_damping[dof]);
 	if (m->dof_frictionloss[dof] > 0)
 		write_number(w, "friction", m->dof_frictionloss[dof]);
+	if (m->dof_armature[dof] > 0)
+		write_number(w, "armature", m->dof_armature[dof]);
 	if (servo >= 0)
 		write_servo(w, servo, start);
 }

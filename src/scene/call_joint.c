@@ -35,7 +35,7 @@ typedef struct joint {
 		ALONG(high, .low = -(most_value), .high = (most_value)), ALONG(restitution, .high = 1), \
 		ALONG(stiffness, .high = OB_JOINT_MOST), ALONG(rest, .low = -(most_value), .high = (most_value)), \
 		ALONG(damping, .high = OB_JOINT_MOST), ALONG(friction, .high = OB_JOINT_MOST), \
-		F(motor, .kind = OB_FIELD_TABLE)
+		ALONG(armature, .high = OB_JOINT_MOST), F(motor, .kind = OB_FIELD_TABLE)
 #define COMMON \
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), F(collide, .kind = OB_FIELD_BOOLEAN), \
 		F(breaks_at, .kind = OB_FIELD_TABLE)
@@ -274,7 +274,7 @@ static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_pa
 				a->high - a->low);
 	if (d->motor)
 		read_motor(L, kind, a);
-	if (limited || a->stiffness > 0 || a->damping > 0 || a->friction > 0 || d->motor)
+	if (limited || a->stiffness > 0 || a->damping > 0 || a->friction > 0 || a->armature > 0 || d->motor)
 		j->flags |= OB_JOINT_DRIVEN;
 	if (j->flags & OB_JOINT_DRIVEN && j->kind == OB_JOINT_DISTANCE && !isnan(d->length))
 		ob_sandbox_fail(L, "distance.length: expected rest, low and high in its place where a spring, limits, "

@@ -214,19 +214,22 @@ typedef struct ob_held_joint {
 	uint32_t base; // number of equality rows; the axis' row follows
 	struct { // of the axis (solver/joint_axis.h)
 		double value; // m, rad
-		double response; // change of its rate by a unit impulse, were there no other joints
+		double response; // change of its rate by a unit impulse, as the step begins
 		int limit; // -1: rests on the lower limit; 1: on the upper
 		uint32_t place; // of its rate among the rates that friction and motor hold
 		bool engaged; // its row is an equality
 		double goal, goal_rate, since; // of that row: value at a time (s), and rate
-		double softness; // among contacts: compliance of a second row, of spring and damper; 0: none
+		double softness; // compliance of a second row, of its rotor, and of spring and damper; 0: none
 		double applied; // N s, among contacts: impulse of forces that do not depend on the rate
+		double flight; // s, of the flight that is aimed; 0: none
+		double rotor, rotor_rate; // value and rate of its rotor as the flight begins, or its rate at the end
 	} along;
 	uint32_t child, parent; // rows of the elimination: the first end that moves, the other; OB_SPARSE_FIXED: none
 	ob_joint rows; // J at the present poses, and the last impulses
 	double response[2][OB_JOINT_ROWS][6]; // change of velocity of child and parent by an impulse of each row
 	double error[OB_JOINT_ROWS]; // m, or sine: violation of each row
 	double sum[OB_JOINT_ROWS]; // N s, N m s: impulse of the flight, of its first or second half
+	double guess[OB_JOINT_ROWS]; // the same of the flight that comes
 	double target[OB_JOINT_ROWS]; // m/s, rad/s: velocity of each row that the contact solver aims at
 } ob_held_joint;
 
@@ -246,6 +249,7 @@ typedef struct ob_joint_set {
 	double stiffness; // 1/s: largest rate, by their forces, at which bodies may swing, in this step so far
 	bool failed; // a stage of this step was too long to be solved
 	uint32_t axes; // number of joints on whose axis something acts
+	bool damped; // one of them has a damper
 	double now; // s: time of the poses at which the ends were found
 	// Share of its part, and s, length of the part, of the last flight; 0: none whose impulses are a guess for the next.
 	double last_share, last_length;

@@ -9,37 +9,29 @@ static const double slowest_bounce = .01; // m/s, rad/s: slower hits on a limit 
 
 // ---- value
 
-void ob_axis_find(ob_held_joint *j, double value, double time)
+// Difference of two values: of a hinge the least, for its value jumps after half a turn.
+static double difference(const ob_held_joint *j, double x, double y)
 {
-	j->along.value = value;
-	const double error = value - (j->along.goal + j->along.goal_rate * (time - j->along.since));
-	j->error[j->base] = !j->along.engaged           ? 0
-			    : j->kind == OB_JOINT_HINGE ? error - 2 * M_PI * nearbyint(error / (2 * M_PI))
-							: error;
-	j->error[j->base + 1] = 0;
+	return j->kind == OB_JOINT_HINGE ? x - y - 2 * M_PI * nearbyint((x - y) / (2 * M_PI)) : x - y;
 }
 
-void ob_axis_find_response(ob_held_joint *j)
+double ob_axis_armature(const ob_held_joint *j)
 {
-	const uint32_t n = j->base;
-	double m[OB_JOINT_ROWS][OB_JOINT_ROWS], x[OB_JOINT_ROWS];
-	for (uint32_t r = 0; r <= n; r++)
-		for (uint32_t c = 0; c <= r; c++) {
-			double sum = r == c ? j->rows.compliance[r] : 0;
-			for (int i = 0; i < 6; i++)
-				sum += j->rows.child[r][i] * j->response[0][c][i] +
-				       j->rows.parent[r][i] * j->response[1][c][i];
-			m[r][c] = sum;
-		}
-	for (uint32_t r = 0; r <= n; r++) // the last pivot of the elimination
-		for (uint32_t c = 0; c <= r; c++) {
-			for (uint32_t k = 0; k < c; k++)
-				m[r][c] -= m[r][k] * m[c][k] * x[k];
-			if (c < r)
-				continue;
-			x[r] = m[r][r] > 0 ? 1 / m[r][r] : 0;
-		}
-	j->along.response = ob_max(0, m[n][n]);
+	return j->axis ? j->axis->armature : 0;
+}
+
+void ob_axis_find(ob_held_joint *j, double value, double time)
+{
+	double *error = &j->error[j->base];
+	const double held = j->along.goal + j->along.goal_rate * (time - j->along.since);
+	j->along.value = value;
+	error[0] = j->along.engaged ? difference(j, value, held) : 0;
+	error[1] = 0;
+	if (j->along.flight != 0 && j->axis->armature > 0) {
+		const uint32_t row = j->along.engaged;
+		const double rate = j->along.rotor_rate - j->sum[j->base + row] / j->axis->armature;
+		error[row] = difference(j, value, j->along.rotor + j->along.flight * rate);
+	}
 }
 
 // ---- friction and motors that hold a rate
@@ -176,27 +168,37 @@ static double clamped(double x, double most)
 	return ob_max(-most, ob_min(most, x));
 }
 
-// Stiffness and damping, at most what a flight of h (s) can follow.
-static double followed(const ob_held_joint *j, double coefficient, double time)
+// Stiffness, at most what a flight of h (s) can follow.
+static double followed(const ob_held_joint *j, double stiffness, double h)
 {
-	return ob_min(coefficient, 1 / (j->along.response * fabs(time)));
+	return ob_min(stiffness, 1 / (j->along.response * h * h));
 }
 
-double ob_axis_force(const ob_held_joint *j, double rate, double h)
+void ob_axis_find_terms(const ob_held_joint *j, double rate, double h, double *force, double *damping)
 {
 	const ob_joint_axis *a = j->axis;
-	double sum = followed(j, a->stiffness, h * h) * (a->rest - j->along.value) - followed(j, a->damping, h) * rate;
-	if (a->motor == OB_MOTOR_VALUE)
-		sum += clamped(followed(j, a->motor_stiffness, h * h) * (a->target - j->along.value) -
-				       followed(j, a->motor_damping, h) * rate,
-			       a->most);
+	*force = followed(j, a->stiffness, h) * (a->rest - j->along.value);
+	*damping = a->damping;
+	if (a->motor == OB_MOTOR_VALUE) {
+		const double pull = followed(j, a->motor_stiffness, h) * (a->target - j->along.value),
+			     all = pull - a->motor_damping * rate;
+		const bool most = fabs(all) > a->most;
+		*force += most ? clamped(all, a->most) : pull;
+		*damping += most ? 0 : a->motor_damping;
+	}
 	if (!j->along.engaged) {
 		const holders held = holders_of(a);
 		double low, high;
 		bounds_at(&held, j->along.place, &low, &high);
-		sum += low;
+		*force += low;
 	}
-	return sum;
+}
+
+double ob_axis_force(const ob_held_joint *j, double rate, double h)
+{
+	double force, damping;
+	ob_axis_find_terms(j, rate, h, &force, &damping);
+	return force - damping * rate;
 }
 
 static double stiffness_of(const ob_joint_axis *a)
@@ -261,8 +263,9 @@ static void begin_soft(ob_held_joint *j, double rate, double h)
 	const ob_joint_axis *a = j->axis;
 	const double change = .25 * h * rate; // value at the midpoint is off by h / 4 (u - rate)
 	const uint32_t row = j->base + j->along.engaged;
-	double c0 = a->stiffness * (a->rest - j->along.value + change) - .5 * a->damping * rate,
-	       c1 = .25 * h * a->stiffness + .5 * a->damping;
+	double c0 = a->stiffness * (a->rest - j->along.value + change) - .5 * a->damping * rate +
+		    a->armature * rate / h,
+	       c1 = .25 * h * a->stiffness + .5 * a->damping + a->armature / h;
 	if (a->motor == OB_MOTOR_VALUE) {
 		const double pull = a->motor_stiffness * (a->target - j->along.value) - a->motor_damping * rate;
 		const bool most = fabs(pull) > a->most;

@@ -28,8 +28,6 @@ typedef enum ob_axis_event {
 
 // Takes the value, and finds its violation at this time (s) of the run.
 void ob_axis_find(ob_held_joint *j, double value, double time);
-// Finds the response of the axis alone, where the rows have been found.
-void ob_axis_find_response(ob_held_joint *j);
 // Finds the state of an axis with this rate, at the time and value found. Rows are to be factored anew.
 void ob_axis_enter(ob_held_joint *j, double rate, double time);
 // Lets it rest on a limit (-1, 1), or leave its equality.
@@ -37,9 +35,13 @@ void ob_axis_rest(ob_held_joint *j, int limit, double time);
 void ob_axis_disengage(ob_held_joint *j);
 // Goes to the next state after an event that is not a hit.
 void ob_axis_pass(ob_held_joint *j, ob_axis_event event, double time);
-// Force (N, N m) along the axis at its value and this rate, beside its equality row. h: s, length of the flight: what is
-// too stiff for it is softened.
+// Force (N, N m) along the axis at its value and this rate, beside its equality row and its rotor. h: s, length of the
+// flight: springs too stiff for it are softened.
 double ob_axis_force(const ob_held_joint *j, double rate, double h);
+// The same as force - damping * rate, with a motor that is clamped or not as it is at this rate.
+void ob_axis_find_terms(const ob_held_joint *j, double rate, double h, double *force, double *damping);
+// Inertia of its rotor (kg, kg m^2); 0: none.
+double ob_axis_armature(const ob_held_joint *j);
 // Distance from the event that ends the state; below 0: it has happened. force: of the equality row.
 double ob_axis_margin(const ob_held_joint *j, double rate, double force, ob_axis_event *event);
 // True if a motor holds the rate whatever force that takes.

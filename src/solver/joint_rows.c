@@ -157,7 +157,7 @@ void ob_joint_find_rows(const ob_island_work *w, ob_held_joint *j)
 		j->rows.compliance[r] = compliance * (find_response(w, j->child, child, j->response[0][r]) +
 						      find_response(w, j->parent, parent, j->response[1][r]));
 	}
-	if (j->along.softness > 0)
+	if (j->along.softness != 0)
 		j->rows.compliance[j->base + j->along.engaged] += j->along.softness;
 }
 
@@ -191,6 +191,18 @@ void ob_joints_factor(ob_island_work *w)
 		ob_sparse_add_joint(&set->sparse, &j->rows, j->child, j->parent);
 	}
 	ob_sparse_factor(&set->sparse);
+}
+
+void ob_joints_find_responses(ob_island_work *w)
+{
+	ob_joint_set *set = &w->joints;
+	ob_sparse_invert(&set->sparse);
+	for (uint32_t i = 0; i < set->count; i++) {
+		ob_held_joint *j = &set->joint[i];
+		if (j->axis)
+			j->along.response = ob_max(0, ob_sparse_response(&set->sparse, j->rows.child[j->base],
+									 j->rows.parent[j->base], j->child, j->parent));
+	}
 }
 
 double ob_joint_row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_row *rows)
@@ -247,7 +259,7 @@ void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
 			ob_held_joint *j = &w->joints.joint[i];
 			for (uint32_t r = 0; r < j->rows.rows; r++)
 				j->rows.y[r] = j->target[r] - ob_joint_row_velocity(j, r, rows);
-			if (j->along.softness > 0)
+			if (j->along.softness != 0)
 				j->rows.y[j->base + j->along.engaged] -=
 					j->along.softness * j->sum[j->base + j->along.engaged];
 		}
@@ -314,6 +326,7 @@ static void load_joint(ob_island_work *w, const ob_island_input *in, const ob_is
 	if (from->joint->flags & OB_JOINT_DRIVEN && axis_rules[j->kind].type != NO_ROW) {
 		j->axis = &from->joint->axis;
 		w->joints.axes++;
+		w->joints.damped |= ob_axis_is_damped(j);
 	}
 	while (j->base < OB_JOINT_ROWS && rules[j->kind][j->base].type != NO_ROW)
 		j->base++;
@@ -340,7 +353,7 @@ void ob_joints_load(ob_solver *s, const ob_island_input *in)
 	set->step_begin = (double)in->step * s->settings->step_length;
 	set->stiffness = set->last_share = 0;
 	set->axes = 0;
-	set->failed = set->breakable = false;
+	set->failed = set->breakable = set->damped = false;
 	ob_sparse_begin(&set->sparse, w->bodies);
 	for (uint32_t i = 0; i < in->joints; i++)
 		load_joint(w, in, &in->joint[i]);

@@ -26,6 +26,8 @@ void ob_joints_find(ob_island_work *w, double time);
 void ob_joint_find_rows(const ob_island_work *w, ob_held_joint *j);
 // Finds the rows of all joints, whose ends have been found, and factors their equations.
 void ob_joints_factor(ob_island_work *w);
+// Finds the response of each axis, with all joints, by the factors.
+void ob_joints_find_responses(ob_island_work *w);
 // Velocity of a row (m/s, rad/s) at the velocities in rows.
 double ob_joint_row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_row *rows);
 // Adds the response to so much of each row's impulse to the velocities, or to displacements.

@@ -42,70 +42,87 @@ static void clear_sums(ob_island_work *w)
 		memset(w->joints.joint[i].sum, 0, sizeof w->joints.joint[i].sum);
 }
 
-// Rates of all rows: none, but for the axes that something moves.
+// Adds the rows of rotors, and of dampers over half of a flight of h (s), and factors. h 0: of rotors alone.
+static void factor(ob_island_work *w, double h)
+{
+	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		double force, damping, inertia = ob_axis_armature(j);
+		if (j->axis && h != 0) {
+			ob_axis_find_terms(j, j->along.rotor_rate, h, &force, &damping);
+			inertia += .5 * h * damping;
+		}
+		j->along.softness = inertia != 0 ? 1 / inertia : 0;
+		j->rows.rows = j->base + j->along.engaged + (inertia != 0);
+	}
+	ob_joints_factor(w);
+}
+
+// Rates of all rows: none, but for the axes that something moves, and for rotors, which have those of their axes.
 static void set_targets(ob_island_work *w)
 {
 	for (uint32_t i = 0; i < w->joints.count; i++) {
 		ob_held_joint *j = &w->joints.joint[i];
 		memset(j->target, 0, sizeof j->target);
+		if (j->along.softness != 0)
+			j->target[j->base + j->along.engaged] = ob_joint_axis_rate(j, w->v);
 		if (j->along.engaged)
 			j->target[j->base] = j->along.goal_rate;
 	}
 }
 
-// Half of the change by external torques, before or after a flight of h (s).
-static void twist_bodies(ob_island_work *w, double h)
+// Half of the change by external forces and torques, before or after a flight of h (s).
+static void push_bodies(ob_island_work *w, double h)
 {
-	for (uint32_t row = 1; w->torques && row <= w->bodies; row++)
-		ob_row_add(w->v[row], ob_v3(0, 0, 0),
-			   ob_scale(ob_body_turned_by(&w->body[row], w->body[row].torque), .5 * h));
+	for (uint32_t row = 1; row <= w->bodies; row++) {
+		const ob_body *body = &w->body[row];
+		const ob_vec3 turn = w->torques ? ob_body_turned_by(body, body->torque) : ob_v3(0, 0, 0);
+		ob_row_add(w->v[row], ob_scale(body->acceleration, .5 * h), ob_scale(turn, .5 * h));
+	}
 }
 
-// Half of the change by external torques and by what acts along axes, before a flight of h (s).
-static void twist(ob_island_work *w, double h)
+// Notes the values and rates of all axes, and of their rotors.
+static void note_rates(ob_island_work *w)
 {
-	twist_bodies(w, h);
 	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
 		ob_held_joint *j = &w->joints.joint[i];
 		if (j->axis)
-			ob_joint_push_axis(j, .5 * h * ob_axis_force(j, ob_joint_axis_rate(j, w->v), h), w->v);
+			j->along.rotor = j->along.value, j->along.rotor_rate = ob_joint_axis_rate(j, w->v);
 	}
 }
 
-// Half of the change by what acts along axes, after a flight of h (s): by the rates that it leaves. Returns the largest
-// change (m/s, rad/s) since the last call.
-static double twist_again(ob_island_work *w, double h)
+// Half of the change by what acts along axes in a flight of h (s), at the rates noted.
+static void push_axes(ob_island_work *w, double h)
 {
-	double most = 0;
+	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		if (j->axis)
+			ob_joint_push_axis(j, .5 * h * ob_axis_force(j, j->along.rotor_rate, h), w->v);
+	}
+}
+
+// The same by the rates that it leaves, with the joints. Motors are clamped as they are at the rates noted.
+static void push_axes_implicitly(ob_island_work *w, double h)
+{
+	factor(w, h);
+	clear_sums(w);
+	set_targets(w);
 	for (uint32_t i = 0; i < w->joints.count; i++) {
 		ob_held_joint *j = &w->joints.joint[i];
+		double force, damping;
 		if (!j->axis)
 			continue;
-		const double impulse = .5 * h * ob_axis_force(j, ob_joint_axis_rate(j, w->v), h),
-			     more = impulse - j->along.applied;
-		ob_joint_push_axis(j, more, w->v);
-		j->along.applied = impulse;
-		most = ob_max(most, ob_axis_is_damped(j) ? fabs(more) * j->along.response : 0);
-	}
-	return most;
-}
-
-// Finds the velocities after a flight of h (s) that the joints allow, with the forces along axes that go with them.
-static void settle_axes(ob_island_work *w, double h)
-{
-	enum { MOST_ROUNDS = 40 };
-	for (uint32_t i = 0; i < w->joints.count; i++)
-		w->joints.joint[i].along.applied = 0;
-	double before = INFINITY, change = twist_again(w, h);
-	for (int round = 0; round < MOST_ROUNDS && change > exact && change < before; round++) {
-		ob_joints_solve(w, w->v);
-		before = change;
-		change = twist_again(w, h);
+		ob_axis_find_terms(j, j->along.rotor_rate, h, &force, &damping);
+		if (j->along.softness != 0)
+			j->target[j->base + j->along.engaged] =
+				j->along.softness * (.5 * h * force + j->axis->armature * j->along.rotor_rate);
+		else
+			ob_joint_push_axis(j, .5 * h * force, w->v);
 	}
 	ob_joints_solve(w, w->v);
 }
 
-// Flies from the start of the flight for h (s) with the velocities u, which are of the start.
+// Moves from the start of the flight for h (s) with the velocities u: straight, and turning freely.
 static void fly_freely(ob_island_work *w, double h)
 {
 	for (uint32_t row = 1; row <= w->bodies; row++) {
@@ -114,9 +131,9 @@ static void fly_freely(ob_island_work *w, double h)
 		ob_vec3 rate;
 		ob_quat q;
 		ob_drift(body->start_q, ob_row_angular(w->u[row]), body->inertia, h, &q, &rate);
-		ob_body_place(body, ob_madd(ob_madd(body->start_p, h, v), .5 * h * h, body->acceleration), q);
+		ob_body_place(body, ob_madd(body->start_p, h, v), q);
 		memset(w->v[row], 0, sizeof *w->v);
-		ob_row_add(w->v[row], ob_madd(v, h, body->acceleration), rate);
+		ob_row_add(w->v[row], v, rate);
 	}
 }
 
@@ -190,26 +207,76 @@ static void note_stiffness(ob_island_work *w, double h)
 	w->joints.stiffness = ob_max(w->joints.stiffness, sqrt(most));
 }
 
+// Rows of rotors move as their rotors do.
+static void aim_rotors(ob_island_work *w)
+{
+	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		if (j->along.softness != 0)
+			j->target[j->base + j->along.engaged] = j->along.rotor_rate;
+	}
+}
+
+// Before a flight of h (s): what acts along axes is given by the rates that it leaves if there are dampers.
+static void begin_flight(ob_island_work *w, double h)
+{
+	note_rates(w);
+	push_bodies(w, h);
+	if (!w->joints.damped) {
+		push_axes(w, h);
+		return;
+	}
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		memcpy(w->joints.joint[i].guess, w->joints.joint[i].sum, sizeof w->joints.joint[i].sum);
+	push_axes_implicitly(w, h);
+	factor(w, 0);
+	note_rates(w);
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		memcpy(w->joints.joint[i].sum, w->joints.joint[i].guess, sizeof w->joints.joint[i].sum);
+}
+
+// After it: the other way round, so that the flight is symmetric.
+static void end_flight(ob_island_work *w, double h)
+{
+	if (w->joints.damped) {
+		ob_joints_solve(w, w->v);
+		note_rates(w);
+	}
+	push_axes(w, h);
+	push_bodies(w, h);
+	ob_joints_solve(w, w->v);
+}
+
+// Tells the rows of rotors of the flight for which the joints aim; 0: ends it, and lets them turn on.
+static void set_flight(ob_island_work *w, double h)
+{
+	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		j->along.flight = h;
+		if (h == 0 && j->along.softness != 0)
+			j->along.rotor_rate -= j->along.softness * j->sum[j->base + j->along.engaged];
+	}
+}
+
 // Flies for h (s), of any sign, to this time. The rows of its start have been factored, and so are those of its end.
 static void fly(ob_island_work *w, double h, double end)
 {
-	twist(w, h);
+	begin_flight(w, h);
 	for (uint32_t row = 1; row <= w->bodies; row++) {
 		ob_body *body = &w->body[row];
 		body->start_p = body->p;
 		body->start_q = body->q;
 		memcpy(w->dv[row], w->v[row], sizeof *w->dv);
 	}
+	set_flight(w, h);
 	aim(w, h, end);
+	set_flight(w, 0);
 	for (uint32_t i = 0; i < w->joints.count; i++)
 		ob_joint_note(&w->joints.joint[i], w->joints.joint[i].sum);
-	ob_joints_factor(w);
-	twist_bodies(w, h);
+	factor(w, 0);
 	clear_sums(w);
-	if (w->joints.axes)
-		settle_axes(w, h);
-	else
-		ob_joints_solve(w, w->v);
+	aim_rotors(w);
+	end_flight(w, h);
 	note_stiffness(w, h);
 }
 
@@ -322,7 +389,7 @@ static void fly_part(ob_solver *s, const division *d, double from, double h)
 // Lets velocities be those that the rows allow, after these have changed.
 static void change_rows(ob_island_work *w)
 {
-	ob_joints_factor(w);
+	factor(w, 0);
 	set_targets(w);
 	clear_sums(w);
 	ob_joints_solve(w, w->v);
@@ -355,7 +422,7 @@ static void put_back(ob_island_work *w, uint32_t of, double time)
 	}
 	ob_joint_loads_put_back(&w->joints);
 	ob_joints_find(w, time);
-	ob_joints_factor(w);
+	factor(w, 0);
 	clear_sums(w);
 	w->joints.last_share = 0;
 }
@@ -391,7 +458,6 @@ static void enter_axes(ob_island_work *w)
 		ob_held_joint *j = &w->joints.joint[i];
 		if (!j->axis)
 			continue;
-		ob_axis_find_response(j);
 		ob_axis_enter(j, ob_joint_axis_rate(j, w->v), w->joints.now);
 	}
 }
@@ -424,7 +490,7 @@ static void hit_limit(ob_island_work *w, ob_held_joint *hit, int limit)
 		for (uint32_t row = 1; row <= w->bodies; row++)
 			memcpy(w->v[row], w->joints.kept[row - 1].v, sizeof *w->v);
 		ob_joint_loads_put_back(&w->joints);
-		ob_joints_factor(w);
+		factor(w, 0);
 		set_targets(w);
 		hit->target[hit->base] = -e * rate;
 		clear_sums(w);
@@ -522,12 +588,22 @@ static void fly_whole_part(ob_solver *s, const division *d, uint32_t part)
 		fly_part(s, d, part, d->h);
 }
 
+static void disengage_axes(ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		w->joints.joint[i].along.softness = 0;
+		ob_axis_disengage(&w->joints.joint[i]);
+	}
+}
+
 static void find_axes(ob_island_work *w, double time)
 {
 	ob_joints_find(w, time);
 	if (!w->joints.axes)
 		return;
-	ob_joints_factor(w);
+	disengage_axes(w);
+	factor(w, 0);
+	ob_joints_find_responses(w);
 	enter_axes(w);
 	ob_joints_find(w, time);
 }
@@ -597,14 +673,6 @@ uint32_t ob_joints_substeps(const ob_solver *s)
 }
 
 // ---- among contacts
-
-static void disengage_axes(ob_island_work *w)
-{
-	for (uint32_t i = 0; i < w->joints.count; i++) {
-		w->joints.joint[i].along.softness = 0;
-		ob_axis_disengage(&w->joints.joint[i]);
-	}
-}
 
 // Finds the rows of all axes at the midpoint.
 static void begin_axes(ob_island_work *w)

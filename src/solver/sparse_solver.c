@@ -363,8 +363,94 @@ void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t c
 	}
 }
 
+// ---- the inverse
+
+// Block of the inverse of two bodies that share a factor's block, rows of the first; turned if it is stored for the other.
+static ob_sparse_block *inverse_of(const ob_sparse_solver *t, uint32_t row, uint32_t column, bool *turned)
+{
+	*turned = t->node[row].place < t->node[column].place;
+	return row == column ? &t->response[row]
+			     : &t->between[*turned ? block_of(t, row, column) : block_of(t, column, row)];
+}
+
+// sum <- sum - z w, or z^T w
+static void subtract_product(double (*sum)[6], double (*z)[6], bool turned, double (*w)[6])
+{
+	for (int r = 0; r < 6; r++)
+		for (int k = 0; k < 6; k++)
+			for (int c = 0; c < 6; c++)
+				sum[r][c] -= (turned ? z[k][r] : z[r][k]) * w[k][c];
+}
+
+// With W = L_ib L_bb^-1 the inverse Z is Z_ib = - sum of Z_ij W_j, and Z_bb = (L_bb L_bb^T)^-1 - sum of Z_bi W_i.
+static void invert_body(ob_sparse_solver *t, uint32_t k)
+{
+	const uint32_t body = t->order[k], from = t->first[k], to = t->first[k + 1];
+	for (int c = 0; c < 6; c++) { // columns of the symmetric inverse of the body's own block
+		double *column = t->response[body][c];
+		memset(column, 0, sizeof t->response[body][c]);
+		column[c] = 1;
+		lower_solve(t->own[body], t->inverse[body], column);
+		upper_solve(t->own[body], t->inverse[body], column);
+	}
+	for (uint32_t i = from; i < to; i++)
+		for (int r = 0; r < 6; r++) // rows of W: solved from the right
+			upper_solve(t->own[body], t->inverse[body],
+				    memcpy(t->shares[i][r], t->block[i][r], sizeof t->block[i][r]));
+	for (uint32_t i = from; i < to; i++) {
+		memset(t->between[i], 0, sizeof t->between[i]);
+		for (uint32_t j = from; j < to; j++) {
+			bool turned;
+			ob_sparse_block *z = inverse_of(t, t->below[i], t->below[j], &turned);
+			subtract_product(t->between[i], *z, turned, t->shares[j]);
+		}
+	}
+	for (uint32_t i = from; i < to; i++)
+		subtract_product(t->response[body], t->between[i], true, t->shares[i]);
+}
+
+void ob_sparse_invert(ob_sparse_solver *t)
+{
+	const uint32_t blocks = t->first[t->bodies];
+	if (t->bodies > t->response_max) {
+		t->response_max = t->bodies_max;
+		t->response = ob_reallocate(t->response, t->response_max * sizeof *t->response);
+	}
+	if (blocks > t->between_max) {
+		t->between_max = 2 * blocks;
+		t->between = ob_reallocate(t->between, t->between_max * sizeof *t->between);
+		t->shares = ob_reallocate(t->shares, t->between_max * sizeof *t->shares);
+	}
+	for (uint32_t k = t->bodies; k-- > 0;)
+		invert_body(t, k);
+}
+
+static double product(const double *x, double (*z)[6], bool turned, const double *y)
+{
+	double sum = 0;
+	for (int r = 0; r < 6; r++)
+		for (int c = 0; c < 6; c++)
+			sum += x[r] * (turned ? z[c][r] : z[r][c]) * y[c];
+	return sum;
+}
+
+double ob_sparse_response(const ob_sparse_solver *t, const double *of_child, const double *of_parent, uint32_t child,
+			  uint32_t parent)
+{
+	double sum = product(of_child, t->response[child], false, of_child);
+	if (parent == OB_SPARSE_FIXED)
+		return sum;
+	bool turned;
+	ob_sparse_block *z = inverse_of(t, child, parent, &turned);
+	return sum + product(of_parent, t->response[parent], false, of_parent) +
+	       2 * product(of_child, *z, turned, of_parent);
+}
+
 void ob_sparse_finish(ob_sparse_solver *t)
 {
+	free(t->response);
+	free(t->between);
+	free(t->shares);
 	free(t->node);
 	free(t->least);
 	free(t->edge);

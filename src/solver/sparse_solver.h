@@ -68,6 +68,9 @@ typedef struct ob_sparse_solver {
 	ob_sparse_block *own; // [body]
 	double (*inverse)[6]; // [body]: inverses of its factor's diagonal
 	double (*change)[6]; // [body]: the right-hand side, then dv
+	ob_sparse_block *response, *between; // [body], [block]: the inverse, where the factors have blocks
+	ob_sparse_block *shares; // [block]: scratch
+	uint32_t response_max, between_max;
 } ob_sparse_solver;
 
 void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies);
@@ -87,6 +90,12 @@ void ob_sparse_push(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint
 void ob_sparse_substitute(ob_sparse_solver *t);
 // Sets the joint's impulses.
 void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t child, uint32_t parent);
+// After ob_sparse_factor: finds the blocks of the inverse that the matrix and its factors have, from the last eliminated body
+// to the first (Takahashi, Fagan and Chen 1973). Trees take linear time.
+void ob_sparse_invert(ob_sparse_solver *t);
+// After that: velocity of a row of a joint of these two bodies by its own unit impulse.
+double ob_sparse_response(const ob_sparse_solver *t, const double *of_child, const double *of_parent, uint32_t child,
+			  uint32_t parent);
 void ob_sparse_finish(ob_sparse_solver *t);
 
 #endif

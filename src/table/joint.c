@@ -70,7 +70,7 @@ static void set_end(ob_step_data *data, uint32_t end)
 	__atomic_store_n(&data->joint_counts->used, end, __ATOMIC_RELEASE);
 }
 
-static_assert(sizeof(ob_joint_passport) == 304, "passport of a joint");
+static_assert(sizeof(ob_joint_passport) == 312, "passport of a joint");
 
 // Links from the last to the first, so that each one is linked at once.
 void ob_joints_write(ob_universe *u, const ob_joint_passport *joint, uint32_t joints)
@@ -190,11 +190,11 @@ bool ob_may_touch(const ob_universe *u, uint32_t a, uint32_t b)
 
 static bool axis_makes_sense(const ob_joint_axis *a)
 {
-	const double sum =
-		a->restitution + a->stiffness + a->damping + a->friction + a->motor_stiffness + a->motor_damping;
+	const double sum = a->restitution + a->stiffness + a->damping + a->friction + a->motor_stiffness +
+			   a->motor_damping + a->armature;
 	return a->low <= a->high && a->motor < OB_MOTORS && a->most >= 0 && isfinite(a->target) && isfinite(a->rest) &&
 	       isfinite(sum) && a->restitution >= 0 && a->restitution <= 1 && a->stiffness >= 0 && a->damping >= 0 &&
-	       a->friction >= 0 && a->motor_stiffness >= 0 && a->motor_damping >= 0;
+	       a->friction >= 0 && a->motor_stiffness >= 0 && a->motor_damping >= 0 && a->armature >= 0;
 }
 
 static bool pose_makes_sense(const ob_pose *p)

@@ -1,4 +1,4 @@
-"""Models of others in obsim and in MuJoCo: robots.py FOLDER|FILE ... [--seconds 2] [--step 1/240]
+"""Models of others in obsim and in MuJoCo: robots.py FOLDER|FILE ... [--seconds 2] [--step 1/960]
 
 Prints a line for each MJCF and URDF model: is it imported, are its masses and moments MuJoCo's, does it move as there? Models
 hang: free roots are held as they begin, without contacts, limits, dry friction and actuators. The environment names the
@@ -176,7 +176,7 @@ def main():
 	parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 	parser.add_argument("places", nargs="+")
 	parser.add_argument("--seconds", type=float, default=2)
-	parser.add_argument("--step", default="1/240")
+	parser.add_argument("--step", default="1/960")
 	options = parser.parse_args()
 	print(f"{'model':40}  obj  jnt left     mass   moment    apart     twin     fine  swing")
 	for path in models(options.places):

@@ -574,6 +574,90 @@ static void test_damped_spring(void)
 	destroy(m);
 }
 
+// A rotor adds its inertia to that along the axis, with springs and dampers, and where a limit is hit.
+static void test_armature(void)
+{
+	const double k = 50, c = 3, all = 2 + 5, decay = c / (2 * all), rate = sqrt(k / all - decay * decay);
+	mechanism *m = create_slide();
+	ob_joint_axis *a = drive(m);
+	a->stiffness = k, a->damping = c, a->rest = .3, a->armature = 5;
+	for (int i = 1; i <= 300; i++) {
+		const double t = i * step_length;
+		step(m);
+		CHECK_NEAR(m->motion[0].p.x, .3 - .3 * exp(-decay * t) * (cos(rate * t) + decay / rate * sin(rate * t)),
+			   1e-7);
+	}
+	destroy(m);
+	m = create_slide();
+	a = drive(m);
+	a->high = 1, a->restitution = .5, a->armature = 5, a->stiffness = 7, a->rest = 2;
+	double most = 0;
+	for (int i = 1; i <= 600; i++) {
+		const double t = i * step_length, hit = M_PI / 3;
+		step(m);
+		if (t < hit) // then its rate is sin(hit) * 2
+			CHECK_NEAR(m->motion[0].p.x, 2 - 2 * cos(t), 1e-7);
+		else if (t < hit + .5)
+			CHECK_NEAR(m->motion[0].p.x, 2 - cos(t - hit) - sin(hit) * sin(t - hit), 1e-6);
+		most = ob_max(most, m->motion[0].p.x);
+	}
+	CHECK(most < 1 + 1e-9);
+	destroy(m);
+}
+
+// A pendulum with a rotor swings as one with a greater moment, which its period tells.
+static void test_armature_of_hinge(void)
+{
+	const double rotor = .7, amplitude = .5;
+	mechanism *m = create_pendulum(amplitude), *heavy = create_pendulum(amplitude);
+	drive(m)->armature = rotor;
+	heavy->passport[0].inertia.y += rotor;
+	steps(m, 300), steps(heavy, 300);
+	CHECK(ob_norm(ob_sub(m->motion[0].p, heavy->motion[0].p)) < 1e-7);
+	CHECK(ob_norm(ob_sub(m->motion[0].v, heavy->motion[0].v)) < 1e-7);
+	destroy(m), destroy(heavy);
+}
+
+// Two slides with dampers on one body that is free, alike: they move alike, and as the closed form says.
+static void test_dampers(void)
+{
+	const double c = 20, rate = c * (1 + 2. / 3);
+	mechanism *m = create(0);
+	add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 3, ob_v3(0, 0, 0));
+	for (uint32_t i = 1; i < 3; i++) {
+		add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(0, i == 1 ? -1 : 1, 0));
+		join(m, OB_JOINT_SLIDER, i, 0, ob_v3(0, i == 1 ? -1 : 1, 0), (ob_quat){ M_SQRT1_2, 0, M_SQRT1_2, 0 });
+		drive(m)->damping = c;
+		m->motion[i].v = ob_v3(1, 0, 0);
+	}
+	for (int i = 1; i <= 60; i++) {
+		step(m);
+		CHECK_NEAR(m->motion[1].p.x, m->motion[2].p.x, 1e-11);
+		CHECK_NEAR(m->motion[1].p.x - m->motion[0].p.x, (1 - exp(-rate * i * step_length)) / rate, 1e-7);
+	}
+	destroy(m);
+}
+
+// Two dampers with next to no mass between them are as one of half their strength.
+static void test_dampers_in_line(void)
+{
+	const double c = 30, rate = c / 2 / 2;
+	const ob_quat along_x = { M_SQRT1_2, 0, M_SQRT1_2, 0 };
+	mechanism *m = create(0);
+	add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 2, ob_v3(0, 0, 0));
+	add_body(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 2e-6, ob_v3(0, 0, 0));
+	join(m, OB_JOINT_SLIDER, 1, OB_JOINT_WORLD, ob_v3(0, 0, 0), along_x);
+	drive(m)->damping = c;
+	join(m, OB_JOINT_SLIDER, 0, 1, ob_v3(0, 0, 0), along_x);
+	drive(m)->damping = c;
+	m->motion[0].v = ob_v3(1, 0, 0), m->motion[1].v = ob_v3(.5, 0, 0);
+	for (int i = 1; i <= 60; i++) {
+		step(m);
+		CHECK_NEAR(m->motion[0].p.x, (1 - exp(-rate * i * step_length)) / rate, 1e-4);
+	}
+	destroy(m);
+}
+
 // A spring between two free bodies, along their distance.
 static void test_spring_between(void)
 {
@@ -764,6 +848,10 @@ int main(void)
 	test_double_pendulum();
 	test_loop();
 	test_kinds();
+	test_armature();
+	test_armature_of_hinge();
+	test_dampers();
+	test_dampers_in_line();
 	test_limit();
 	test_limits_of_links();
 	test_spring();
