@@ -389,6 +389,79 @@ static mjModel *load_source(source *u, bool (*mend)(source *, const char *), cha
 	return m;
 }
 
+// ---- masses
+
+// Adds the tensor of inertia of a body about a place to t (kg m^2), all in the world's frame.
+static void add_tensor(const ob_drawn *d, int body, const double at[3], double t[9])
+{
+	const double *r = d->data->ximat + 9 * body, *i = d->model->body_inertia + 3 * body;
+	double off[3];
+	mju_sub3(off, d->data->xipos + 3 * body, at);
+	for (int a = 0; a < 3; a++)
+		for (int b = 0; b < 3; b++) {
+			double sum = (a == b ? mju_dot3(off, off) : 0) - off[a] * off[b];
+			sum *= d->model->body_mass[body];
+			for (int c = 0; c < 3; c++)
+				sum += r[3 * a + c] * i[c] * r[3 * b + c];
+			t[3 * a + b] += sum;
+		}
+}
+
+// Gives the mass and the moments of a body that is fixed to its parent to that.
+static void give_to_parent(ob_drawn *d, int body)
+{
+	mjModel *m = d->model;
+	const int parent = m->body_parentid[body];
+	const double own = m->body_mass[body], all = own + m->body_mass[parent];
+	double at[3], off[3], t[9] = { 0 }, axes[9], turn[4], inverse[4];
+	for (int c = 0; c < 3; c++)
+		at[c] = (own * d->data->xipos[3 * body + c] + (all - own) * d->data->xipos[3 * parent + c]) / all;
+	add_tensor(d, body, at, t);
+	add_tensor(d, parent, at, t);
+	mju_eig3(m->body_inertia + 3 * parent, axes, turn, t);
+	mju_negQuat(inverse, d->data->xquat + 4 * parent);
+	mju_mulQuat(m->body_iquat + 4 * parent, inverse, turn);
+	mju_sub3(off, at, d->data->xpos + 3 * parent);
+	mju_rotVecMatT(m->body_ipos + 3 * parent, off, d->data->xmat + 9 * parent);
+	m->body_mass[parent] = all;
+	m->body_mass[body] = 0;
+	mju_zero3(m->body_inertia + 3 * body);
+	m->body_sameframe[parent] = 0;
+	m->body_simple[parent] = 0;
+}
+
+bool ob_drawn_has_mass(const mjModel *m, int body)
+{
+	const double *i = m->body_inertia + 3 * body;
+	return m->body_mass[body] >= 1e-12 && i[0] > 0 && i[1] > 0 && i[2] > 0;
+}
+
+int ob_drawn_holder(const mjModel *m, int body)
+{
+	while (body > 0 && !ob_drawn_has_mass(m, body) && !m->body_jntnum[body])
+		body = m->body_parentid[body];
+	return body;
+}
+
+// Points with a mass, and moments without one, belong to the bodies that they are fixed to.
+static void spread_masses(ob_drawn *d)
+{
+	mjModel *m = d->model;
+	bool spread = false;
+	for (int body = m->nbody - 1; body > 0; body--)
+		if (!m->body_jntnum[body] && m->body_parentid[body] > 0 && !ob_drawn_has_mass(m, body) &&
+		    (m->body_mass[body] > 0 || m->body_inertia[3 * body] > 0) &&
+		    m->body_mass[m->body_parentid[body]] > 0) {
+			give_to_parent(d, body);
+			mj_kinematics(m, d->data);
+			spread = true;
+		}
+	if (spread) {
+		mj_setConst(m, d->data);
+		mj_resetData(m, d->data); // it leaves springs at rest
+	}
+}
+
 static bool load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e)
 {
 	static char why[800], whole[PATH_MAX];
@@ -412,6 +485,8 @@ static bool load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e)
 	out->data = mj_makeData(out->model);
 	if (!out->data)
 		return ob_fail(e, "%s: out of memory", path);
+	mj_kinematics(out->model, out->data);
+	spread_masses(out);
 	mj_kinematics(out->model, out->data);
 	mj_comPos(out->model, out->data);
 	return true;

@@ -19,4 +19,10 @@ typedef struct ob_drawn {
 // or changed; NULL: none. Once in a process: a fault of MuJoCo's leaves its memory.
 bool ob_drawn_load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e);
 
+// True if the body has a mass and moments that an object may have.
+bool ob_drawn_has_mass(const mjModel *m, int body);
+
+// Body whose object the body belongs to: itself, or what it is fixed to if it has no mass; 0: the world.
+int ob_drawn_holder(const mjModel *m, int body);
+
 #endif

@@ -196,10 +196,11 @@ static void add_moving(writer *w, int body)
 	part *p = add_part(w, body, -1, mj_id2name(m, mjOBJ_BODY, body));
 	int looks = 0;
 	w->part_of[body] = w->parts - 1;
-	for (int geom = m->body_geomadr[body]; geom < m->body_geomadr[body] + m->body_geomnum[body]; geom++) {
-		looks += !ob_geom_collides(m, geom);
-		note_contacts(w, p, geom);
-	}
+	for (int geom = 0; geom < m->ngeom; geom++)
+		if (ob_drawn_holder(m, m->geom_bodyid[geom]) == body) {
+			looks += !ob_geom_collides(m, geom);
+			note_contacts(w, p, geom);
+		}
 	ob_solid_of_body(w->d, body, &p->solid);
 	if (looks && !w->folder)
 		leave_out(w, "%s: %d geoms that are looks alone are left out: --out DIR writes them", p->name, looks);
@@ -233,13 +234,11 @@ static void collect(writer *w)
 		w->part_of[body] = WORLD;
 		if (stands(w, body)) {
 			add_standing(w, body);
-		} else if (m->body_mass[body] >= 1e-12 &&
-			   fmin(m->body_inertia[3 * body],
-				fmin(m->body_inertia[3 * body + 1], m->body_inertia[3 * body + 2])) > 0) {
+		} else if (ob_drawn_has_mass(m, body)) {
 			add_moving(w, body);
 		} else {
 			w->part_of[body] = w->part_of[m->body_parentid[body]];
-			if (m->body_geomnum[body])
+			if (m->body_geomnum[body] && !ob_drawn_has_mass(m, ob_drawn_holder(m, body)))
 				leave_out(w, "%s has no mass: its geoms are left out",
 					  name_of(w, mjOBJ_BODY, "body", body));
 		}

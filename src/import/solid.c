@@ -145,16 +145,18 @@ bool ob_geom_has_extent(const mjModel *m, int geom)
 	       ob_shape_is_bounded(shape_of(m, geom, &size));
 }
 
-// Geometries of the body that collide, of first .. end-1, and their frame.
+// Geometries that collide: one, or all of an object.
 typedef struct group {
 	const ob_drawn *d;
-	int first, end;
+	int body, geom; // geom -1: all of the body's object
 	ob_pose frame;
 } group;
 
 static bool counts(const group *g, int geom)
 {
-	return ob_geom_collides(g->d->model, geom) && ob_geom_has_extent(g->d->model, geom);
+	const mjModel *m = g->d->model;
+	return (g->geom >= 0 ? geom == g->geom : ob_drawn_holder(m, m->geom_bodyid[geom]) == g->body) &&
+	       ob_geom_collides(m, geom) && ob_geom_has_extent(m, geom);
 }
 
 // Support point of the group along l, both in its frame.
@@ -164,7 +166,7 @@ static ob_vec3 farthest(const group *g, ob_vec3 l)
 	const ob_vec3 w = ob_rotate(&r, l);
 	ob_vec3 p = { 0, 0, 0 };
 	double most = -INFINITY;
-	for (int geom = g->first; geom < g->end; geom++) {
+	for (int geom = 0; geom < g->d->model->ngeom; geom++) {
 		if (!counts(g, geom))
 			continue;
 		const ob_vec3 at = ob_rotate_back(&r, ob_sub(ob_geom_farthest(g->d, geom, w), g->frame.p));
@@ -209,13 +211,13 @@ static double standing_out(const group *g, const ob_imported_piece *piece)
 static bool take_box(const group *g, ob_imported_piece *to)
 {
 	const mjModel *m = g->d->model;
-	if (g->end != g->first + 1 || m->geom_type[g->first] != mjGEOM_BOX)
+	if (g->geom < 0 || m->geom_type[g->geom] != mjGEOM_BOX)
 		return false;
 	const ob_mat3 r = ob_quat_matrix(g->frame.q);
-	const ob_vec3 off = ob_sub(vec(g->d->data->geom_xpos + 3 * g->first), g->frame.p);
-	*to = (ob_imported_piece){ .half = vec(m->geom_size + 3 * g->first), .points = 8 };
+	const ob_vec3 off = ob_sub(vec(g->d->data->geom_xpos + 3 * g->geom), g->frame.p);
+	*to = (ob_imported_piece){ .half = vec(m->geom_size + 3 * g->geom), .points = 8 };
 	to->pose.p = ob_rotate_back(&r, off);
-	to->pose.q = ob_quat_mul(ob_quat_conjugate(g->frame.q), quat_of(g->d->data->geom_xmat + 9 * g->first));
+	to->pose.q = ob_quat_mul(ob_quat_conjugate(g->frame.q), quat_of(g->d->data->geom_xmat + 9 * g->geom));
 	const ob_mat3 turn = ob_quat_matrix(to->pose.q);
 	for (uint32_t k = 0; k < 8; k++)
 		to->point[k] = ob_add(to->pose.p, ob_rotate(&turn, ob_box_corner(to->half, k)));
@@ -270,24 +272,19 @@ static bool take_hulls(const group *g, uint32_t groups, bool inward, ob_imported
 void ob_solid_of_body(const ob_drawn *d, int body, ob_imported_solid *out)
 {
 	const mjModel *m = d->model;
-	const int first = m->body_geomadr[body], end = first + m->body_geomnum[body];
-	group each[OB_HULL_PARTS_MAX];
-	int only = -1;
+	group all = { .d = d, .body = body, .geom = -1 }, each[OB_HULL_PARTS_MAX];
 	*out = (ob_imported_solid){ .shape = OB_SHAPE_NONE };
 	out->pose = (ob_pose){ vec(d->data->xipos + 3 * body), quat_of(d->data->ximat + 9 * body) };
-	for (int geom = first; geom < end; geom++) {
-		if (!ob_geom_collides(m, geom))
-			continue;
-		only = geom;
-		if (!ob_geom_has_extent(m, geom))
+	all.frame = out->pose;
+	for (int geom = 0; geom < m->ngeom; geom++) {
+		if (!counts(&all, geom))
 			continue;
 		if (out->geoms < OB_HULL_PARTS_MAX)
-			each[out->geoms] = (group){ d, geom, geom + 1, out->pose };
+			each[out->geoms] = (group){ d, body, geom, out->pose };
 		out->geoms++;
 	}
-	if (out->geoms == 1 && take_exact(d, body, only, out))
+	if (out->geoms == 1 && take_exact(d, body, each->geom, out))
 		return;
-	const group all = { d, first, end, out->pose };
 	out->inertia = vec(m->body_inertia + 3 * body);
 	if (out->geoms > 1 && out->geoms <= OB_HULL_PARTS_MAX && take_hulls(each, out->geoms, true, out))
 		return;
@@ -301,5 +298,5 @@ void ob_solid_of_geom(const ob_drawn *d, int geom, ob_imported_solid *out)
 	out->pose = (ob_pose){ vec(d->data->geom_xpos + 3 * geom), quat_of(d->data->geom_xmat + 9 * geom) };
 	out->shape = shape_of(d->model, geom, &out->size);
 	if (out->shape == OB_SHAPE_NONE && ob_geom_has_extent(d->model, geom))
-		take_hulls(&(group){ d, geom, geom + 1, out->pose }, 1, false, out);
+		take_hulls(&(group){ d, 0, geom, out->pose }, 1, false, out);
 }

@@ -4,7 +4,6 @@
 // of a twin whose joints begin 1e-9 away (m, rad); then its name. No contacts, no limits; Runge and Kutta's method with steps
 // of .1 ms, or STEP (s). With STEP the model hangs: roots that are free are held as they begin, and there are no dry friction
 // and no actuators.
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,9 +33,7 @@ static const double held = 1e12; // kg, kg m^2: armature of a root that does not
 static bool moves(const ob_drawn *d, int body)
 {
 	const mjModel *m = d->model;
-	const double *i = m->body_inertia + 3 * body;
-	return body && (m->body_weldid[body] != 0 || d->floats) && m->body_mass[body] >= 1e-12 &&
-	       fmin(i[0], fmin(i[1], i[2])) > 0;
+	return body && (m->body_weldid[body] != 0 || d->floats) && ob_drawn_has_mass(m, body);
 }
 
 static void hang(mjModel *m)

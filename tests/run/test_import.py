@@ -142,6 +142,24 @@ class Import(program.Case):
 				"bodies have at least 1e-6 kg and 1e-9 kg m^2: some that move have none"):
 			self.assertIn(what, said)
 
+	def test_feet(self):
+		"""A link that is fixed and has no mass, or no moments, is part of the one that it is fixed to: mass, moments, solid."""
+		link = '<link name="{0}"><inertial><mass value="{1}"/><inertia ixx="{2}" ixy="0" ixz="0" iyy="{2}" iyz="0" izz="{2}"/>' \
+			'</inertial>{3}</link>'
+		ball = '<collision><geometry><sphere radius=".02"/></geometry></collision>'
+		box = '<collision><geometry><box size=".1 .1 .4"/></geometry></collision>'
+		joint = '<joint name="{0}" type="fixed"><parent link="leg"/><child link="{0}"/><origin xyz="0 0 {1}"/></joint>'
+		text = link.format("leg", 1, .01, box) + link.format("foot", 0, .002, ball) + link.format("hip", .5, 0, "")
+		text += joint.format("foot", -.3) + joint.format("hip", .3)
+		scene, bodies, said = self.convert(self.write("leg.urdf", f'<robot name="robot">{text}</robot>'))
+		self.assertEqual(list(bodies), ["leg"])
+		self.assertAlmostEqual(bodies["leg"].mass, 1.5, 12)
+		self.assertAlmostEqual(bodies["leg"].at[2], .1, 12)
+		for mine, given in zip(bodies["leg"].tensor, [.012 + .01 + .02, .012 + .01 + .02, .012, 0, 0, 0]):
+			self.assertAlmostEqual(mine, given, 12)
+		self.assertIn("\ncompound {", scene)
+		self.assertNotIn("no mass", said)
+
 	def test_relative_path(self):
 		"""A path of the model that is not absolute: meshes are still found by package://."""
 		folder = self.path("arm_description")
