@@ -30,6 +30,7 @@ typedef struct ob_engine_kind {
 	bool (*check)(ob_error *e); // true if its library can be loaded; NULL = it is part of the program
 	ob_world_drive drives; // most general motion that it supports
 	bool hulls; // supports convex hulls
+	bool joints; // supports joints
 } ob_engine_kind;
 
 // All engines built in, in the order of legends; ends with NULL.

@@ -40,6 +40,7 @@ static ob_universe *open_universe(const ob_world *w, const ob_run_settings *run,
 				    .workers = 1,
 				    .hulls = w->hulls,
 				    .terrains = w->terrains,
+				    .joints = w->joints,
 				    .isolation = "thread",
 				    .run = *run };
 	ob_universe *u = ob_universe_create(&setup, e);
@@ -86,6 +87,7 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *run, ob_error
 			p->driven |= (w->passport[i].flags & OB_OBJECT_KINEMATIC) != 0;
 			ob_write_passport(p->u, i, &w->passport[i]);
 		}
+		ob_joints_write(p->u, w->joint, w->joints);
 		for (uint32_t i = 0; i < w->objects; i++)
 			ob_sim_place(p->u, i, &w->state[i]);
 		prescribe(p, w);
@@ -181,7 +183,7 @@ static ob_engine *create_lagged(const ob_world *w, const ob_run_settings *s, ob_
 	.recovered = recovered, .destroy = destroy, .drives = OB_WORLD_DRIVES_SURFACES, .hulls = true
 
 const ob_engine_kind ob_engine_obsim = {
-	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = OB_DEFAULT_TOLERANCE }, THE_REST
+	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = OB_DEFAULT_TOLERANCE }, .joints = true, THE_REST
 };
 const ob_engine_kind ob_engine_obsim_jacobi = {
 	.name = "obsim-jacobi", .title = "obsim (Jacobi)", .create = create_jacobi, .usual = { USUAL }, THE_REST

@@ -40,7 +40,8 @@ struct ob_engine {
 	ob_drive drive;
 	uint64_t steps; // substeps, so far
 	double substep; // s
-	uint32_t substeps, objects;
+	uint32_t substeps, objects, joints;
+	ob_joint_passport *joint; // [joints]
 };
 
 static void destroy(ob_engine *p)
@@ -49,8 +50,33 @@ static void destroy(ob_engine *p)
 		return;
 	ob_ode_world_destroy(p->world);
 	ob_drive_finish(&p->drive);
+	free(p->joint);
 	free(p);
 	ob_engine_ode_leave();
+}
+
+// Objects that a joint holds do not touch each other.
+static bool may_touch(const void *engine, uint32_t a, uint32_t b)
+{
+	const ob_engine *p = engine;
+	for (uint32_t i = 0; i < p->joints; i++)
+		if ((p->joint[i].object[0] == a && p->joint[i].object[1] == b) ||
+		    (p->joint[i].object[0] == b && p->joint[i].object[1] == a))
+			return false;
+	return true;
+}
+
+static bool join(ob_engine *p, const ob_world *w)
+{
+	p->joint = calloc(w->joints + 1, sizeof *p->joint);
+	if (!p->joint)
+		return false;
+	for (uint32_t i = 0; i < w->joints; i++) {
+		p->joint[p->joints++] = w->joint[i];
+		if (!ob_ode_world_join(p->world, i, &w->joint[i]))
+			return false;
+	}
+	return true;
 }
 
 // setup: differences between the kinds. Its iterations are QuickStep's; 0 = dWorldStep
@@ -74,6 +100,9 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_ode_wor
 	setup.gravity = w->gravity;
 	setup.objects = w->objects;
 	setup.sleeping = s->sleeping;
+	setup.joints = w->joints;
+	setup.may_touch = may_touch;
+	setup.of = p;
 	p->world = ob_ode_world_create(&setup);
 	if (!p->world || !ob_drive_init(&p->drive, w)) {
 		ob_fail(e, "no memory for a world of %u bodies", w->objects);
@@ -82,7 +111,11 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_ode_wor
 	}
 	for (uint32_t i = 0; i < w->objects; i++)
 		ob_ode_world_add(p->world, &w->passport[i], &w->state[i]);
-	return p;
+	if (join(p, w))
+		return p;
+	ob_fail(e, "no memory for %u joints", w->joints);
+	destroy(p);
+	return NULL;
 }
 
 static ob_engine *create_iterating(const ob_world *w, const ob_run_settings *s, ob_ode_world_setup setup, ob_error *e)
@@ -127,6 +160,8 @@ static bool step(ob_engine *p, ob_error *e)
 			ob_state s = ob_drive_step(&p->drive, k, (double)p->steps * p->substep, p->substep);
 			ob_ode_world_drive(p->world, p->drive.body[k].id, &s);
 		}
+		for (uint32_t k = 0; k < p->joints; k++)
+			ob_ode_world_drive_joint(p->world, k, &p->joint[k].axis, p->substep);
 		if (!ob_ode_world_step(p->world, p->substep)) {
 			bool full;
 			uint32_t culprit = ob_ode_world_culprit(p->world, &full);
@@ -146,7 +181,8 @@ static void get(const ob_engine *p, ob_state *state)
 }
 
 #define THE_REST \
-	.version = OB_ODE_VERSION, .step = step, .get = get, .destroy = destroy, .drives = OB_WORLD_DRIVES_SURFACES
+	.version = OB_ODE_VERSION, .step = step, .get = get, .destroy = destroy, .drives = OB_WORLD_DRIVES_SURFACES, \
+	.joints = true
 #define QUICK \
 	.usual = { .step_length = OB_DEFAULT_STEP, .substeps = 1, .iterations = OB_DEFAULT_MONOLITH_ITERATIONS }, \
 	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 }

@@ -25,6 +25,10 @@ ob_conservation ob_conservation_begin(const ob_world *w)
 	}
 	c.centre = ob_scale(c.centre, mass > 0 ? 1 / mass : 0);
 	c.driven = ob_world_drives(w) != OB_WORLD_DRIVES_NOTHING; // driven bodies may add energy
+	for (uint32_t i = 0; i < w->joints; i++) {
+		c.driven |= w->joint[i].flags & OB_JOINT_DRIVEN; // motors add energy, springs keep it
+		c.closed &= w->joint[i].object[1] != OB_JOINT_WORLD;
+	}
 	c.worst[OB_CONSERVED_ENERGY] = c.driven ? NAN : 0;
 	c.worst[OB_CONSERVED_MOMENTUM] = c.worst[OB_CONSERVED_ANGULAR] = c.closed ? 0 : NAN;
 	return c;

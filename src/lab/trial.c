@@ -41,7 +41,7 @@ static const char *lacks(const ob_engine_kind *kind, const ob_world *w)
 {
 	if (kind->drives < ob_world_drives(w))
 		return "takes no bodies that move as they are told";
-	return w->hulls && !kind->hulls ? "takes no hulls" : NULL;
+	return w->hulls && !kind->hulls ? "takes no hulls" : w->joints && !kind->joints ? "takes no joints" : NULL;
 }
 
 // Runs to the end or to the first failure, by the case's judgement or an invalid state. Only stepping is timed.

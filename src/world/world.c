@@ -151,6 +151,30 @@ ob_world_body ob_world_terrain(ob_world *w, ob_terrain *t, ob_vec3 p)
 	return b;
 }
 
+ob_joint_passport *ob_world_join(ob_world *w, ob_joint_kind kind, uint32_t a, uint32_t b, ob_pose frame)
+{
+	w->joint = grown(w->joint, w->joints + 1, sizeof *w->joint);
+	ob_joint_passport *j = &w->joint[w->joints];
+	*j = (ob_joint_passport){ .object = { a, b },
+				  .kind = kind,
+				  .axis = { .low = -INFINITY, .high = INFINITY },
+				  .breaks_force = INFINITY,
+				  .breaks_torque = INFINITY };
+	snprintf(j->name, sizeof j->name, "%s#%u", ob_joint_kind_name(kind), w->joints++);
+	for (int side = 0; side < 2; side++) {
+		if (j->object[side] == OB_JOINT_WORLD) {
+			j->frame[side] = frame;
+			continue;
+		}
+		const ob_pose *body = &w->state[j->object[side]].pose;
+		const ob_mat3 r = ob_quat_matrix(body->q);
+		j->generation[side] = w->passport[j->object[side]].generation;
+		j->frame[side].p = ob_rotate_back(&r, ob_sub(frame.p, body->p));
+		j->frame[side].q = ob_quat_mul(ob_quat_conjugate(body->q), frame.q);
+	}
+	return j;
+}
+
 ob_world_body ob_world_ground(ob_world *w)
 {
 	return ob_world_add(w, OB_SHAPE_PLANE, ob_v3(0, 0, 0), 0, ob_v3(0, 0, 0));
@@ -250,6 +274,7 @@ void ob_world_finish(ob_world *w)
 	free(w->state);
 	free(w->path);
 	free(w->hull);
+	free(w->joint);
 	*w = (ob_world){ 0 };
 }
 

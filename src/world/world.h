@@ -8,6 +8,7 @@
 #define OB_WORLD_WORLD_H
 
 #include <ob/hull.h>
+#include <ob/joint.h>
 #include <ob/motion.h>
 
 #include "hull/hull.h"
@@ -31,6 +32,8 @@ typedef struct ob_world {
 	uint32_t hulls;
 	ob_hull *hull; // [hulls], by the number in passports
 	ob_terrain_set *terrains; // by the number in passports; NULL: there are none
+	uint32_t joints;
+	ob_joint_passport *joint; // [joints]
 } ob_world;
 
 // Body to edit freely; both pointers hold until the next body is built.
@@ -68,6 +71,9 @@ ob_world_body ob_world_hull(ob_world *w, double mass, const ob_vec3 *point, uint
 ob_world_body ob_world_compound(ob_world *w, double mass, const ob_hull_part *part, uint32_t parts, ob_vec3 p);
 // Adds a terrain, and frees it; NULL ends the program. p: its origin.
 ob_world_body ob_world_terrain(ob_world *w, ob_terrain *t, ob_vec3 p);
+// Joins two bodies, or one and the world (b: OB_JOINT_WORLD), as they are. frame: of the joint, at a place; its axes are
+// those of ob/joint.h. The joint may be edited until the next one is built; "axis" has no limits, and acts if its flag is set.
+ob_joint_passport *ob_world_join(ob_world *w, ob_joint_kind kind, uint32_t a, uint32_t b, ob_pose frame);
 // Plane z = 0, and the same turned by "angle" (rad) about y: bodies on it slide towards +x.
 ob_world_body ob_world_ground(ob_world *w);
 ob_world_body ob_world_slope(ob_world *w, double angle);

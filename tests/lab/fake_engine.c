@@ -79,6 +79,7 @@ CREATE(dying, in_use, 3)
 					       .version = "", \
 					       .drives = OB_WORLD_DRIVES_SURFACES, \
 					       .hulls = true, \
+					       .joints = true, \
 					       .create = create_##kind, \
 					       .step = step_function, \
 					       .get = get_function, \

@@ -11,7 +11,7 @@
 
 static void test_metadata(const ob_case *c)
 {
-	CHECK(c->row >= 1 && c->row <= 43);
+	CHECK(c->row >= 1 && c->row <= 51);
 	CHECK(c->name && *c->name && c->name[strspn(c->name, "abcdefghijklmnopqrstuvwxyz0123456789-")] == 0);
 	CHECK(ob_case_find(c->name) == c);
 	CHECK(strlen(c->title) > 4 && strlen(c->title) < 40);
@@ -141,6 +141,15 @@ static const expectation expected[] = {
 	{ "shaken-pile", NULL, ALL_WRONG },
 	{ "arch-stands", exact_rest, FROZEN_IS_RIGHT },
 	{ "arch-falls", NULL, ALL_WRONG },
+	{ "pendulum-90", NULL, ALL_WRONG },
+	{ "pendulum-179", NULL, ALL_WRONG },
+	{ "double-pendulum", NULL, ALL_WRONG },
+	{ "spherical-pendulum", NULL, ALL_WRONG },
+	{ "top", NULL, ALL_WRONG },
+	{ "chain-100", NULL, ALL_WRONG },
+	{ "four-bar", NULL, ALL_WRONG },
+	{ "slider-crank", NULL, ALL_WRONG },
+	{ "furuta", NULL, ALL_WRONG },
 };
 
 static double deepest_at_start; // m, over all runs

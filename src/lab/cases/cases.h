@@ -77,7 +77,16 @@
 	X(shaken_stack) \
 	X(shaken_pile) \
 	X(arch_stands) \
-	X(arch_falls)
+	X(arch_falls) \
+	X(pendulum_90) \
+	X(pendulum_179) \
+	X(double_pendulum) \
+	X(spherical_pendulum) \
+	X(top) \
+	X(chain_100) \
+	X(four_bar) \
+	X(slider_crank) \
+	X(furuta)
 
 #define OB_CASE_DECLARE(name) extern const ob_case ob_case_##name;
 OB_CASES(OB_CASE_DECLARE)
