@@ -198,14 +198,33 @@ static void place_meshes(source *u)
 	}
 }
 
-// Options for MuJoCo, which would weld its root to the world, fuse what is fixed to each other, and drop the folders of its
-// meshes.
+// Options for MuJoCo, which would weld its root to the world, fuse what is fixed to each other, drop looks, and the folders
+// of meshes.
 static void set_options(source *u)
 {
-	static const char options[] = "<mujoco><compiler fusestatic=\"false\" strippath=\"false\"/></mujoco>";
+	static const char options[] =
+		"<mujoco><compiler fusestatic=\"false\" strippath=\"false\" discardvisual=\"false\"/>"
+		"</mujoco>";
 	const char *tag = strstr(u->t.at, "<robot"), *body = tag ? strchr(tag, '>') : NULL;
 	if (body && body[-1] != '/' && !strstr(u->t.at, "<mujoco"))
 		replace(u, (size_t)(body + 1 - u->t.at), (size_t)(body + 1 - u->t.at), options);
+}
+
+// Removes all looks, which may be large.
+static void drop_looks(source *u)
+{
+	static const char open[] = "<visual", close[] = "</visual>";
+	int n = 0;
+	for (size_t from = 0;; n++) {
+		const char *at = strstr(u->t.at + from, open), *end = at ? strstr(at, close) : NULL;
+		if (!end)
+			break;
+		from = (size_t)(at - u->t.at);
+		if (!replace(u, from, (size_t)(end - u->t.at) + sizeof close - 1, ""))
+			break;
+	}
+	if (n)
+		leave_out(u, "%d looks are left out: --out DIR writes them", n);
 }
 
 static void list_mimics(const source *u)
@@ -462,7 +481,7 @@ static void spread_masses(ob_drawn *d)
 	}
 }
 
-static bool load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e)
+static bool load(const char *path, bool looks, FILE *omitted, ob_drawn *out, ob_error *e)
 {
 	static char why[800], whole[PATH_MAX];
 	*out = (ob_drawn){ NULL, NULL, false };
@@ -475,6 +494,8 @@ static bool load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e)
 	if (urdf) {
 		out->floats = !has_world(u.t.at);
 		set_options(&u);
+		if (!looks)
+			drop_looks(&u);
 		place_meshes(&u);
 		list_mimics(&u);
 	}
@@ -493,10 +514,10 @@ static bool load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e)
 }
 
 // Memory that MuJoCo holds when it complains is lost; the process ends soon.
-bool ob_drawn_load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e)
+bool ob_drawn_load(const char *path, bool looks, FILE *omitted, ob_drawn *out, ob_error *e)
 {
 	if (setjmp(back) == 0)
-		return load(path, omitted, out, e);
+		return load(path, looks, omitted, out, e);
 	shorten(complaint);
 	return ob_fail(e, "%s: MuJoCo: %s", path, complaint);
 }

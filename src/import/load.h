@@ -15,9 +15,9 @@ typedef struct ob_drawn {
 	bool floats; // a URDF file without a link called world: its root, which has no joint, is free
 } ob_drawn;
 
-// Loads an MJCF or URDF file and the files that it names. omitted: for a line for each part of a URDF file that is left out
-// or changed; NULL: none. Once in a process: a fault of MuJoCo's leaves its memory.
-bool ob_drawn_load(const char *path, FILE *omitted, ob_drawn *out, ob_error *e);
+// Loads an MJCF or URDF file and the files that it names. looks: those of a URDF file, too. omitted: for a line for each
+// part of the file that is left out or changed; NULL: none. Once in a process: a fault of MuJoCo's leaves its memory.
+bool ob_drawn_load(const char *path, bool looks, FILE *omitted, ob_drawn *out, ob_error *e);
 
 // True if the body has a mass and moments that an object may have.
 bool ob_drawn_has_mass(const mjModel *m, int body);

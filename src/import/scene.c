@@ -824,7 +824,7 @@ static void write_scene(writer *w, const char *path)
 static bool convert(const char *path, const char *folder, FILE *scene, FILE *omitted, ob_error *e)
 {
 	ob_drawn d;
-	if (!ob_drawn_load(path, omitted, &d, e))
+	if (!ob_drawn_load(path, folder != NULL, omitted, &d, e))
 		return false;
 	writer w = { .d = &d, .m = d.model, .out = scene, .omitted = omitted, .folder = folder };
 	w.part_of = calloc((size_t)d.model->nbody, sizeof *w.part_of);

@@ -27,7 +27,7 @@ static void print_inertia(const mjModel *m, const double *r, int body)
 	}
 }
 
-static const double held = 1e12; // kg, kg m^2: armature of a root that does not move
+static const double held = 1e15; // kg, kg m^2: armature of a root that does not move
 
 // Bodies that move, as obsim import makes objects of them (import/scene.c).
 static bool moves(const ob_drawn *d, int body)
@@ -63,7 +63,7 @@ int main(int argc, char **argv)
 {
 	ob_drawn drawn;
 	ob_error e;
-	if (argc < 3 || argc > 4 || !ob_drawn_load(argv[1], NULL, &drawn, &e)) {
+	if (argc < 3 || argc > 4 || !ob_drawn_load(argv[1], false, NULL, &drawn, &e)) {
 		fprintf(stderr, "%s\n", argc < 3 || argc > 4 ? "reference MODEL SECONDS [STEP]" : e.text);
 		return EXIT_FAILURE;
 	}

@@ -136,7 +136,7 @@ class Import(program.Case):
 		scene, bodies, said = self.convert(self.write("robot.urdf", f'<robot name="robot">{text}</robot>'))
 		self.assertEqual(list(bodies), ["base", "arm", "hand", "finger"])
 		self.assertEqual(scene.count("\nhinge {"), 3)
-		for what in ("look box.dae is left out: MuJoCo reads STL, OBJ and MSH files", "mesh box.dae is left out: MuJoCo reads ",
+		for what in ("1 looks are left out: --out DIR writes them", "mesh box.dae is left out: MuJoCo reads STL, OBJ and MSH files",
 				"mesh none.stl is left out: no file of this name is beside the model", "cut.stl is left out: MuJoCo ",
 				"1 mimic joints move by themselves", "moments that no body can have are replaced by their mean",
 				"bodies have at least 1e-6 kg and 1e-9 kg m^2: some that move have none"):
@@ -200,6 +200,20 @@ class Import(program.Case):
 		self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
 		if program.MESHES:
 			self.assertEqual(program.call("run", os.path.join(folder, "quadruped.lua"), "--duration", .1).returncode, 0)
+		self.assertIn("look_", " ".join(os.listdir(folder)))
+
+	def test_looks_of_urdf(self):
+		path = self.write("ball.urdf", """<robot name="ball"><link name="world"/><link name="ball">
+			<inertial><mass value="1"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial>
+			<visual><geometry><box size=".1 .1 .1"/></geometry></visual>
+			<visual><geometry><mesh filename="none.dae"/></geometry></visual>
+			<collision><geometry><sphere radius=".1"/></geometry></collision></link>
+			<joint name="j" type="continuous"><parent link="world"/><child link="ball"/></joint></robot>""")
+		self.assertIn("2 looks are left out: --out DIR writes them", self.convert(path)[2])
+		folder = self.path("out")
+		done = program.call("import", path, "--out", folder)
+		self.assertEqual(done.returncode, 0, done.stderr)
+		self.assertIn("look none.dae is left out", done.stderr)
 		self.assertIn("look_", " ".join(os.listdir(folder)))
 
 	def test_same_scene(self):
