@@ -21,7 +21,7 @@ typedef struct limits {
 
 static const limits of_trees = { 1e-6, UINT32_MAX, 64, 64, 1e-3 };
 // Rows may depend on each other.
-static const limits of_cycles = { 1e-5, 512, 64, 640, .3 };
+static const limits of_cycles = { 1e-8, 512, 64, 640, .3 };
 
 // Thresholds above which a direct solve is worth its cost.
 static const double residual_threshold = 1e-7; // m/s
@@ -97,7 +97,9 @@ static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, double
 	return n;
 }
 
-static void fill_joint(const ob_island_work *w, ob_direct_contact *c, double compliance)
+// Sets J and the velocities that the rows of a contact are to change by: the negative of "velocity".
+static void fill_joint(const ob_island_work *w, ob_direct_contact *c, const lanes (*velocity)[OB_ROWS],
+		       double compliance)
 {
 	const ob_batch *b = batch_of(w, c);
 	const int l = lane_of(w, c);
@@ -108,7 +110,7 @@ static void fill_joint(const ob_island_work *w, ob_direct_contact *c, double com
 		const int row = c->row[r];
 		ob_batch_row_of_lane(b, l, row, child_is_a ? j->child[r] : j->parent[r],
 				     child_is_a ? j->parent[r] : j->child[r]);
-		j->y[r] = -w->direct.velocity[b - w->batch][row][l];
+		j->y[r] = -velocity[b - w->batch][row][l];
 		j->compliance[r] = compliance * b->diag[row][l];
 	}
 	// Four points on a plane have no response along the null space: the velocity along it is removed.
@@ -120,27 +122,37 @@ static void fill_joint(const ob_island_work *w, ob_direct_contact *c, double com
 		j->y[r] -= n[r] * null_part;
 }
 
+// Returns the next contact of the solve, with its bodies.
+static ob_direct_contact *add_contact(ob_island_work *w, uint32_t contact)
+{
+	const uint32_t a = w->contact[contact].a, b = w->contact[contact].b;
+	const bool a_fixed = w->body[a].inv_mass == 0;
+	ob_direct_contact *c = &w->direct.contact[w->direct.contacts++];
+	c->contact = contact;
+	c->child = a_fixed ? b : a;
+	c->parent = a_fixed ? a : b;
+	return c;
+}
+
 // Adds the contacts with a row that holds.
 static void add_contacts(ob_island_work *w, double compliance)
 {
 	ob_direct_solver *f = &w->direct;
+	uint8_t row[OB_ROWS];
 	f->contacts = 0;
 	for (uint32_t i = 0; i < w->contacts; i++) {
-		const ob_contact *contact = &w->contact[i];
-		if (contact->lane == OB_NO_LANE)
+		const uint32_t lane = w->contact[i].lane;
+		if (lane == OB_NO_LANE)
 			continue;
-		const uint32_t batch = contact->lane / OB_LANES;
-		const bool a_fixed = w->body[contact->a].inv_mass == 0;
-		ob_direct_contact *c = &f->contact[f->contacts];
-		c->joint.rows = holding_rows(&w->batch[batch], contact->lane % OB_LANES, f->velocity[batch],
-					     neutral_speed * w->unit.speed, c->row);
-		if (!c->joint.rows)
+		const uint32_t rows = holding_rows(&w->batch[lane / OB_LANES], lane % OB_LANES,
+						   f->velocity[lane / OB_LANES], neutral_speed * w->unit.speed, row);
+		if (!rows)
 			continue;
-		c->contact = i;
-		c->child = a_fixed ? contact->b : contact->a;
-		c->parent = a_fixed ? contact->a : contact->b;
-		fill_joint(w, c, compliance);
-		f->contacts++;
+		ob_direct_contact *c = add_contact(w, i);
+		c->joint.rows = rows;
+		c->anew = 0;
+		memcpy(c->row, row, sizeof row);
+		fill_joint(w, c, f->velocity, compliance);
 	}
 }
 
@@ -178,18 +190,21 @@ static void set_inertia(ob_sparse_solver *t, uint32_t body, const ob_body *m)
 	ob_sparse_set_inertia(t, body, inertia);
 }
 
-// Solves for all contacts with a row that holds. Returns false if that would cost too much.
-static bool find_direction(ob_island_work *w, const limits *most)
+// Plans the elimination for the contacts. Returns false if it would cost too much.
+static bool plan(ob_island_work *w, const limits *most)
 {
 	ob_direct_solver *f = &w->direct;
-	if (w->bodies > most->bodies)
-		return false;
-	add_contacts(w, most->compliance);
 	ob_sparse_begin(&f->sparse, w->bodies);
 	for (uint32_t k = 0; k < f->contacts; k++)
 		ob_sparse_link(&f->sparse, f->contact[k].child - 1, sparse_index(w, f->contact[k].parent));
-	if (!ob_sparse_analyse(&f->sparse, most->products))
-		return false;
+	return ob_sparse_analyse(&f->sparse, most->products);
+}
+
+// Solves for the rows of the contacts.
+static void solve_rows(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	ob_sparse_clear(&f->sparse);
 	for (uint32_t i = 1; i <= w->bodies; i++)
 		set_inertia(&f->sparse, i - 1, &w->body[i]);
 	for (uint32_t k = 0; k < f->contacts; k++) {
@@ -201,7 +216,6 @@ static bool find_direction(ob_island_work *w, const limits *most)
 		ob_direct_contact *c = &f->contact[k];
 		ob_sparse_joint_impulses(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));
 	}
-	return true;
 }
 
 // Distributes a load on four points so that none pulls, which is possible if the load lies between them. Moves x, the
@@ -234,7 +248,25 @@ static void project_on_cone(const ob_batch *b, int l, double *x)
 	x[6] = twist_within(-bound * b->radius[l], bound * b->radius[l], x[6]);
 }
 
-// Projects the share alpha of the solution on the cones: finds the changes of impulses, and of velocities in w->delta.
+// Finds the impulses at which the solution aims: its own, and the present ones of all rows but those in "anew", bits.
+static void set_aims(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		ob_direct_contact *c = &f->contact[k];
+		const ob_batch *b = batch_of(w, c);
+		const int l = lane_of(w, c);
+		for (int i = 0; i < OB_ROWS; i++)
+			c->aim[i] = c->anew >> i & 1 ? 0 : b->impulse[i][l];
+		for (uint32_t r = 0; r < c->joint.rows; r++)
+			c->aim[c->row[r]] += c->joint.x[r];
+		if (has_four_normals(c))
+			distribute_load(b, l, c->aim);
+	}
+}
+
+// Projects the share alpha of the way to the aims on the cones: finds the changes of impulses, and of velocities in
+// w->delta.
 static void project_solution(ob_island_work *w, double alpha)
 {
 	ob_direct_solver *f = &w->direct;
@@ -246,13 +278,7 @@ static void project_solution(ob_island_work *w, double alpha)
 		int l = lane_of(w, c);
 		double x[OB_ROWS];
 		for (int i = 0; i < OB_ROWS; i++)
-			x[i] = b->impulse[i][l];
-		for (uint32_t r = 0; r < c->joint.rows; r++)
-			x[c->row[r]] += c->joint.x[r];
-		if (has_four_normals(c))
-			distribute_load(b, l, x);
-		for (int i = 0; i < OB_ROWS; i++)
-			x[i] = b->impulse[i][l] + alpha * (x[i] - b->impulse[i][l]);
+			x[i] = b->impulse[i][l] + alpha * (c->aim[i] - b->impulse[i][l]);
 		project_on_cone(b, l, x);
 		for (int i = 0; i < OB_ROWS; i++)
 			f->impulse_change[b - w->batch][i][l] = x[i] - b->impulse[i][l];
@@ -281,20 +307,12 @@ static double line_search(const ob_island_work *w)
 	return slope < 0 && curvature > 0 ? ob_min(1, -slope / curvature) : 0;
 }
 
-bool ob_direct_solve(ob_solver *s)
+// Moves impulses and u towards the aims. Returns false, with nothing changed, if that does not reduce the residual.
+static bool go_to_aims(ob_island_work *w, const limits *most)
 {
-	ob_island_work *w = &s->island;
 	ob_direct_solver *f = &w->direct;
 	const double backtrack = .3, min_step = .5; // the projection bends the direction: then a smaller share is tried
-	const limits *most = f->shape == OB_DIRECT_CYCLIC ? &of_cycles : &of_trees;
 	double alpha = 1, t;
-	for (uint32_t i = 0; i < w->batches; i++)
-		ob_batch_prepare(&w->batch[i]);
-	find_row_velocities(w);
-	s->counters.direct_solves++;
-	ob_budget_note(s, (uint64_t)most->work * w->bodies);
-	if (!find_direction(w, most))
-		return false;
 	for (project_solution(w, alpha); (t = line_search(w)) < min_step && alpha > most->least_share;
 	     project_solution(w, alpha))
 		alpha *= backtrack;
@@ -309,6 +327,150 @@ bool ob_direct_solve(ob_solver *s)
 			w->u[i][c] += t * w->delta[i][c];
 	memset(w->delta, 0, w->rows * sizeof *w->delta);
 	return true;
+}
+
+// ---- from nothing
+
+// Finds the velocities of all rows without the impulses that are found anew.
+static void find_unloaded_velocities(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	memset(f->impulse_change, 0, w->batches * sizeof *f->impulse_change);
+	memset(w->delta, 0, w->rows * sizeof *w->delta);
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		const ob_direct_contact *c = &f->contact[k];
+		const ob_batch *b = batch_of(w, c);
+		const int l = lane_of(w, c);
+		for (int i = 0; i < OB_ROWS; i++)
+			f->impulse_change[b - w->batch][i][l] = c->anew >> i & 1 ? -b->impulse[i][l] : 0;
+	}
+	for (uint32_t i = 0; i < w->batches; i++)
+		ob_batch_apply_impulses(&w->batch[i], f->impulse_change[i], w->delta);
+	for (uint32_t i = 0; i < w->batches; i++) {
+		ob_batch_row_velocities(&w->batch[i], w->delta, f->unloaded[i]);
+		for (int k = 0; k < OB_ROWS; k++)
+			f->unloaded[i][k] += f->velocity[i][k];
+	}
+}
+
+// Lists the rows of a contact: the normals in "push", bits, and the friction that is found anew.
+static void list_rows(ob_direct_contact *c)
+{
+	uint32_t n = 0;
+	for (int i = 0; i < OB_ROWS; i++)
+		if (i < OB_POINTS ? c->push >> i & 1 : n && c->anew >> i & 1)
+			c->row[n++] = (uint8_t)i;
+	c->joint.rows = n;
+}
+
+// Returns the velocity of a row after the solve.
+static double velocity_after(const ob_island_work *w, const ob_direct_contact *c, int row)
+{
+	const ob_direct_solver *f = &w->direct;
+	const ob_batch *b = batch_of(w, c);
+	const int l = lane_of(w, c);
+	const bool child_is_a = w->contact[c->contact].a == c->child;
+	const uint32_t parent = sparse_index(w, c->parent);
+	double child_row[6], parent_row[6], v = f->unloaded[b - w->batch][row][l];
+	ob_batch_row_of_lane(b, l, row, child_is_a ? child_row : parent_row, child_is_a ? parent_row : child_row);
+	for (int i = 0; i < 6; i++)
+		v += child_row[i] * f->sparse.change[c->child - 1][i];
+	for (int i = 0; i < 6 && parent != OB_SPARSE_FIXED; i++)
+		v += parent_row[i] * f->sparse.change[parent][i];
+	return v;
+}
+
+// Drops normals that pull, and takes those that close. Returns true if there were any.
+static bool change_normals(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	bool any = false;
+	for (uint32_t k = 0; k < f->contacts; k++) {
+		ob_direct_contact *c = &f->contact[k];
+		const ob_batch *b = batch_of(w, c);
+		const int l = lane_of(w, c);
+		unsigned push = 0;
+		for (int j = 0; j < OB_POINTS; j++) {
+			const bool pushed = c->push >> j & 1;
+			if (b->inv_diag[j][l] > 0 &&
+			    (pushed ? c->aim[j] > 0 : velocity_after(w, c, j) < -neutral_speed * w->unit.speed))
+				push |= 1u << j;
+		}
+		any |= push != c->push;
+		c->push = push;
+	}
+	return any;
+}
+
+// Adds all contacts, to be solved anew: their normals, and friction that holds. Friction that slides keeps its impulse.
+static void add_all(ob_island_work *w)
+{
+	ob_direct_solver *f = &w->direct;
+	f->contacts = 0;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const uint32_t lane = w->contact[i].lane;
+		if (lane == OB_NO_LANE)
+			continue;
+		const ob_batch *b = &w->batch[lane / OB_LANES];
+		const uint32_t l = lane % OB_LANES;
+		ob_direct_contact *c = add_contact(w, i);
+		uint8_t row[OB_ROWS];
+		const uint32_t rows =
+			holding_rows(b, l, f->velocity[lane / OB_LANES], neutral_speed * w->unit.speed, row);
+		c->push = 0;
+		for (int j = 0; j < OB_POINTS; j++)
+			c->push |= (unsigned)(b->inv_diag[j][l] > 0) << j;
+		c->anew = c->push;
+		for (uint32_t r = 0; r < rows; r++)
+			c->anew |= 1u << row[r];
+	}
+}
+
+// Finds aims that owe nothing to the present impulses: the shortest ones, of all points that press. Loads that a structure
+// shares in many ways are left as uneven as iterations have made them by a step from there; points then pull.
+static bool find_from_nothing(ob_solver *s, const limits *most)
+{
+	enum { ROUNDS = 12 };
+	ob_island_work *w = &s->island;
+	ob_direct_solver *f = &w->direct;
+	add_all(w);
+	find_unloaded_velocities(w);
+	if (!plan(w, most))
+		return false;
+	for (int round = 0; round < ROUNDS; round++) {
+		ob_budget_note(s, (uint64_t)most->work * w->bodies);
+		for (uint32_t k = 0; k < f->contacts; k++) {
+			list_rows(&f->contact[k]);
+			fill_joint(w, &f->contact[k], f->unloaded, most->compliance);
+		}
+		solve_rows(w);
+		set_aims(w);
+		if (!change_normals(w))
+			break;
+	}
+	return true;
+}
+
+bool ob_direct_solve(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	ob_direct_solver *f = &w->direct;
+	const limits *most = f->shape == OB_DIRECT_CYCLIC ? &of_cycles : &of_trees;
+	for (uint32_t i = 0; i < w->batches; i++)
+		ob_batch_prepare(&w->batch[i]);
+	find_row_velocities(w);
+	s->counters.direct_solves++;
+	ob_budget_note(s, (uint64_t)most->work * w->bodies);
+	if (w->bodies > most->bodies)
+		return false;
+	add_contacts(w, most->compliance);
+	if (!plan(w, most))
+		return false;
+	solve_rows(w);
+	set_aims(w);
+	if (go_to_aims(w, most))
+		return true;
+	return f->shape == OB_DIRECT_CYCLIC && find_from_nothing(s, most) && go_to_aims(w, most);
 }
 
 // ---- decision for a direct solve
@@ -329,6 +491,7 @@ void ob_direct_finish(ob_direct_solver *f)
 	free(f->contact);
 	free(f->velocity);
 	free(f->impulse_change);
+	free(f->unloaded);
 	ob_sparse_finish(&f->sparse);
 }
 
@@ -343,6 +506,8 @@ static void reserve(ob_direct_solver *f, const ob_island_work *w)
 		f->batches_max = w->batches + w->batches / 2;
 		free(f->velocity);
 		free(f->impulse_change);
+		free(f->unloaded);
+		f->unloaded = ob_allocate_aligned(32, f->batches_max * sizeof *f->unloaded);
 		f->velocity = ob_allocate_aligned(32, f->batches_max * sizeof *f->velocity);
 		f->impulse_change = ob_allocate_aligned(32, f->batches_max * sizeof *f->impulse_change);
 	}

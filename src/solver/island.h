@@ -103,6 +103,8 @@ typedef struct ob_contact {
 typedef struct ob_direct_contact {
 	uint32_t contact, child, parent;
 	uint8_t row[OB_JOINT_ROWS]; // row of the batch, for each row of the joint
+	unsigned push, anew; // bits: normals that push; rows whose impulses are found anew
+	double aim[OB_JOINT_ROWS]; // impulses of the batch's rows at which the solution aims
 	ob_joint joint;
 } ob_direct_contact;
 
@@ -122,6 +124,7 @@ typedef struct ob_direct_solver {
 	ob_direct_contact *contact;
 	ob_sparse_solver sparse;
 	lanes (*velocity)[OB_ROWS], (*impulse_change)[OB_ROWS]; // [batch], per row
+	lanes (*unloaded)[OB_ROWS]; // [batch]: the velocity without any impulse
 } ob_direct_solver;
 
 // Working state of solver/conjugate.c; memory grown as needed, never shrunk.

@@ -59,6 +59,21 @@ static little_scene *crib_tower(int layers, int planks)
 	return s;
 }
 
+// Two planks a layer, .24 m high and .08 m wide, or the other way round; each up to "jitter" m aside, as it is drawn.
+static little_scene *planks(int layers, bool on_edge, double jitter, uint64_t seed)
+{
+	little_scene *s = on_ground();
+	const double high = on_edge ? .12 : .04, wide = on_edge ? .04 : .12;
+	for (int k = 0; k < layers; k++)
+		for (int side = -1; side <= 1; side += 2) {
+			const double across = .45 * side + within(&seed, -jitter, jitter),
+				     along = within(&seed, -jitter, jitter), up = (2 * k + 1) * high;
+			ob_world_box(&s->world, 14, k % 2 ? ob_v3(wide, .6, high) : ob_v3(.6, wide, high),
+				     k % 2 ? ob_v3(across, along, up) : ob_v3(along, across, up));
+		}
+	return s;
+}
+
 // pitch: m, from one cube of a metre to the next; at 1 they are in contact.
 static little_scene *pyramid(int rows, double pitch)
 {
@@ -164,6 +179,11 @@ int main(void)
 		check_stands("crib tower", layers, crib_tower(layers, 2), 3);
 	check_stands("crib tower", 100, crib_tower(100, 2), 2);
 	check_stands("crib tower of three planks", 40, crib_tower(40, 3), 2);
+	for (int layers = 20; layers <= 100; layers += 20) {
+		check_stands("planks on edge", layers, planks(layers, true, 0, 1), 1);
+		check_stands("planks on edge, 10 mm aside", layers, planks(layers, true, .01, 2), 1);
+		check_stands("flat planks, 50 mm aside", layers, planks(layers, false, .05, 3), 1);
+	}
 	check_stands("touching pyramid", 8, pyramid(8, 1), 3);
 	check_stands("touching pyramid", 15, pyramid(15, 1), 3);
 	check_stands("pyramid", 15, pyramid(15, 1.05), 3);
