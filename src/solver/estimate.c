@@ -5,8 +5,8 @@
 #include "solver/refinement.h"
 
 // PERIOD: steps from one estimate to the next; SOON: of a lone body, after one above the tolerance. WATCHED_BODIES:
-// islands of up to so many have one at each change, too.
-enum { PERIOD = 16, SOON = 4, WATCHED_BODIES = 2, MEETING_BODIES = 8 };
+// islands of up to so many have one at each change, too; FEW_BODIES: of up to so many, where a body lands.
+enum { PERIOD = 16, SOON = 4, WATCHED_BODIES = 2, FEW_BODIES = 8 };
 
 bool ob_estimate_create(ob_solver *s)
 {
@@ -41,13 +41,14 @@ static bool hit_each_other(const ob_island_work *w)
 	return false;
 }
 
-// True if a few bodies met that touched nothing before.
-static bool meet_in_flight(const ob_island_work *w)
+// True if few bodies touch of which one was in flight before.
+static bool lands(const ob_solver *s)
 {
-	for (uint32_t i = 0; i < w->contacts; i++)
-		if (!w->contact[i].began)
-			return false;
-	return w->bodies <= MEETING_BODIES;
+	const ob_island_work *w = &s->island;
+	for (uint32_t row = 1; w->bodies <= FEW_BODIES && row <= w->bodies; row++)
+		if (!w->body[row].moved_freely && s->in->object[row - 1].motion->flags & OB_MOTION_FREE)
+			return true;
+	return false;
 }
 
 // Returns the number of steps for which an estimate of this step stands; 0: none is due.
@@ -58,11 +59,12 @@ static uint32_t weight_of(const ob_solver *s)
 	const uint64_t phase = s->in->step + (w->bodies > 1 ? w->body[1].id : 0);
 	if (!s->estimate.probe || w->balanced || is_free(w))
 		return 0;
+	const bool changed = ob_contacts_changed(w) || hit_each_other(w);
+	if (w->bodies <= WATCHED_BODIES && changed)
+		return 1; // it stands for no other step
 	if (phase % PERIOD == 0)
 		return PERIOD;
-	if (phase % SOON == 0 && ob_refinement_is_doubted(s))
-		return 1;
-	return (ob_contacts_changed(w) || hit_each_other(w)) && (w->bodies <= WATCHED_BODIES || meet_in_flight(w));
+	return (phase % SOON == 0 && ob_refinement_is_doubted(s)) || (changed && lands(s));
 }
 
 void ob_estimate_count(ob_solver *s, uint16_t before, uint16_t now)
@@ -120,19 +122,55 @@ static void hand_over(ob_solver *s)
 	}
 }
 
-// Updates the deviation of a body; an estimate counts for `weight` steps. Returns the body's error of a second.
-static double update_deviation(ob_solver *s, uint32_t row, uint32_t weight, double factor)
+// Solution beside which the step's own stands: its distance times the factor bounds the step's error.
+typedef struct ruler {
+	const ob_probe *probe;
+	double factor;
+} ruler;
+
+// Returns the error of a second (m) by the shorter of n rulers, in the units of the run; added: m, by the steps for which the
+// estimate stands.
+static double error_by(const ob_solver *s, const ruler *r, int n, uint32_t row, uint32_t weight, double *added)
 {
-	ob_island_work *w = &s->island;
 	const double h = s->settings->step_length;
-	const uint16_t before = w->body[row].deviation; // and what a hit made of it
-	double speed = 0, error = weight ? factor * ob_probe_distance(s->estimate.probe, w, row, &speed) : 0;
-	speed *= factor;
+	double least = 0;
+	*added = 0;
+	for (int i = 0; i < n; i++) {
+		double speed = 0, error = r[i].factor * ob_probe_distance(r[i].probe, &s->island, row, &speed);
+		speed *= r[i].factor;
+		const double sum = weight * h * ob_error_of_time(error, speed, h, 1);
+		if (i && !(sum < *added))
+			continue;
+		*added = sum;
+		least = ob_error_of_run(s, error, speed);
+	}
+	return least;
+}
+
+// Updates the deviation of a body. Returns its error of a second.
+static double update_deviation(ob_solver *s, const ruler *r, int n, uint32_t row, uint32_t weight)
+{
+	ob_body *body = &s->island.body[row];
+	const uint16_t before = body->deviation; // and what a hit made of it
+	double added = 0;
+	const double error = weight ? error_by(s, r, n, row, weight, &added) : 0;
 	if (weight)
-		w->body[row].deviation =
-			ob_deviation_code(ob_deviation(before) + weight * h * ob_error_of_time(error, speed, h, 1));
-	ob_estimate_count(s, before, w->body[row].deviation);
-	return ob_error_of_run(s, error, speed);
+		body->deviation = ob_deviation_code(ob_deviation(before) + added);
+	ob_estimate_count(s, before, body->deviation);
+	return error;
+}
+
+// True if an estimate takes a body beyond the tolerance.
+static bool exceeds(const ob_solver *s, const ruler *r, uint32_t weight)
+{
+	for (uint32_t row = 1; row <= s->island.bodies; row++) {
+		const uint16_t before = s->island.body[row].deviation;
+		double added;
+		error_by(s, r, 1, row, weight, &added);
+		if (before <= s->estimate.bound && ob_deviation_code(ob_deviation(before) + added) > s->estimate.bound)
+			return true;
+	}
+	return false;
 }
 
 void ob_estimate_update(ob_solver *s)
@@ -140,16 +178,22 @@ void ob_estimate_update(ob_solver *s)
 	ob_island_work *w = &s->island;
 	const bool refined = w->bodies == 1 && ob_is_refined(&s->in->object[0]);
 	const uint32_t weight = weight_of(s), n = w->substeps;
-	const bool finer = (refined || n < 2 || w->joints.count) && 2 * n <= OB_MAX_SUBSTEPS;
+	const bool may_double = 2 * n <= OB_MAX_SUBSTEPS, finer = (refined || n < 2 || w->joints.count) && may_double;
+	ruler r[2] = { { s->estimate.probe, refined ? 2 : 1 } };
+	int rulers = 1;
 	double error = 0;
+	hand_over(s);
 	if (weight) {
 		ob_solver_enter(s, OB_PROFILE_ESTIMATE);
 		ob_probe_solve(s->estimate.probe, s->in, finer ? 2 * n : n / 2);
 		s->counters.estimates += w->bodies;
+		if (!finer && may_double && w->bodies <= FEW_BODIES && exceeds(s, r, weight)) {
+			ob_probe_solve(s->estimate.finer, s->in, 2 * n);
+			r[rulers++] = (ruler){ s->estimate.finer, 2 };
+		}
 	}
-	hand_over(s);
 	for (uint32_t row = 1; row <= w->bodies; row++)
-		error = ob_max(error, update_deviation(s, row, weight, refined ? 2 : 1));
+		error = ob_max(error, update_deviation(s, r, rulers, row, weight));
 	if (s->estimate.probe && !w->balanced)
 		ob_refinement_update(s, weight, error);
 }

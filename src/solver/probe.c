@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "shape/shape.h"
 #include "solver/island_solver.h"
 
 struct ob_probe {
@@ -57,16 +58,23 @@ bool ob_probe_try(ob_probe *p, const ob_island_input *in, uint32_t substeps, uin
 	return !p->solver.budget.spent;
 }
 
-// Largest distance by which a turn from a to b moves a point at this radius.
-static double turned_by(ob_quat a, ob_quat b, double radius)
+// Largest distance by which a turn from a to b moves the surface of a body: one that is the same however it is turned about
+// an axis moves with its axis.
+static double turned_by(const ob_body *body, ob_quat a, ob_quat b)
 {
 	const double c[2][4] = { { a.w - b.w, a.x - b.x, a.y - b.y, a.z - b.z },
 				 { a.w + b.w, a.x + b.x, a.y + b.y, a.z + b.z } };
 	double square[2] = { 0, 0 };
+	if (ob_shape_is(body->shape, OB_ISOTROPIC))
+		return 0;
+	if (ob_shape_is(body->shape, OB_AXIAL)) {
+		const ob_mat3 of_a = ob_quat_matrix(a), of_b = ob_quat_matrix(b);
+		return body->radius * ob_norm(ob_sub(ob_column(&of_a, 2), ob_column(&of_b, 2)));
+	}
 	for (int k = 0; k < 2; k++)
 		for (int i = 0; i < 4; i++)
 			square[k] += c[k][i] * c[k][i];
-	return 2 * radius * sqrt(ob_min(square[0], square[1]));
+	return 2 * body->radius * sqrt(ob_min(square[0], square[1]));
 }
 
 void ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps)
@@ -93,5 +101,5 @@ double ob_probe_distance(const ob_probe *p, const ob_island_work *w, uint32_t ro
 		angular += turn * turn;
 	}
 	*speed = sqrt(linear) + a->radius * sqrt(angular);
-	return ob_norm(ob_sub(a->p, b->p)) + turned_by(a->q, b->q, a->radius);
+	return ob_norm(ob_sub(a->p, b->p)) + turned_by(a, a->q, b->q);
 }

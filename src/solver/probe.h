@@ -34,8 +34,8 @@ void ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps);
 bool ob_probe_try(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most);
 // Returns the probe's own solution.
 const ob_island_work *ob_probe_island(const ob_probe *p);
-// Returns the distance (m) of any surface point of the body in this row of w from where the probe has it, at most; 0 if
-// both solutions are its flight. speed: m/s, the same of the point's velocity.
+// Returns the distance (m) of the surface of the body in this row of w from where the probe has it, at most; 0 if both
+// solutions are its flight. A turn about an axis of symmetry moves no surface. speed: m/s, the same of a point's velocity.
 double ob_probe_distance(const ob_probe *p, const ob_island_work *w, uint32_t row, double *speed);
 
 #endif

@@ -316,7 +316,11 @@ static double distance(const player *a, const player *b, uint32_t i)
 	const ob_state x = state_of(a, i), y = state_of(b, i);
 	const ob_quat p = x.pose.q, q = y.pose.q;
 	const double same = fabs(p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z);
-	const double turn = ob_shape_is(o->shape, OB_ISOTROPIC) ? 0 : 2 * acos(fmin(1, same));
+	double turn = ob_shape_is(o->shape, OB_ISOTROPIC) ? 0 : 2 * acos(fmin(1, same));
+	if (ob_shape_is(o->shape, OB_AXIAL)) { // its turn about the axis moves no surface
+		const ob_mat3 of_p = ob_quat_matrix(p), of_q = ob_quat_matrix(q);
+		turn = ob_norm(ob_sub(ob_column(&of_p, 2), ob_column(&of_q, 2)));
+	}
 	return ob_norm(ob_sub(x.pose.p, y.pose.p)) + turn * ob_shape_radius(o->shape, o->size);
 }
 

@@ -2,10 +2,10 @@
 // bounded if its estimates add up to the tolerance at most. Prints for each kind of scene how many are bounded, and how many
 // of these are off by more.
 //
-//   truth [--seeds A..B] [--kind NAME] [--shapes 1|2|3] [--second N] [--substeps N] [--share S]
+//   truth [--seeds A..B] [--kind NAME] [--shapes 1|2|3] [--second N] [--substeps N] [--share S] [--list 1]
 //
 // --shapes: 1 spheres and boxes, 2 with capsules and cylinders, 3 with hulls. --share: the permitted share of bounded
-// seconds that are off, asserted.
+// seconds that are off, asserted. --list: prints each body's second.
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +23,8 @@ static bool moves(const scene_body *b)
 	return b->mass > 0 && !b->driven;
 }
 
+static bool list; // prints each body's second
+
 static void try_scene(scene_kind kind, uint64_t seed, unsigned shapes, uint64_t step, uint32_t substeps, tally *t)
 {
 	const random_scene s = scene_draw(kind, seed, shapes);
@@ -34,6 +36,9 @@ static void try_scene(scene_kind kind, uint64_t seed, unsigned shapes, uint64_t 
 		if (!moves(&s.body[i]))
 			continue;
 		t->moving++;
+		if (list)
+			printf("  %s %lu body %u: said %.3g, off %.3g of the tolerance\n", scene_kind_name[kind],
+			       (unsigned long)seed, i, second.said[i] / s.run.tolerance, off);
 		if (second.said[i] > s.run.tolerance)
 			continue;
 		t->bounded++;
@@ -63,6 +68,8 @@ int main(int argc, char **argv)
 			substeps = strtoul(argv[i + 1], NULL, 10);
 		else if (!strcmp(argv[i], "--share"))
 			share = strtod(argv[i + 1], NULL);
+		else if (!strcmp(argv[i], "--list"))
+			list = strtoul(argv[i + 1], NULL, 10);
 	}
 	const unsigned drawn = shapes[0] | (kinds > 1 ? shapes[1] : 0) | (kinds > 2 ? shapes[2] : 0);
 	tally all = { 0 };
