@@ -82,7 +82,7 @@ class Spread(program.Case):
 		out, _ = self.spread((3, [*words, "--json"]))
 		runs = json.loads(out)["runs"]
 		self.assertEqual([r["failed"] for r in runs if r["failed"]], [])
-		self.assertEqual(len(runs), 2 * 7 + 3 * 2)
+		self.assertEqual(len(runs), 2 * 8 + 3 * 2)
 		self.assertEqual(len(self.rows("obsim-paper")), len(runs))
 
 	def test_list(self):
