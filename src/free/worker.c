@@ -148,7 +148,8 @@ bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
 		const uint32_t until = ob_free_until(u);
 		if (until != w.until) {
 			w.until = until;
-			*ob_worker_counters(u, number) = w.scratch.solver.counters; // their host looks now and then
+			ob_counters_copy(ob_worker_counters(u, number),
+					 &w.scratch.solver.counters); // their host looks now and then
 			fine = adopt(&w) || ob_fail(e, "worker %u: no memory", number);
 		}
 		if (fine && replays)
@@ -157,7 +158,7 @@ bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
 			work(&w);
 		fine = fine && ob_free_schedule_is_fine(w.scratch.schedule, e);
 	}
-	*ob_worker_counters(u, number) = w.scratch.solver.counters;
+	ob_counters_copy(ob_worker_counters(u, number), &w.scratch.solver.counters);
 	finish(&w);
 	return fine;
 }

@@ -34,10 +34,11 @@ double ob_host_gate_time(const ob_host *h, double now)
 {
 	double sum = 0;
 	for (uint32_t w = 0; w < h->workers; w++) {
-		const ob_counters *c = ob_worker_counters(h->u, w);
-		sum += 1e-9 * (double)c->gate_ns;
-		if (c->since_ns)
-			sum += fmax(0, now - 1e-9 * (double)c->since_ns);
+		ob_counters c;
+		ob_counters_copy(&c, ob_worker_counters(h->u, w));
+		sum += 1e-9 * (double)c.gate_ns;
+		if (c.since_ns)
+			sum += fmax(0, now - 1e-9 * (double)c.since_ns);
 	}
 	return sum;
 }

@@ -1,3 +1,4 @@
+#include <assert.h>
 #include <math.h>
 
 #include "elementary/elementary.h"
@@ -67,11 +68,24 @@ static void add_counters(ob_counters *to, const ob_counters *c)
 	to->gate_cpu_ns += c->gate_cpu_ns;
 }
 
+void ob_counters_copy(ob_counters *to, const ob_counters *from)
+{
+	typedef uint64_t word __attribute__((may_alias));
+	static_assert(sizeof *to % sizeof(word) == 0, "counters are whole words");
+	const word *f = (const word *)from;
+	word *t = (word *)to;
+	for (size_t i = 0; i < sizeof *to / sizeof *t; i++)
+		__atomic_store_n(&t[i], __atomic_load_n(&f[i], __ATOMIC_RELAXED), __ATOMIC_RELAXED);
+}
+
 void ob_universe_count(const ob_universe *u, ob_counters *sum)
 {
 	*sum = (ob_counters){ 0 };
-	for (uint32_t w = 0; w < u->header.sizes.workers; w++)
-		add_counters(sum, &u->worker[w].counters);
+	for (uint32_t w = 0; w < u->header.sizes.workers; w++) {
+		ob_counters c;
+		ob_counters_copy(&c, &u->worker[w].counters);
+		add_counters(sum, &c);
+	}
 }
 
 // ---- latency

@@ -68,6 +68,9 @@ typedef struct ob_counters {
 	uint64_t since_ns; // start of the present wait (ob_clock_ns); not for sums
 } ob_counters;
 
+// Copies word by word: a free worker may write while others look, who then have some words of before. Any thread.
+void ob_counters_copy(ob_counters *to, const ob_counters *from);
+
 enum { OB_LATENCY_BINS = 1100 }; // 2 % wide each, from .1 us to 290 s
 
 // Histogram of step durations. Its size is fixed, so that a run of any length takes 9 kB, and a percentile is accurate
