@@ -1,4 +1,4 @@
-"""A binary glTF file of a cube, as any other program would write it."""
+"""Binary glTF files, as any other program would write them."""
 
 import json
 import struct
@@ -17,6 +17,29 @@ def png(rows):
 	pixels = b"".join(b"\0" + bytes(sum(row, ())) for row in rows)
 	return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 2, 0, 0, 0))
 		+ chunk(b"IDAT", zlib.compress(pixels)) + chunk(b"IEND", b""))
+
+
+def whole(text, data):
+	"""The bytes of a file: its description, and the data that this describes."""
+	words = json.dumps(text).encode()
+	words += b" " * (-len(words) % 4)
+	chunks = struct.pack("<II", len(words), 0x4e4f534a) + words + struct.pack("<II", len(data), 0x004e4942) + data
+	return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def mesh(points, triangles):
+	"""Triangles of points (x, y, z); z points up, as in obsim."""
+	turned = [(x, z, -y) for x, y, z in points]
+	places = b"".join(struct.pack("<3f", *p) for p in turned)
+	corners = b"".join(struct.pack("<3I", *t) for t in triangles)
+	return whole({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+		"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+		"accessors": [{"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3",
+			"min": [min(x) for x in zip(*turned)], "max": [max(x) for x in zip(*turned)]},
+			{"bufferView": 1, "componentType": 5125, "count": 3 * len(triangles), "type": "SCALAR"}],
+		"bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": len(places)},
+			{"buffer": 0, "byteOffset": len(places), "byteLength": len(corners)}],
+		"buffers": [{"byteLength": len(places) + len(corners)}]}, places + corners)
 
 
 def cube(half, colour=None, mode=4, picture=None, shine=False):
@@ -43,7 +66,4 @@ def cube(half, colour=None, mode=4, picture=None, shine=False):
 			looks.update(metallicRoughnessTexture={"index": 0}, metallicFactor=1, roughnessFactor=1)
 		data += places + image + bytes(-len(image) % 4)
 		text["buffers"][0]["byteLength"] = len(data)
-	words = json.dumps(text).encode()
-	words += b" " * (-len(words) % 4)
-	chunks = struct.pack("<II", len(words), 0x4e4f534a) + words + struct.pack("<II", len(data), 0x004e4942) + data
-	return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+	return whole(text, data)

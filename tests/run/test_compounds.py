@@ -1,14 +1,10 @@
 """Compounds: the same bits in any configuration, with deaths, and after a resume; records, sensors and refusals."""
 
 import re
-import shutil
-import subprocess
 import unittest
 
+import configurations
 import program
-
-WAYS = program.ways(["--workers", 1], ["--workers", 3, "--check"], ["--isolation", "process", "--workers", 2],
-	["--isolation", "process", "--workers", "objects"], ["--isolation", "process", "--workers", 2, "--harden"])
 
 SCENE = """scene { title = "Compounds", duration = 1 }
 ground {}
@@ -35,37 +31,8 @@ end]] }
 """
 
 
-class Compounds(program.Case):
-	def setUp(self):
-		super().setUp()
-		self.scene = self.path("compounds.lua")
-		with open(self.scene, "w", encoding="utf-8") as f:
-			f.write(SCENE)
-
-	def state(self, *words):
-		"""The state at the end."""
-		done = program.call("run", *words, "--measure", "end")
-		found = re.search(r"^  state +([0-9a-f]{16})$", done.stdout, re.MULTILINE)
-		self.assertTrue(done.returncode == 0 and found, f"{words}: {done.stdout}{done.stderr}")
-		return found.group(1)
-
-	def test_same_bits(self):
-		self.assertEqual(len({self.state(self.scene, *way) for way in WAYS}), 1)
-
-	def test_kills(self):
-		killed = self.state(self.scene, "--isolation", "process", "--workers", 2, "--fault", "kill:p=.01,seed=5")
-		self.assertEqual(killed, self.state(self.scene))
-
-	def test_resume(self):
-		kept = self.path("kept.ck")
-		self.state(self.scene, "--duration", .5, "--checkpoint", kept)
-		self.assertEqual(self.state("--resume", kept, "--duration", 1), self.state(self.scene))
-
-	@unittest.skipUnless(shutil.which("mpirun"), "no mpirun")
-	def test_ranks(self):
-		done = subprocess.run(["mpirun", "-n", "2", program.OBSIM, "run", self.scene, "--workers", "1", "--measure", "end"],
-			env=program.RANKS, capture_output=True, text=True, timeout=program.PATIENCE)
-		self.assertIn(self.state(self.scene), done.stdout, done.stderr)
+class Compounds(configurations.SameBits, program.Case):
+	FILE, TEXT = "compounds.lua", SCENE
 
 	def test_parts_collide_one_by_one(self):
 		"""What lies in a channel is not inside the hull around it; only what overlaps a part overlaps."""

@@ -2,15 +2,11 @@
 
 import os
 import re
-import shutil
-import struct
-import subprocess
 import unittest
 
+import configurations
+import glb
 import program
-
-WAYS = program.ways(["--workers", 1], ["--workers", 3, "--check"], ["--isolation", "process", "--workers", 2],
-	["--isolation", "process", "--workers", "objects"], ["--isolation", "process", "--workers", 2, "--harden"])
 
 SCENE = """scene { title = "Hills", duration = 1 }
 local function height(x, y) return .3 * math.sin(1.3 * x) * math.cos(y) + (x > 2 and .5 or 0) end
@@ -27,25 +23,6 @@ hinge { "sphere#1", "box#2", at = { -2.6, 0, 1.3 }, axis = { 0, 1, 0 } }
 """
 
 
-def glb(points, triangles):
-	"""A binary glTF file of these triangles; its y points up."""
-	positions = b"".join(struct.pack("<3f", x, z, -y) for x, y, z in points)
-	indices = b"".join(struct.pack("<3I", *t) for t in triangles)
-	low = [min(p[i] for p in points) for i in range(3)]
-	high = [max(p[i] for p in points) for i in range(3)]
-	text = ('{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],'
-		'"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],'
-		'"accessors":[{"bufferView":0,"componentType":5126,"count":%d,"type":"VEC3","min":[%g,%g,%g],"max":[%g,%g,%g]},'
-		'{"bufferView":1,"componentType":5125,"count":%d,"type":"SCALAR"}],'
-		'"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":%d},{"buffer":0,"byteOffset":%d,"byteLength":%d}],'
-		'"buffers":[{"byteLength":%d}]}' % (len(points), low[0], low[2], -high[1], high[0], high[2], -low[1],
-		3 * len(triangles), len(positions), len(positions), len(indices), len(positions) + len(indices)))
-	text = text.encode() + b" " * (-len(text) % 4)
-	binary = positions + indices
-	return (struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + struct.pack("<I4s", len(text), b"JSON") + text +
-		struct.pack("<I4s", len(binary), b"BIN\0") + binary)
-
-
 def sheet(n, size, height):
 	"""Points and triangles of n x n cells."""
 	points = [(size * (i / n - .5), size * (j / n - .5), height(size * (i / n - .5), size * (j / n - .5)))
@@ -58,40 +35,8 @@ def sheet(n, size, height):
 	return points, triangles
 
 
-class Terrain(program.Case):
-	def setUp(self):
-		super().setUp()
-		self.scene = self.path("hills.lua")
-		self.write(SCENE)
-
-	def write(self, text):
-		with open(self.scene, "w", encoding="utf-8") as f:
-			f.write(text)
-
-	def state(self, *words):
-		"""The state at the end."""
-		done = program.call("run", *words, "--measure", "end")
-		found = re.search(r"^  state +([0-9a-f]{16})$", done.stdout, re.MULTILINE)
-		self.assertTrue(done.returncode == 0 and found, f"{words}: {done.stdout}{done.stderr}")
-		return found.group(1)
-
-	def test_same_bits(self):
-		self.assertEqual(len({self.state(self.scene, *way) for way in WAYS}), 1)
-
-	def test_kills(self):
-		killed = self.state(self.scene, "--isolation", "process", "--workers", 2, "--fault", "kill:p=.01,seed=5")
-		self.assertEqual(killed, self.state(self.scene))
-
-	def test_resume(self):
-		kept = self.path("kept.ck")
-		self.state(self.scene, "--duration", .5, "--checkpoint", kept)
-		self.assertEqual(self.state("--resume", kept, "--duration", 1), self.state(self.scene))
-
-	@unittest.skipUnless(shutil.which("mpirun"), "no mpirun")
-	def test_ranks(self):
-		done = subprocess.run(["mpirun", "-n", "2", program.OBSIM, "run", self.scene, "--workers", "1", "--measure", "end"],
-			env=program.RANKS, capture_output=True, text=True, timeout=program.PATIENCE)
-		self.assertIn(self.state(self.scene), done.stdout, done.stderr)
+class Terrain(configurations.SameBits, program.Case):
+	FILE, TEXT = "hills.lua", SCENE
 
 	def test_penetration(self):
 		self.assertLess(program.report(self.scene)["penetration_max_m"], 2e-3)
@@ -172,9 +117,9 @@ cylinder { radius = .2, length = .3, at = { -1.5, 1, 1.2 } }
 	def test_mesh(self):
 		"""A ball and a box move on a mesh as on a heightfield, which tests/step compares with the plane; and in a valley."""
 		with open(self.path("flat.glb"), "wb") as f:
-			f.write(glb(*sheet(20, 10, lambda x, y: 0)))
+			f.write(glb.mesh(*sheet(20, 10, lambda x, y: 0)))
 		with open(self.path("valley.glb"), "wb") as f:
-			f.write(glb(*sheet(20, 10, lambda x, y: abs(x) / 2)))
+			f.write(glb.mesh(*sheet(20, 10, lambda x, y: abs(x) / 2)))
 		roll = 'sphere { radius = .25, at = { -2, 0, .25 }, velocity = { 1, .2, 0 }, spin = { -.8, 4, 0 } }'
 		box = 'box { size = { .4, .4, .4 }, at = { 0, 2, .2 }, velocity = { 1, .3, 0 } }'
 		states = set()
@@ -189,7 +134,7 @@ cylinder { radius = .2, length = .3, at = { -1.5, 1, 1.2 } }
 	def test_bad_mesh(self):
 		points, _ = sheet(2, 2, lambda x, y: 0) # the first three lie in a line
 		with open(self.path("thin.glb"), "wb") as f:
-			f.write(glb(points, [(0, 1, 2)]))
+			f.write(glb.mesh(points, [(0, 1, 2)]))
 		self.write('mesh { file = "thin.glb" }')
 		done = program.call("run", self.scene)
 		self.assertEqual(done.returncode, 2)
