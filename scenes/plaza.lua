@@ -82,7 +82,7 @@ controls { key = "w", label = "Ahead", sends = "go", values = { 1, 0 } }
 controls { key = "s", label = "Back", sends = "go", values = { -.6, 0 } }
 controls { key = "a", label = "Left", sends = "go", values = { 0, 1 } }
 controls { key = "d", label = "Right", sends = "go", values = { 0, -1 } }
-controls { key = "e", label = "Greet", sends = "greet" }
+controls { key = "e", gamepad = 0, label = "Greet", sends = "greet" }
 
 local coats = { "#3d6fa5", "#a33f3f", "#3f7f5c", "#7a4d8f", "#c08a2d", "#46505c", "#b35f86", "#2f8f96" }
 for i = 1, people do

@@ -12,6 +12,7 @@
 
 typedef struct control {
 	const char *key, *label, *sends, *to;
+	uint32_t gamepad; // OB_CONTROL_BUTTONS: none
 	bool values;
 	double min, max, value; // NaN: not set
 } control;
@@ -20,6 +21,7 @@ typedef struct control {
 #define NUMBER(member) F(member, .kind = OB_FIELD_NUMBER, .low = -1e9, .high = 1e9)
 static const ob_field fields[] = {
 	F(key, .kind = OB_FIELD_TEXT, .high = OB_CONTROL_KEY - 1),
+	F(gamepad, .kind = OB_FIELD_COUNT, .high = OB_CONTROL_BUTTONS - 1),
 	F(label, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1),
 	F(sends, .kind = OB_FIELD_TEXT, .high = 15, .required = true),
 	F(to, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1),
@@ -52,14 +54,15 @@ static void read_values(lua_State *L, ob_control_def *c)
 static void check(lua_State *L, const control *c)
 {
 	const bool low = !isnan(c->min), high = !isnan(c->max);
-	if (!c->key && !c->label)
-		ob_sandbox_fail(L, "controls: expected a key, or a label of a button or slider");
+	const bool pressed = c->key || c->gamepad < OB_CONTROL_BUTTONS;
+	if (!pressed && !c->label)
+		ob_sandbox_fail(L, "controls: expected a key, a gamepad's button, or a label of a button or slider");
 	if (strpbrk(c->sends, " \t"))
 		ob_sandbox_fail(L, "controls.sends: expected one word, got \"%s\"", c->sends);
 	if (low != high || (low && c->min >= c->max))
 		ob_sandbox_fail(L, "controls.max: expected min and max of a slider, the smaller one first");
-	if (low && (c->key || c->values || !c->label))
-		ob_sandbox_fail(L, "controls.min: expected a label, and neither key nor values, for a slider");
+	if (low && (pressed || c->values || !c->label))
+		ob_sandbox_fail(L, "controls.min: expected a label, and neither key, gamepad nor values, for a slider");
 	if (!isnan(c->value) && (!low || c->value < c->min || c->value > c->max))
 		ob_sandbox_fail(L, "controls.value: expected a number from min to max of a slider");
 }
@@ -67,13 +70,13 @@ static void check(lua_State *L, const control *c)
 int ob_scene_call_controls(lua_State *L)
 {
 	ob_scene *s = ((ob_builder *)ob_sandbox_user(L))->scene;
-	control c = { .min = NAN, .max = NAN, .value = NAN };
+	control c = { .gamepad = OB_CONTROL_BUTTONS, .min = NAN, .max = NAN, .value = NAN };
 	ob_fields_read(L, 1, "controls", fields, sizeof fields / sizeof *fields, &c);
 	check(L, &c);
 	if (s->controls == OB_SCENE_CONTROLS_MAX || !OB_GROW(s->control, s->controls + 1))
 		ob_sandbox_fail(L, "controls: expected at most %d controls in a scene", OB_SCENE_CONTROLS_MAX);
 	ob_control_def *d = &s->control[s->controls++];
-	*d = (ob_control_def){ .slider = !isnan(c.min), .min = c.min, .max = c.max };
+	*d = (ob_control_def){ .gamepad = c.gamepad, .slider = !isnan(c.min), .min = c.min, .max = c.max };
 	snprintf(d->key, sizeof d->key, "%s", c.key ? c.key : "");
 	for (char *at = d->key; d->key[0] && !d->key[1] && *at; at++)
 		*at = (char)tolower((unsigned char)*at);

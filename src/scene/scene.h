@@ -61,11 +61,13 @@ typedef struct ob_param_def {
 	bool whole;
 } ob_param_def;
 
-enum { OB_CONTROL_VALUES = 4, OB_CONTROL_KEY = 16 };
+enum { OB_CONTROL_VALUES = 4, OB_CONTROL_KEY = 16, OB_CONTROL_BUTTONS = 17 }; // BUTTONS: of a gamepad
 
 // Control of viewers: a key, a button or a slider that sends a message to a script.
 typedef struct ob_control_def {
 	char key[OB_CONTROL_KEY]; // as browsers name it, lower case; "" = none
+	uint32_t
+		gamepad; // button of a gamepad, by its number in the Gamepad API's standard layout; OB_CONTROL_BUTTONS: none
 	char label[OB_NAME_MAX];
 	char sends[OB_NAME_MAX]; // first value of the message
 	char to[OB_NAME_MAX]; // object; "" = the viewer's avatar

@@ -48,6 +48,8 @@ static void put_offers(ob_message *m, const ob_scene *s)
 		const ob_control_def *c = &s->control[i];
 		ob_message_print(m, "%s{\"key\":", i ? "," : "");
 		ob_message_put_json(m, c->key);
+		if (c->gamepad < OB_CONTROL_BUTTONS)
+			ob_message_print(m, ",\"gamepad\":%u", c->gamepad);
 		put_text(m, "label", c->label);
 		put_text(m, "sends", c->sends);
 		put_text(m, "to", c->to);
@@ -166,7 +168,7 @@ ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy)
 	char hash[20] = "";
 	ob_universe_get_info(u, &info);
 	const bool ended = info.state == OB_UNIVERSE_FINISHED,
-		   taken = (energy || ended) && ob_snapshot_take(&s, u, false, NULL);
+		   taken = (energy || ended) && ob_snapshot_take(&s, u, 0, NULL);
 	const double joules = taken && energy ? ob_measure_energy(&s, info.gravity) : NAN;
 	if (taken && ended)
 		snprintf(hash, sizeof hash, "%016llx", (unsigned long long)ob_measure_hash(&s));
@@ -341,6 +343,7 @@ ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t i
 	put_vec3(m, "size", p.size);
 	ob_state now = ob_published_at(&motion, &p, info.time);
 	put_vec3(m, "p", now.pose.p);
+	put_numbers(m, "q", (double[]){ now.pose.q.w, now.pose.q.x, now.pose.q.y, now.pose.q.z }, 4);
 	put_vec3(m, "v", now.v);
 	put_vec3(m, "w", now.w);
 	if (entry.script && entry.script <= scene->scripts) {

@@ -348,7 +348,7 @@ end
 function on_step()
 	self:force(400 * (self.state.x or 0), 400 * (self.state.y or 0), 0)
 end]] }
-controls { key = "D", label = "Right", sends = "roll", values = { 1, 0 } }
+controls { key = "D", gamepad = 15, label = "Right", sends = "roll", values = { 1, 0 } }
 controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 """
 
@@ -376,8 +376,8 @@ controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 			role[name.removeprefix("To ")] = url.strip().rpartition("=")[2]
 		come = lambda t: self.viewer(path="/universe?token=" + t)
 		one, other, watcher, operator = come(role["take part"]), come(role["take part"]), come(role["watch"]), come(token)
-		self.assertEqual([(c["key"], c["sends"], c["values"]) for c in one.told["welcome"]["controls"]],
-			[("d", "roll", [1, 0]), ("", "power", [1])])
+		self.assertEqual([(c["key"], c.get("gamepad"), c["sends"], c["values"]) for c in one.told["welcome"]["controls"]],
+			[("d", 15, "roll", [1, 0]), ("", None, "power", [1])])
 		own, foreign = self.avatar(one), self.avatar(other)
 		self.assertNotEqual(own["id"], foreign["id"])
 		self.assertEqual(one.objects[own["id"]]["name"][:6], "guest ")

@@ -160,6 +160,7 @@ class Viewer(server.Case):
 		b.key("m")
 		leads = "[...obsim.universe.simulators.values()].map((s) => s.lead)"
 		b.wait(f"obsim.universe.told > .5 && obsim.universe.simulators.size === 8 && Math.max(...{leads}) > 0")
+		b.wait("obsim.workers.list.map((w) => w.objects).reduce((a, x) => a + x, 0) === 8") # each worker's own ones
 		b.wait("!document.querySelector('#times').hidden && document.querySelectorAll('#times rect').length > 0")
 		picked, pid = b.run("const [id, s] = [...obsim.universe.simulators][0]; obsim.pick(id); return [id, obsim.workers.list[s.home].pid]")
 		os.kill(pid, signal.SIGSTOP)
@@ -210,6 +211,11 @@ class Viewer(server.Case):
 		self.assertEqual(b.run("return obsim.camera.forward"), forward)
 		b.run("obsim.panel.edit('at', '1 0 .5')")
 		b.wait(f"{at}[0] > .9")
+		b.run("obsim.panel.edit('attitude', '0 0 2 30')")
+		b.wait("Math.abs(obsim.universe.pose([...obsim.universe.objects.values()].find((o) => o.name === 'crate')).q[3] - Math.sin(Math.PI / 12)) < 1e-3")
+		b.wait("document.querySelector('#edit [name=attitude]').value === '0  0  1  30'")
+		b.run("obsim.panel.edit('attitude', '0 0 0 30')")
+		b.wait("document.querySelector('#notice').textContent.includes('an axis and degrees')")
 		b.run("const f = document.querySelector('#talk'); f.elements.text.value = '#00ff00'; f.requestSubmit()")
 		b.wait("[...obsim.universe.objects.values()].some((o) => o.name === 'crate' && o.colour[1] > .9)")
 		b.run("document.querySelector('[data-hold=push]').dispatchEvent(new Event('pointerdown'))")
@@ -269,6 +275,7 @@ function on_step()
 	self:force(600 * (self.state.x or 0), 0, 0)
 end]] }
 controls { key = "w", label = "Ahead", sends = "go", values = { 1 } }
+controls { gamepad = 2, label = "Back", sends = "go", values = { -1 } }
 """)
 		self.serve_file(self.path("scene.lua"))
 		one, other = self.open(), self.open()
@@ -285,6 +292,18 @@ controls { key = "w", label = "Ahead", sends = "go", values = { 1 } }
 		keys("keyUp")
 		one.wait(f"obsim.camera.eye[0] > {eye} + 1")
 		self.assertGreater(other.run(f"return {place}[0]"), 1)
+		# a gamepad: a button of the scene, then the stick and the arrow for W, until it is taken away
+		pad = lambda stick, *pressed: one.run("navigator.getGamepads = () => [null, arguments[0] && { axes: [0, arguments[0][0]], "
+			"buttons: Array.from({ length: 17 }, (_, i) => ({ pressed: arguments[1].includes(i) })) }]", stick and [stick], pressed)
+		pad(.01, 2)
+		one.wait("[...obsim.offers.held].some((c) => c.gamepad === 2)")
+		other.wait(f"{place}[0] < 0")
+		pad(-1)
+		one.wait("[...obsim.offers.held].map((c) => c.key).join() === 'w'")
+		pad(.01, 12)
+		one.wait("[...obsim.offers.held].map((c) => c.key).join() === 'w'")
+		pad(None)
+		one.wait("obsim.offers.held.size === 0")
 		self.keep(one, "avatar.png")
 		self.keep(other, "avatar-seen.png")
 		one.run("const n = document.querySelector('#params input'); n.value = 4; n.dispatchEvent(new Event('change'))")

@@ -393,7 +393,7 @@ universe.addEventListener('avatar', (e) => {
 		camera.set(cameras[shownCamera = behind]);
 	camera.behind = true;
 });
-universe.addEventListener('workers', (e) => workers.hear(e.detail, (id) => universe.objects.get(id)?.name || `object ${id}`));
+universe.addEventListener('workers', (e) => workers.hear(e.detail, (id) => universe.objects.get(id)?.name || `object ${id}`, universe.simulators));
 universe.addEventListener('simulators', (e) => workers.times(e.detail));
 // Address of a content that may need the token.
 function addressOf(path) { return token ? `${path}?token=${encodeURIComponent(token)}` : path; }

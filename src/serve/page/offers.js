@@ -1,7 +1,8 @@
 // Offers of a scene to visitors: controls (keys, buttons, sliders, a gamepad), and parameters to start it anew with.
 const WIDE = 100; // largest by smallest value, beyond which a slider is logarithmic
 const DEAD = 0.2; // part of a stick's way that means nothing
-const STICK = { 0: ['a', 'd'], 1: ['w', 's'] }; // keys that a gamepad's axes stand for: below 0, above 0
+// Keys that a gamepad's stick (axis, direction) and arrows (buttons of the standard layout) stand for
+const STICK = { w: { axis: 1, way: -1, arrow: 12 }, s: { axis: 1, way: 1, arrow: 13 }, a: { axis: 0, way: -1, arrow: 14 }, d: { axis: 0, way: 1, arrow: 15 } };
 
 const $ = (selector) => document.querySelector(selector);
 const short = (x) => Number(x.toPrecision(4)).toString();
@@ -17,12 +18,14 @@ export class Offers extends EventTarget {
 		super();
 		this.controls = [];
 		this.held = new Set(); // controls
+		this.pad = new Set(); // keys and controls that the gamepad holds
 		addEventListener('blur', () => this.letAll());
 	}
 
 	// The controls and parameters of a scene, as its welcome has them.
 	welcome({ controls, params, seed, look_only, role, fixed }) {
 		this.letAll();
+		this.pad.clear();
 		this.controls = look_only ? [] : controls ?? [];
 		$('#controls').replaceChildren(...this.controls.map((c) => (c.range ? this.slider(c) : this.button(c))));
 		$('#params').replaceChildren(...(role === 'operate' && params && !fixed ? [...params.map((p) => this.param(p)), this.seed(seed)] : []));
@@ -32,7 +35,7 @@ export class Offers extends EventTarget {
 	}
 
 	button(c) {
-		const button = element('button', { textContent: c.label || c.sends, title: c.key ? `${c.sends} (${c.key})` : c.sends });
+		const button = element('button', { textContent: c.label || c.sends, title: [c.sends, c.key, c.gamepad === undefined ? '' : `gamepad's button ${c.gamepad}`].filter((x) => x).join(', ') });
 		if (c.key)
 			button.append(element('kbd', { textContent: c.key }));
 		for (const [event, down] of [['pointerdown', true], ['pointerup', false], ['pointerleave', false]])
@@ -111,15 +114,24 @@ export class Offers extends EventTarget {
 			this.hold(c, false);
 	}
 
-	// Reads the first gamepad, once a frame: its stick and arrows stand for keys.
+	// Reads the first gamepad, once a frame: its stick and arrows stand for keys, its buttons for the scene's controls.
 	look() {
 		const pad = this.controls.length ? navigator.getGamepads?.().find((p) => p) : null;
-		for (const [axis, keys] of pad ? Object.entries(STICK) : [])
-			keys.forEach((key, side) => {
-				const on = pad.axes[axis] * (side ? 1 : -1) > DEAD;
-				if (on !== (this.stick?.[key] ?? false))
-					this.key(key, on);
-				this.stick = { ...this.stick, [key]: on };
-			});
+		const pressed = (button) => pad?.buttons[button]?.pressed ?? false;
+		for (const [key, { axis, way, arrow }] of Object.entries(STICK))
+			this.turn(key, way * (pad?.axes[axis] ?? 0) > DEAD || pressed(arrow), (on) => this.key(key, on));
+		for (const c of this.controls.filter((x) => x.gamepad !== undefined))
+			this.turn(c, pressed(c.gamepad), (on) => this.hold(c, on));
+	}
+
+	// Calls what follows when the gamepad begins or ends to hold something.
+	turn(what, on, act) {
+		if (on === this.pad.has(what))
+			return;
+		if (on)
+			this.pad.add(what);
+		else
+			this.pad.delete(what);
+		act(on);
 	}
 }

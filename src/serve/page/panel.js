@@ -8,6 +8,13 @@ const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, meta
 const KEYS = { ' ': 'pause', '.': 'step', ',': 'back', n: 'make', b: 'boxes', c: 'contacts', j: 'joints', v: 'view', m: 'simulators', o: 'objects', p: 'offers', f: 'follow', '?': 'help', t: 'throw', r: 'restart', Delete: 'remove',
 	Escape: 'leave' };
 
+const EDITS = { // fields of the picked object: their numbers, as expected, and as its details have them
+	friction: { numbers: 1, expected: 'a number', of: (d) => [d.friction] },
+	at: { numbers: 3, expected: 'three numbers, as 0 0 1.5', of: (d) => d.p },
+	attitude: { numbers: 4, expected: 'an axis and degrees, as 0 0 1 45', of: (d) => axisAndDegrees(d.q) },
+	velocity: { numbers: 3, expected: 'three numbers, as 0 0 1.5', of: (d) => d.v },
+	spin: { numbers: 3, expected: 'three numbers, as 0 0 1.5', of: (d) => d.w },
+};
 const MARKS_MOST = 400; // on the time bar
 const MORE = new Set(['friction', 'restitution', 'island of', 'substeps']); // details that small screens leave out
 
@@ -21,6 +28,16 @@ const show = (selector, property, value) => {
 		e[property] = value;
 };
 const vector = (v) => v.map((x) => number(x)).join('  ');
+
+// A unit quaternion (w x y z) as an axis and degrees from 0 to 180 about it, and back; the axis has any length but 0.
+function axisAndDegrees([w, ...v]) {
+	const long = Math.hypot(...v), sign = w < 0 ? -1 : 1;
+	return [...(long > 1e-9 ? v.map((x) => sign * x / long) : [0, 0, 1]), 360 / Math.PI * Math.atan2(long, Math.abs(w))];
+}
+function quaternion([x, y, z, degrees]) {
+	const half = degrees * Math.PI / 360, share = Math.sin(half) / Math.hypot(x, y, z);
+	return [Math.cos(half), x * share, y * share, z * share];
+}
 
 export class Panel extends EventTarget {
 	constructor() {
@@ -84,13 +101,13 @@ export class Panel extends EventTarget {
 
 	// A changed field of the picked object.
 	edit(name, text) {
-		const numbers = text.trim().split(/[\s,]+/).map(Number);
 		if (name === 'colour')
-			this.tell('edit', { colour: [1, 3, 5].map((i) => linear(parseInt(text.slice(i, i + 2), 16) / 255)) });
-		else if (numbers.length !== (name === 'friction' ? 1 : 3) || numbers.some((x) => !Number.isFinite(x)))
-			this.notice(`${name}: expected ${name === 'friction' ? 'a number' : 'three numbers, as 0 0 1.5'}`);
-		else
-			this.tell('edit', { [name]: name === 'friction' ? numbers[0] : numbers });
+			return this.tell('edit', { colour: [1, 3, 5].map((i) => linear(parseInt(text.slice(i, i + 2), 16) / 255)) });
+		const given = text.trim().split(/[\s,]+/).map(Number), { numbers, expected } = EDITS[name];
+		const value = name === 'attitude' ? quaternion(given) : numbers === 1 ? given[0] : given;
+		if (given.length !== numbers || [value].flat().some((x) => !Number.isFinite(x)))
+			return this.notice(`${name}: expected ${expected}`);
+		return this.tell('edit', { [name]: value });
 	}
 
 	// Fills in the fields to edit, but for one that is being written.
@@ -99,7 +116,7 @@ export class Panel extends EventTarget {
 		$('#edit').hidden = d.gone || !(d.mass > 0) || !this.operates;
 		for (const field of fields) {
 			if (field !== document.activeElement && field.name !== 'colour')
-				field.value = d.gone ? '' : field.name === 'friction' ? number(d.friction) : vector(field.name === 'at' ? d.p : d.v);
+				field.value = d.gone ? '' : vector(EDITS[field.name].of(d));
 		}
 	}
 

@@ -33,14 +33,18 @@ export class Workers extends EventTarget {
 			$(`#colours [value=${value}]`).hidden = !on;
 	}
 
-	hear(rows, nameOf, now = performance.now() / 1000) {
+	// simulators: as the universe has them; those of a free run have own times, and each worker runs its own ones.
+	hear(rows, nameOf, simulators, now = performance.now() / 1000) {
+		const own = Array(rows.length).fill(0), free = [...simulators.values()].filter((s) => !Number.isNaN(s.lead));
+		for (const { home } of free)
+			own[home]++;
 		this.list = rows.map(([pid, rank, objects, cpu, busy], i) => {
 			const mark = this.marks[i] ??= { at: now, cpu, share: null, pid }, span = now - mark.at;
 			if (mark.pid !== pid)
 				Object.assign(mark, { at: now, cpu, share: null, pid });
 			else if (span >= SPAN)
 				Object.assign(mark, { at: now, share: Math.max(0, cpu - mark.cpu) / span, cpu });
-			return { pid, rank, objects, cpu, busy, share: mark.share };
+			return { pid, rank, objects: free.length ? own[i] : objects, cpu, busy, share: mark.share };
 		});
 		if (this.filmed)
 			this.offer(true);

@@ -1,3 +1,3 @@
--- expect: :2: controls: expected a key, or a label of a button or slider
+-- expect: :2: controls: expected a key, a gamepad's button, or a label of a button or slider
 controls { sends = "go" }
 sphere { radius = 1 }

@@ -1,3 +1,3 @@
--- expect: :2: controls.min: expected a label, and neither key nor values, for a slider
-controls { label = "w", key = "w", sends = "go", min = 1, max = 2 }
+-- expect: :2: controls.min: expected a label, and neither key, gamepad nor values, for a slider
+controls { label = "w", gamepad = 3, sends = "go", min = 1, max = 2 }
 sphere { radius = 1 }
