@@ -1,4 +1,4 @@
-// obsim send: sends a request to a running universe, from another terminal or a program.
+// obsim send: sends a request to a running universe, or reads its contacts, from another terminal or a program.
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/allocate.h"
 #include "base/clock.h"
 #include "base/spelling.h"
 #include "cli/command.h"
@@ -312,6 +313,38 @@ static bool await_step(sending *s, ob_error *e)
 			(unsigned long long)ob_step_count(s->u)));
 }
 
+static const char *name_in(const ob_universe *u, uint32_t id, ob_passport *p)
+{
+	if (!ob_universe_get_passport(u, id, p))
+		return "-"; // it has gone since
+	p->name[OB_NAME_MAX - 1] = 0;
+	return p->name;
+}
+
+// Prints the contact points of the last step, of one object or of all.
+static bool print_contacts(sending *s, ob_error *e)
+{
+	ob_contact_point *c = NULL;
+	ob_passport a, b;
+	size_t n, room = 0;
+	if (s->word[0] && !find_object(s, s->word[0], e))
+		return false;
+	while ((n = ob_universe_get_contacts(s->u, c, room)) > room) {
+		room = n + n / 4;
+		if (!OB_GROW(c, room)) {
+			free(c);
+			return ob_fail(e, "contacts: out of memory");
+		}
+	}
+	for (size_t i = 0; i < n; i++)
+		if (!s->word[0] || c[i].a == s->request.id || c[i].b == s->request.id)
+			printf("%s  %s  %.9g %.9g %.9g  %.6g %.6g %.6g  %.6g\n", name_in(s->u, c[i].a, &a),
+			       name_in(s->u, c[i].b, &b), c[i].position.x, c[i].position.y, c[i].position.z,
+			       c[i].normal.x, c[i].normal.y, c[i].normal.z, c[i].impulse);
+	free(c);
+	return fflush(stdout) == 0 || ob_fail(e, "contacts: %s", strerror(errno));
+}
+
 static bool read_worker(sending *s, ob_error *e)
 {
 	char *end;
@@ -326,11 +359,11 @@ static const struct verb {
 	const char *name, *usage;
 	int words; // at least
 	int more; // than these, at most
-	ob_request_kind kind;
+	ob_request_kind kind; // OB_REQUEST_KINDS: none
 	bool (*find)(sending *s, const char *word, ob_error *e); // whom the first word names; NULL: nobody
-	bool (*read)(sending *s, ob_error *e); // the other words; NULL: there are none
+	bool (*read)(sending *s, ob_error *e); // the other words; NULL: there are none. Without a kind it does all
 } verbs[] = {
-	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", 1, 0, OB_REQUEST_ADD, NULL, NULL },
+	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", 1, 0, OB_REQUEST_KINDS, NULL, create },
 	{ "remove", "remove OBJECT", 1, 0, OB_REQUEST_REMOVE, find_object, NULL },
 	{ "colour", "colour OBJECT '#rrggbb'", 2, 0, OB_REQUEST_COLOUR, find_object, read_colour },
 	{ "message", "message OBJECT VALUE ...", 1, INT_MAX - 1, OB_REQUEST_MESSAGE, find_object, read_values },
@@ -357,8 +390,9 @@ static const struct verb {
 	{ "restart", "restart", 0, 0, OB_REQUEST_RESTART, NULL, NULL },
 	{ "set", "set PARAMETER NUMBER", 2, 0, OB_REQUEST_SET, NULL, read_parameter },
 	{ "seed", "seed NUMBER", 1, 0, OB_REQUEST_SEED, NULL, read_seed },
-	{ "save", "save FILE", 1, 0, OB_REQUEST_SAVE, NULL, NULL },
-	{ "wait", "wait STEP", 1, 0, OB_REQUEST_KINDS, NULL, NULL },
+	{ "save", "save FILE", 1, 0, OB_REQUEST_KINDS, NULL, save },
+	{ "wait", "wait STEP", 1, 0, OB_REQUEST_KINDS, NULL, await_step },
+	{ "contacts", "contacts [OBJECT]", 0, 1, OB_REQUEST_KINDS, NULL, print_contacts },
 	{ "pause", "pause", 0, 0, OB_REQUEST_PAUSE, NULL, NULL },
 	{ "resume", "resume", 0, 0, OB_REQUEST_RESUME, NULL, NULL },
 	{ "step", "step [STEPS]", 0, 1, OB_REQUEST_STEP, NULL, read_steps },
@@ -405,12 +439,8 @@ static void wait_for_start(const ob_universe *u)
 // Reads and finds what the words mean, and asks for it.
 static bool send(sending *s, const struct verb *v, ob_error *e)
 {
-	if (v->kind == OB_REQUEST_ADD)
-		return create(s, e);
-	if (v->kind == OB_REQUEST_SAVE)
-		return save(s, e);
 	if (v->kind == OB_REQUEST_KINDS)
-		return await_step(s, e);
+		return v->read(s, e);
 	s->request.kind = v->kind;
 	return (!v->read || v->read(s, e)) && (!v->find || v->find(s, s->word[0], e)) && ob_ask(s->u, &s->request, e);
 }

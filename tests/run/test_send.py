@@ -42,6 +42,22 @@ class Send(program.Case):
 		if saying:
 			self.assertRegex(done.stderr, saying)
 
+	def test_contacts(self):
+		"""The crate stands on its four corners; the lift touches nothing."""
+		found = lambda *words: [line.split("  ") for line in program.call("send", self.name, "contacts", *words).stdout.splitlines()]
+		self.assertTrue(program.wait_until(lambda: len(found("crate")) == 4))
+		for first, second, place, normal, impulse in found("crate"):
+			self.assertEqual({first, second}, {"crate", "ground"})
+			x, y, z = map(float, place.split())
+			for distance in abs(x - 3), abs(y):
+				self.assertAlmostEqual(distance, .5, delta=.01)
+			self.assertAlmostEqual(z, 0, delta=.01)
+			self.assertAlmostEqual(abs(float(normal.split()[2])), 1, delta=1e-6)
+			self.assertGreaterEqual(float(impulse), 0)
+		self.assertEqual(found("lift"), [])
+		self.assertGreater(len(found()), 4)
+		self.send(self.name, "contacts", "crat", code=1, saying='did you mean "crate"')
+
 	def test_all(self):
 		self.send(self.name, "message", "listener", "hello", "3", "2.5", "true", "-1", "-.5", "--", "-x")
 		self.send(self.name, "create", "sphere { name = 'new', radius = .2, at = { 0, 3, 2 } }")
