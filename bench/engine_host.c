@@ -77,7 +77,7 @@ static bool print(const watched *r, ob_error *e)
 	bench_print("wall", "us/step", 1e6 * (t->wall_s - r->before.wall_s) / steps);
 	bench_print("median step", "us", 1e6 * t->step_p50_s);
 	bench_print("start-up", "us/body", 1e6 * t->startup_s / r->bodies);
-	bool taken = ob_snapshot_take(&now, ob_host_universe(r->h), false, e);
+	bool taken = ob_snapshot_take(&now, ob_host_universe(r->h), 0, e);
 	if (taken)
 		bench_print_state(ob_measure_hash(&now));
 	ob_snapshot_finish(&now);

@@ -162,6 +162,8 @@ ob_capture *ob_capture_open(const ob_frames_request *f, const ob_scene *scene, d
 		.overlay_aabb = f->aabb,
 		.overlay_joints = f->joints,
 		.overlay_contacts = f->contacts,
+		.overlay_reads = f->reads,
+		.reader = f->reader,
 		.mesh = scene->mesh,
 		.meshes = scene->meshes,
 	};

@@ -147,7 +147,7 @@ void ob_warn_of_overlap(ob_host *h)
 {
 	ob_snapshot s = { 0 };
 	ob_penetration now;
-	if (ob_snapshot_take(&s, ob_host_universe(h), false, NULL) &&
+	if (ob_snapshot_take(&s, ob_host_universe(h), 0, NULL) &&
 	    ob_measure_penetration_unless(&s, &now, is_interrupted, h, NULL))
 		warn_of_overlap(&now, &s, h);
 	ob_snapshot_finish(&s);

@@ -180,10 +180,13 @@ static bool read_overlay(ob_frames_request *f, const char *list, ob_error *e)
 			f->caption = true;
 		else if (n == 10 && strncmp(list, "simulators", n) == 0)
 			f->simulators = true;
-		else
+		else if (n >= 5 && n < 6 + sizeof f->reader && strncmp(list, "reads=", n < 6 ? n : 6) == 0) {
+			f->reads = true;
+			snprintf(f->reader, sizeof f->reader, "%.*s", n < 6 ? 0 : (int)n - 6, list + (n < 6 ? n : 6));
+		} else
 			return ob_fail(e,
-				       "--overlay %.*s: expected aabb, contacts, joints, simulators or caption, as in "
-				       "aabb,contacts",
+				       "--overlay %.*s: expected aabb, contacts, joints, reads, reads=OBJECT, "
+				       "simulators or caption, as in aabb,contacts",
 				       (int)n, list);
 		list += n + (list[n] == ',');
 	}
@@ -559,6 +562,8 @@ bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_erro
 			       a->value[OB_OPTION_COLOUR_BY]);
 	if (r->frames.simulators)
 		return ob_fail(e, "--overlay simulators: a record does not hold where simulators ran");
+	if (r->frames.reads)
+		return ob_fail(e, "--overlay reads: a record does not hold what simulators read");
 	return !r->frames.contacts || ob_fail(e, "--overlay contacts: a record holds no contacts");
 }
 

@@ -21,7 +21,8 @@ typedef struct ob_frames_request {
 	uint32_t stills; // 0 = none
 	ob_quality quality;
 	int width, height, samples;
-	bool aabb, contacts, joints, caption, simulators; // overlays
+	bool aabb, contacts, joints, caption, simulators, reads; // overlays
+	char reader[OB_NAME_MAX]; // object whose readings are drawn; "" = all
 	ob_colour_key colour_by;
 } ob_frames_request;
 

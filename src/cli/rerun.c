@@ -23,7 +23,7 @@ ob_request_log_head ob_rerun_head(const ob_run_request *r, const ob_scene *s, ui
 static bool hash_of(const ob_host *h, uint64_t *hash, ob_error *e)
 {
 	ob_snapshot now = { 0 };
-	const bool fine = ob_snapshot_take(&now, ob_host_universe(h), false, e);
+	const bool fine = ob_snapshot_take(&now, ob_host_universe(h), 0, e);
 	if (fine)
 		*hash = ob_measure_hash(&now);
 	ob_snapshot_finish(&now);

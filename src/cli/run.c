@@ -106,8 +106,10 @@ static bool take_snapshot(run *r, ob_error *e)
 		r->prev = r->now;
 		r->now = older;
 	}
+	const ob_frames_request *f = &r->request.frames;
+	const unsigned with = (f->contacts ? OB_SNAPSHOT_CONTACTS : 0) | (f->reads ? OB_SNAPSHOT_BOUNDS : 0);
 	uint64_t begin = ob_clock_ns();
-	bool taken = ob_snapshot_take(&r->now, ob_host_universe(r->host), r->request.frames.contacts, e);
+	bool taken = ob_snapshot_take(&r->now, ob_host_universe(r->host), with, e);
 	ob_host_trace(r->host, OB_TRACE_SNAPSHOT, begin, 0);
 	return taken;
 }
@@ -337,7 +339,7 @@ static void report_separation(const run *r, ob_report *p)
 	ob_universe_info info;
 	ob_universe_get_info(ob_host_universe(r->host), &info);
 	const bool whole = r->ranks.ranks < 2 || r->now.step == info.step; // else others' data is missing
-	if (whole && ob_snapshot_take(&s, ob_host_universe(r->host), true, NULL))
+	if (whole && ob_snapshot_take(&s, ob_host_universe(r->host), OB_SNAPSHOT_CONTACTS, NULL))
 		ob_measure_separation(&s, &apart, is_interrupted, r->host);
 	p->separation_max_m = apart.max_m;
 	p->separation_mean_m = apart.mean_m;

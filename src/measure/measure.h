@@ -21,6 +21,7 @@ typedef struct ob_snapshot {
 	ob_motion *motion;
 	uint32_t *home; // home worker of each simulator, UINT32_MAX: none; NULL: unknown, as of a record
 	double *own_time; // s, of each simulator in a free run; NaN: none; NULL: unknown
+	float (*bounds)[6]; // of each object, as ob_universe_get_bounds; NaN: none; undefined unless they were taken
 	size_t contacts;
 	ob_contact_point *contact;
 	uint32_t joints;
@@ -34,9 +35,11 @@ typedef struct ob_snapshot {
 	ob_terrain_set *terrains; // NULL: there are none, or they are unknown, as of a record
 } ob_snapshot;
 
-// Copies the universe into s, growing its memory. s starts zeroed. The snapshot is of one step only if the universe
-// stands still. Returns false and e if memory runs out, or if an object's published state is implausible.
-bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, ob_error *e);
+enum { OB_SNAPSHOT_CONTACTS = 1 << 0, OB_SNAPSHOT_BOUNDS = 1 << 1 };
+// Copies the universe into s, growing its memory. s starts zeroed. with: contents that few callers need, OB_SNAPSHOT_*.
+// The snapshot is of one step only if the universe stands still. Returns false and e if memory runs out, or if an
+// object's published state is implausible.
+bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, unsigned with, ob_error *e);
 // Copies a snapshot; the memory of "to" grows as needed. Returns false, with "to" unchanged, if memory runs out.
 bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from);
 void ob_snapshot_finish(ob_snapshot *s);

@@ -16,21 +16,25 @@ static bool grow_objects(ob_snapshot *s, uint32_t count)
 	ob_motion *motion = calloc(count, sizeof *motion);
 	uint32_t *home = calloc(count, sizeof *home);
 	double *own_time = calloc(count, sizeof *own_time);
-	if (!passport || !motion || !home || !own_time) {
+	float(*bounds)[6] = calloc(count, sizeof *bounds);
+	if (!passport || !motion || !home || !own_time || !bounds) {
 		free(passport);
 		free(motion);
 		free(home);
 		free(own_time);
+		free(bounds);
 		return false;
 	}
 	free(s->passport);
 	free(s->motion);
 	free(s->home);
 	free(s->own_time);
+	free(s->bounds);
 	s->passport = passport;
 	s->motion = motion;
 	s->home = home;
 	s->own_time = own_time;
+	s->bounds = bounds;
 	s->count_max = count;
 	s->count = 0;
 	return true;
@@ -171,7 +175,14 @@ static bool take_joints(ob_snapshot *s, const ob_universe *u, ob_error *e)
 	return true;
 }
 
-bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, ob_error *e)
+static void take_bounds(ob_snapshot *s, const ob_universe *u)
+{
+	for (uint32_t id = 0; id < s->count; id++)
+		if (!ob_universe_get_bounds(u, id, s->bounds[id]))
+			s->bounds[id][0] = NAN;
+}
+
+bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, unsigned with, ob_error *e)
 {
 	ob_universe_info info;
 	ob_universe_get_info(u, &info);
@@ -186,7 +197,9 @@ bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, bool with_contacts, 
 	for (uint32_t id = 0; id < s->count; id++)
 		if (!take_object(s, u, id, e))
 			return false;
-	return take_joints(s, u, e) && (!with_contacts || take_contacts(s, u, e));
+	if (with & OB_SNAPSHOT_BOUNDS)
+		take_bounds(s, u);
+	return take_joints(s, u, e) && (!(with & OB_SNAPSHOT_CONTACTS) || take_contacts(s, u, e));
 }
 
 static bool copy_hulls(ob_snapshot *to, const ob_snapshot *from)
@@ -229,6 +242,8 @@ bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from)
 			memset(to->home, 0xff, from->count * sizeof *to->home);
 		for (uint32_t i = 0; i < from->count; i++)
 			to->own_time[i] = from->own_time ? from->own_time[i] : NAN;
+		if (from->bounds)
+			memcpy(to->bounds, from->bounds, from->count * sizeof *to->bounds);
 	}
 	if (from->joints)
 		memcpy(to->joint, from->joint, from->joints * sizeof *to->joint);
@@ -243,6 +258,7 @@ void ob_snapshot_finish(ob_snapshot *s)
 	free(s->motion);
 	free(s->home);
 	free(s->own_time);
+	free(s->bounds);
 	free(s->contact);
 	free(s->joint);
 	drop_hulls(s);

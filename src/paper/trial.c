@@ -83,7 +83,7 @@ static bool step(session *c, ob_error *e)
 		return false;
 	if (!c->viewer)
 		return true;
-	if (!ob_snapshot_take(&c->now, ob_host_universe(c->host), false, e))
+	if (!ob_snapshot_take(&c->now, ob_host_universe(c->host), 0, e))
 		return false;
 	return ob_viewer_show(c->viewer, &c->now) || ob_fail(e, "out of memory");
 }
@@ -140,7 +140,7 @@ static bool measure_alone(session *c, double *metric, ob_error *e)
 static bool measure_watched(session *c, double *metric, ob_error *e)
 {
 	reading from = { 0 }, to = { 0 };
-	if (!ob_snapshot_take(&c->now, ob_host_universe(c->host), false, e))
+	if (!ob_snapshot_take(&c->now, ob_host_universe(c->host), 0, e))
 		return false;
 	c->viewer = ob_viewer_open(&c->scene, &c->now, e);
 	if (!c->viewer)

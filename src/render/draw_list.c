@@ -481,7 +481,8 @@ static const float asleep[4] = { .62f, .66f, .74f, 1 }, fixed[4] = { .35f, .37f,
 static const float rim[4] = { .08f, .02f, .05f, .85f }, dot_colour[4] = { 1, .30f, .20f, 1 };
 static const float normal_colour[4] = { 1, .95f, .55f, 1 };
 static const float joint_colour[4] = { .35f, .85f, 1, 1 }, axis_colour[4] = { 1, .45f, .9f, 1 };
-static const float edge_px = 1.5f, dot_px = 6, rim_px = 8.5f, normal_px = 2;
+static const float reading_colour[4] = { 1, .42f, .7f, .9f };
+static const float edge_px = 1.5f, dot_px = 6, rim_px = 8.5f, normal_px = 2, reading_px = 2;
 static const double normal_length_px = 26;
 
 static bool reserve_segments(ob_overlay *o, size_t count)
@@ -492,6 +493,17 @@ static bool reserve_segments(ob_overlay *o, size_t count)
 	if (!OB_GROW(o->segment, count))
 		return false;
 	o->capacity = count;
+	return true;
+}
+
+// Makes room for one more.
+static bool extend_segments(ob_overlay *o)
+{
+	if (o->count < o->capacity)
+		return true;
+	if (!OB_GROW(o->segment, 2 * o->capacity + 64))
+		return false;
+	o->capacity = 2 * o->capacity + 64;
 	return true;
 }
 
@@ -559,6 +571,65 @@ bool ob_overlay_contacts(ob_overlay *o, const ob_snapshot *s, const ob_view *v, 
 		add_segment(o, at, at, dot_colour, dot_px);
 	}
 	return true;
+}
+
+// A body's way along x: bodies are sorted by its begin, and those that overlap follow each other.
+typedef struct span {
+	float low, high; // m
+	uint32_t body;
+} span;
+
+static int by_begin(const void *a, const void *b)
+{
+	const span *x = a, *y = b;
+	return x->low != y->low ? (x->low > y->low) - (x->low < y->low) : (x->body > y->body) - (x->body < y->body);
+}
+
+// Spans of the bodies with bounds. They are not planes, whose bounds would overlap all.
+static uint32_t list_spans(span *to, const ob_draw_list *b)
+{
+	uint32_t n = 0;
+	for (uint32_t i = 0; i < b->count; i++) {
+		const float *bounds = b->now->bounds[b->body[i].id];
+		if (!isnan(bounds[0]))
+			to[n++] = (span){ bounds[0], bounds[3], i };
+	}
+	qsort(to, n, sizeof *to, by_begin);
+	return n;
+}
+
+static bool names(const ob_draw_list *b, uint32_t body, const char *name)
+{
+	return !*name || strncmp(b->now->passport[b->body[body].id].name, name, OB_NAME_MAX) == 0;
+}
+
+// True if one of the two is moved by forces: others read nothing.
+static bool reads(const ob_draw_list *b, uint32_t x, uint32_t y)
+{
+	const float *one = b->now->bounds[b->body[x].id], *other = b->now->bounds[b->body[y].id];
+	const ob_passport *p = &b->now->passport[b->body[x].id], *q = &b->now->passport[b->body[y].id];
+	return !(p->flags & OB_OBJECT_PRESCRIBED && q->flags & OB_OBJECT_PRESCRIBED) && one[1] <= other[4] &&
+	       other[1] <= one[4] && one[2] <= other[5] && other[2] <= one[5];
+}
+
+bool ob_overlay_reads(ob_overlay *o, const ob_draw_list *b, const ob_view *v, const char *reader)
+{
+	span *s = malloc((b->count + 1) * sizeof *s);
+	bool fine = s;
+	const uint32_t n = fine ? list_spans(s, b) : 0;
+	o->count = 0;
+	for (uint32_t i = 0; i < n && fine; i++)
+		for (uint32_t k = i + 1; k < n && s[k].low <= s[i].high && fine; k++) {
+			const uint32_t x = s[i].body, y = s[k].body;
+			if ((!names(b, x, reader) && !names(b, y, reader)) || !reads(b, x, y))
+				continue;
+			fine = extend_segments(o);
+			if (fine)
+				add_segment(o, ob_sub(b->body[x].pose.p, v->eye), ob_sub(b->body[y].pose.p, v->eye),
+					    reading_colour, reading_px);
+		}
+	free(s);
+	return fine;
 }
 
 // Place of a joint's end, relative to the eye, and of the centre of its object.

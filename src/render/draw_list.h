@@ -93,7 +93,7 @@ bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *
 		       const void *context);
 void ob_instances_finish(ob_instances *i);
 
-// ---- overlays: bounding boxes, contacts and joints, as lines and dots of constant width on the screen
+// ---- overlays: bounding boxes, contacts, readings and joints, as lines and dots of constant width on the screen
 
 // Layout of shaders/segment.vert. 44 bytes.
 typedef struct ob_segment {
@@ -110,6 +110,8 @@ typedef struct ob_overlay {
 // Each replaces the contents of o, which starts zeroed. Returns false if memory runs out.
 bool ob_overlay_boxes(ob_overlay *o, const ob_draw_list *b, const ob_view *v);
 bool ob_overlay_contacts(ob_overlay *o, const ob_snapshot *s, const ob_view *v, int height);
+// Lines between objects that read each other's motions: their bounds in the snapshot overlap. reader: one alone; "" = all.
+bool ob_overlay_reads(ob_overlay *o, const ob_draw_list *b, const ob_view *v, const char *reader);
 bool ob_overlay_joints(ob_overlay *o, const ob_snapshot *s, const ob_view *v, int height);
 void ob_overlay_finish(ob_overlay *o);
 

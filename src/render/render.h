@@ -21,6 +21,8 @@ typedef struct ob_render_setup {
 	// NULL = try surfaceless, then devices, in turn; "surfaceless"; or the number of a GPU "0", "1", ..
 	const char *device;
 	bool overlay_aabb, overlay_contacts, overlay_joints;
+	bool overlay_reads; // snapshots must have bounds
+	const char *reader; // object whose readings are drawn, which must outlive the renderer; "" = all
 	ob_colouring colouring; // its places must outlive the renderer
 	// [meshes], the scene's, which must outlive the renderer; objects refer to them by the number in their body
 	// properties. One with a number beyond these is drawn as its collision shape

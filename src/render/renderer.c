@@ -114,6 +114,11 @@ static bool draw_overlays(ob_renderer *r, const ob_snapshot *now, const ob_view 
 			return false;
 		ob_passes_overlay(&r->passes, &r->overlay, false);
 	}
+	if (r->setup.overlay_reads) {
+		if (!ob_overlay_reads(&r->overlay, &r->list, v, r->setup.reader))
+			return false;
+		ob_passes_overlay(&r->passes, &r->overlay, false);
+	}
 	if (r->setup.overlay_joints) {
 		if (!ob_overlay_joints(&r->overlay, now, v, r->setup.height))
 			return false;

@@ -44,7 +44,7 @@ static uint64_t end_of(ob_host *h)
 {
 	ob_snapshot s = { 0 };
 	go(h, END);
-	CHECK(ob_snapshot_take(&s, ob_host_universe(h), false, NULL));
+	CHECK(ob_snapshot_take(&s, ob_host_universe(h), 0, NULL));
 	const uint64_t hash = ob_measure_hash(&s);
 	ob_snapshot_finish(&s);
 	ob_host_stop(h);

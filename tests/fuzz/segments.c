@@ -159,7 +159,7 @@ static void read_all(const ob_universe *u, ob_snapshot *s)
 	size_t n = ob_universe_get_contacts(u, contact, CONTACTS);
 	for (size_t i = 0; i < n && i < CONTACTS; i++)
 		CHECK(contact[i].a < contact[i].b && contact[i].b < OBJECTS && is_finite(contact[i].position));
-	if (ob_snapshot_take(s, u, true, NULL))
+	if (ob_snapshot_take(s, u, OB_SNAPSHOT_CONTACTS, NULL))
 		measure(s, info.gravity);
 }
 

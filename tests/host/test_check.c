@@ -26,7 +26,7 @@ static bool run(const ob_host_config *c, bool damage, uint64_t *hash, bool *brok
 	fine = fine && ob_host_wait(h, e);
 	*broken = ob_host_broke_invariant(h);
 	ob_snapshot now = { 0 };
-	if (fine && ob_snapshot_take(&now, ob_host_universe(h), false, e))
+	if (fine && ob_snapshot_take(&now, ob_host_universe(h), 0, e))
 		*hash = ob_measure_hash(&now);
 	ob_snapshot_finish(&now);
 	ob_host_stop(h);

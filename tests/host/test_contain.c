@@ -111,7 +111,7 @@ static uint64_t run(const ob_scene *scene, ob_host_config *c, scribbler *s, uint
 		s->over = true;
 		pthread_join(thread, NULL);
 	}
-	if (fine && ob_snapshot_take(&now, ob_host_universe(h), false, &e))
+	if (fine && ob_snapshot_take(&now, ob_host_universe(h), 0, &e))
 		hash = ob_measure_hash(&now);
 	if (!hash)
 		printf("%s\n", e.text);

@@ -64,7 +64,7 @@ static void end(led_run *r)
 static uint64_t hash_of(const ob_universe *u)
 {
 	ob_snapshot s = { 0 };
-	CHECK(ob_snapshot_take(&s, u, false, NULL));
+	CHECK(ob_snapshot_take(&s, u, 0, NULL));
 	const uint64_t hash = ob_measure_hash(&s);
 	ob_snapshot_finish(&s);
 	return hash;

@@ -28,7 +28,7 @@ static void step_to(ob_host *h, uint64_t step)
 static uint64_t hash_of(const ob_host *h)
 {
 	ob_snapshot s = { 0 };
-	CHECK(ob_snapshot_take(&s, ob_host_universe(h), false, NULL));
+	CHECK(ob_snapshot_take(&s, ob_host_universe(h), 0, NULL));
 	const uint64_t hash = ob_measure_hash(&s);
 	ob_snapshot_finish(&s);
 	return hash;

@@ -50,7 +50,7 @@ static int run(const ob_scene *s)
 		ob_host_go(h, step);
 		ob_penetration depth;
 		fine = ob_host_wait(h, &e);
-		if (fine && ob_snapshot_take(&now, ob_host_universe(h), true, &e)) {
+		if (fine && ob_snapshot_take(&now, ob_host_universe(h), OB_SNAPSHOT_CONTACTS, &e)) {
 			ob_measure_penetration(&now, &depth);
 			ob_measure_hash(&now);
 		}

@@ -82,7 +82,7 @@ static outcome run(ob_isolation isolation, uint32_t workers)
 	ob_host_go(h, STEPS);
 	CHECK(ob_host_wait(h, &e));
 	ob_universe_get_info(ob_host_universe(h), &info);
-	CHECK(ob_snapshot_take(&snapshot, ob_host_universe(h), false, &e));
+	CHECK(ob_snapshot_take(&snapshot, ob_host_universe(h), 0, &e));
 	o.hash = ob_measure_hash(&snapshot);
 	o.objects = info.objects;
 	look_at_cells(ob_host_universe(h), &o);

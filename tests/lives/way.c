@@ -239,7 +239,7 @@ static uint64_t hash_of(run *r, uint32_t *objects)
 	const ob_step_data *data = ob_universe_step_data(u);
 	ob_snapshot now = { 0 };
 	uint64_t hash = OB_HASH_BEGIN;
-	if (ob_snapshot_take(&now, u, false, &r->e)) {
+	if (ob_snapshot_take(&now, u, 0, &r->e)) {
 		const uint64_t motions = ob_measure_hash(&now);
 		hash = ob_hash_on(hash, &motions, sizeof motions);
 	}

@@ -41,7 +41,7 @@ int main(void)
 	add(u, 5, 6);
 	ob_step_complete(u, 2, 0, 0);
 	ob_snapshot s = { 0 }, copy = { 0 };
-	CHECK(ob_snapshot_take(&s, u, true, &e));
+	CHECK(ob_snapshot_take(&s, u, OB_SNAPSHOT_CONTACTS, &e));
 	CHECK(s.count == 8 && s.step == 1 && s.contacts == 0);
 	CHECK_NEAR(s.time, .5, 0);
 	for (uint32_t id = 0; id < 8; id++)
@@ -58,13 +58,13 @@ int main(void)
 	ob_passport gone = *ob_passport_of(u, 0);
 	gone.flags = 0;
 	ob_write_passport(u, 0, &gone);
-	CHECK(ob_snapshot_take(&s, u, false, &e));
+	CHECK(ob_snapshot_take(&s, u, 0, &e));
 	CHECK(s.passport[0].flags == 0 && s.passport[5].flags == OB_OBJECT_PRESENT);
 
 	ob_motion broken = *ob_newest_motion(u, 5);
 	broken.p.y = NAN;
 	ob_publish_motion(u, 5, &broken);
-	CHECK(!ob_snapshot_take(&s, u, false, &e));
+	CHECK(!ob_snapshot_take(&s, u, 0, &e));
 	CHECK(strstr(e.text, "object 5") && strstr(e.text, "ball"));
 	ob_snapshot_finish(&s);
 	ob_snapshot_finish(&copy);

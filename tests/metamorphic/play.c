@@ -134,7 +134,7 @@ static bool run_to(player *p, uint64_t step)
 		return give_up(p->out, "the workers do not come to a pause");
 	if (ob_sim_failure(p->u))
 		return give_up(p->out, ob_sim_failure(p->u));
-	return ob_snapshot_take(&p->now, p->u, false, &e) || give_up(p->out, e.text);
+	return ob_snapshot_take(&p->now, p->u, 0, &e) || give_up(p->out, e.text);
 }
 
 // from: a universe to go on with; NULL: the scene's start.

@@ -126,6 +126,29 @@ class Frames(program.Case):
 		rows = [free[3 * wide * y:3 * wide * y + 3 * 250] for y in range(lowest + 4, lowest + 60)]
 		self.assertGreater(len({row[3 * x:3 * x + 3] for row in rows for x in range(12, 240)}), 20)
 
+	def test_reads(self):
+		"""Lines between objects whose bounds overlap, of all or of one; the rest of the picture is as before."""
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("ground {}\ncamera 'main' { eye = { 0, -9, 3 }, target = { 0, 0, .5 } }\n"
+				"for i, x in ipairs { -3, -1.98, 2, 3.02 } do box { name = 'box ' .. i, size = { 1, 1, 1 }, at = { x, 0, .5 } } end\n")
+		wide, high = 320, 180
+		def picture(*words):
+			raw = self.path("raw")
+			program.report(self.path("scene.lua"), "--size", f"{wide}x{high}", "--samples", "1", "--still", ".5", "--duration", "1", "--raw", raw, *words)
+			with open(raw, "rb") as f:
+				return f.read()
+		plain = picture()
+		def changed(*words):
+			drawn = picture("--overlay", *words)
+			return [i // 3 % wide for i in range(len(plain)) if plain[i] != drawn[i]]
+		every, one, none = changed("reads"), changed("reads=box 1"), changed("reads=other")
+		self.assertEqual(none, [])
+		self.assertLess(max(one), wide / 2)
+		self.assertGreater(len(one), 50) # from one centre to the other
+		self.assertEqual(sorted(every)[:len(one)], sorted(one))
+		self.assertGreater(min(sorted(every)[len(one):]), wide / 2) # the other two; none across the gap
+		self.assertGreater(len(every), 1.8 * len(one))
+
 	def test_old_frames_are_replaced(self):
 		self.draw("f", "--duration", ".5")
 		r = self.draw("f", "--duration", ".2")

@@ -102,7 +102,7 @@ void little_run(little_universe *l, uint64_t steps)
 		if (ob_sim_failure(l->u))
 			give_up("step", ob_sim_failure(l->u));
 	} while (ob_step_count(l->u) < end);
-	if (!ob_snapshot_take(&l->now, l->u, false, &e))
+	if (!ob_snapshot_take(&l->now, l->u, 0, &e))
 		give_up("snapshot", e.text);
 }
 

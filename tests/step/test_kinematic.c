@@ -276,7 +276,7 @@ static ob_vec3 slid_on_lift(double gravity, const ob_path *path, double *height)
 			ob_step(l.sim);
 	}
 	ob_error e;
-	CHECK(ob_snapshot_take(&l.now, l.u, false, &e));
+	CHECK(ob_snapshot_take(&l.now, l.u, 0, &e));
 	ob_vec3 p = little_state(&l, 1).pose.p;
 	*height = little_state(&l, 0).pose.p.z + .2;
 	done(&l, s);

@@ -57,7 +57,7 @@ static uint64_t run(const little_scene *s, uint32_t workers, uint64_t steps)
 	CHECK(ob_gate_host_wait(u, 60));
 	CHECK(ob_step_count(u) == steps);
 	CHECK(ob_sim_failure(u) == NULL);
-	CHECK(ob_snapshot_take(&now, u, false, &e));
+	CHECK(ob_snapshot_take(&now, u, 0, &e));
 	uint64_t hash = ob_measure_hash(&now);
 	arranged_together = ob_universe_step_data(u)->count->rooted;
 	ob_gate_stop(u);

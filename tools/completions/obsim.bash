@@ -37,7 +37,7 @@ _obsim()
 	--record-schedule | --replay-schedule) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
 	--delay) mapfile -t COMPREPLY < <(compgen -W '.001 .01' -- "$word") ;;
 	--quality) mapfile -t COMPREPLY < <(compgen -W 'draft fine' -- "$word") ;;
-	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts joints simulators caption aabb,contacts' -- "$word") ;;
+	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts joints reads simulators caption aabb,contacts' -- "$word") ;;
 	--colour-by) mapfile -t COMPREPLY < <(compgen -W 'own simulator worker process rank island rest cost lag' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
 	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;

@@ -97,7 +97,7 @@ complete -c obsim -n $run -l size -x -a '640x480 1280x720 1920x1080' -d pixels
 complete -c obsim -n $run -l quality -x -a 'draft fine' -d 'of pictures'
 complete -c obsim -n $run -l samples -x -a '1 2 4 8 16 64' -d 'samples a pixel'
 complete -c obsim -n $run -l camera -x -d 'which camera'
-complete -c obsim -n $run -l overlay -x -a 'aabb contacts joints simulators caption aabb,contacts' -d 'draw over it'
+complete -c obsim -n $run -l overlay -x -a 'aabb contacts joints reads simulators caption aabb,contacts' -d 'draw over it'
 complete -c obsim -n $run -l colour-by -x -a 'own simulator worker process rank island rest cost lag' -d 'colour objects by who simulates them'
 complete -c obsim -n $run -l gpu -x -a 'surfaceless 0 1' -d 'which GPU'
 complete -c obsim -n $run -l record -r -F -d 'trajectories as HDF5'
