@@ -218,6 +218,11 @@ class Pages(Case):
 		b.wait("document.querySelector('#details dl').textContent.includes('mass')")
 		shown = b.run("return obsim.universe.pose(obsim.universe.objects.get(arguments[0])).p", ball)
 		self.assertAlmostEqual(shown[2], 2 - .5 * 9.81 * .3**2, delta=.3 / 256)  # it flies
+		b.wait("document.querySelector('#details dl').textContent.includes('reads0 others')")
+		b.run("obsim.pick([...obsim.universe.objects.values()].find((o) => o.name === 'box#1').id)")
+		self.seek(b, 1.9) # in a heap
+		b.wait("/reads[1-9]/.test(document.querySelector('#details dl').textContent)")
+		b.run("obsim.pick(arguments[0])", ball)
 		self.seek(b, .5)
 		b.key(".")
 		self.assertAlmostEqual(b.run("return obsim.universe.time"), .5 + 1 / 60, places=9)

@@ -1,10 +1,13 @@
 // A recording that plays by itself (src/serve/film.h): the messages of a universe, with a clock of the viewer's own,
 // which runs backwards, too.
+import { halfBounds } from './drawing.js';
 import { FREE, STANDS, normalize, poseAt } from './motion.js';
+import { isEndless } from './shapes.js';
 import { Universe, between } from './universe.js';
 
 const LENGTH = 4, TIME_AT = 8, FLAGS_AT = 1, VOID = 1, JSON_BEGINS = 0x7b, MESH_BEGINS = 3, ASIDE = new Set([4, 5]); // of a message; ASIDE: simulators and joints
 const JUMP = 1; // s: for a longer jump, it begins at a whole state
+const GROWN = 0.02; // of a radius: by so much bounds are taken larger than shapes
 const NEWS = 0.15; // s of wall time between two details of the picked object
 
 // source: "#id", an element of this page that holds the recording in base64; else an address to fetch.
@@ -141,6 +144,18 @@ export class Film extends Universe {
 		}
 	}
 
+	// Objects that the body's simulator reads: their bounds overlap. A recording has none, so they are taken from shapes.
+	readings(body) {
+		const boundsOf = (o) => {
+			const { p, q } = this.pose(o), half = halfBounds({ ...o, q });
+			return p.map((x, k) => [x - half[k] - GROWN * o.radius, x + half[k] + GROWN * o.radius]);
+		};
+		if (body.fixed || isEndless(body.shape))
+			return [];
+		const own = boundsOf(body), others = [...this.objects.values()].filter((o) => o !== body && o.motion && !isEndless(o.shape));
+		return others.filter((o) => boundsOf(o).every(([low, high], k) => low <= own[k][1] && own[k][0] <= high)).map((o) => o.id);
+	}
+
 	inspect() {
 		const id = this.inspected, body = this.objects.get(id);
 		this.newsAt = 0;
@@ -152,7 +167,7 @@ export class Film extends Universe {
 			id, generation: body.generation, name: body.name, size: body.size, p, q,
 			state: body.frozen ? 'frozen' : body.fixed ? 'static' : body.motion.kind === STANDS ? 'rests' : body.motion.kind === FREE ? 'flies' : 'moves',
 			v: p.map((_, k) => (late.p[k] - early.p[k]) / (2 * h)), w: rateOf(early.q, late.q, 2 * h),
-			...this.facts.get(`${id} ${body.generation}`),
+			...this.facts.get(`${id} ${body.generation}`), reads: this.readings(body),
 		});
 	}
 }
