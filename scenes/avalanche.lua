@@ -9,13 +9,14 @@ local up = { math.sin(a), 0, math.cos(a) } -- normal of the slope, which comes d
 
 scene { title = "Avalanche of " .. n .. " stones", duration = 12, tolerance = .02 }
 ground { colour = "#a5b083", grid = false }
-plane { name = "slope", normal = up, at = { 0, 0, 0 }, friction = .3, colour = "#e9eef2" }
+plane { name = "slope", normal = up, at = { 0, 0, 0 }, friction = .3, colour = "#98a3ad" }
 sky { top = "#4f86c0", horizon = "#e7eff5" }
-sun { towards = { -.25, -.65, .6 } }
+sun { towards = { .45, -.75, .55 } }
 material "stone" { friction = .45, restitution = .1, density = 2500 }
 material "rock" { friction = .7, density = 2600, colour = "#5d6068" }
 material "brick" { friction = .6, density = 1600 }
 camera "main" { eye = { 22, -15, 5.5 }, target = { -1, 0, 4.6 }, fov = 46 }
+camera "foot" { eye = { 15.8, 1.2, 3.5 }, target = { -2, -.4, 3.1 }, fov = 44 }
 camera "village" { eye = { 17, -7, 3.2 }, target = { 4, 0, 1 }, fov = 45 }
 
 -- A place on the slope: d m up from its foot, y across, h m above it.

@@ -9,14 +9,14 @@ material "wood" { friction = .2, restitution = .1 }
 material "maple" { friction = .25, restitution = .4 }
 material "resin" { friction = .1, restitution = .3 }
 material "gutter" { friction = .3, restitution = .1, colour = "#55585f", roughness = .35 }
-material "curtain" { friction = .8, restitution = 0, colour = "#57505f", roughness = .9 }
+material "curtain" { friction = .8, restitution = 0, colour = "#8d8296", roughness = .9 }
 material "panel" { colour = "#b8463f", roughness = .5 }
 camera "main" { from = { -.9, -.55, .42 }, fov = 30 }
-camera "pins" { eye = { -.75, -1.25, .9 }, target = { 1.5, .02, .17 }, fov = 33 }
+camera "pins" { eye = { -.75, -1.25, .75 }, target = { 1.5, .02, .13 }, fov = 30 }
 camera "behind" { eye = { -4.4, 0, .9 }, target = { 1, 0, .1 }, fov = 26 }
 camera "hall" { eye = { -5.6, -1.1, 1.5 }, target = { 1.2, .05, .35 }, fov = 36 }
-sky { top = "#3b3540", horizon = "#6f6470" }
-sun { towards = { -.8, -.35, .8 } }
+sky { top = "#5a5262", horizon = "#a89aa6" }
+sun { towards = { -.93, -.33, .4 } } -- low, so that it shines into the pit
 ground { colour = "#4c4850", grid = false }
 
 -- Three lanes with gutters between them, and behind the pins a pit with a curtain, under a panel.
@@ -29,7 +29,7 @@ for k = -1.5, 1.5 do
 	box { size = { 6, apart - wide, .03 }, at = { 0, k * apart, .015 }, static = true, material = "gutter" }
 end
 box { name = "curtain", size = { .1, 4 * apart, 1.1 }, at = { 3.75, 0, .55 }, static = true, material = "curtain" }
-box { name = "panel", size = { .1, 4 * apart, .9 }, at = { 3, 0, 1.35 }, static = true, material = "panel" }
+box { name = "panel", size = { .1, 4 * apart, .65 }, at = { 3, 0, 1.475 }, static = true, material = "panel" }
 for k = -1.5, 1.5, 3 do
 	box { size = { 1.6, .06, .9 }, at = { 2.95, k * apart, .45 }, static = true, material = "curtain" }
 end

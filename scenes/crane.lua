@@ -7,11 +7,11 @@ local CYCLE <const> = 11 -- s, to carry a stool and come back
 scene { title = "Crane that stacks stools", duration = CYCLE * stools + 1, room = 1 }
 sky { top = "#6d8fb5", horizon = "#f2ede4" }
 sun { towards = { -.4, -.8, 1 } }
-ground { colour = "#66737c", grid = false }
+ground { colour = "#8b949a" }
 material "steel" { friction = .4, density = 2000, colour = "#c9ced3", roughness = .35, metal = .8 }
 material "yellow" { friction = .4, density = 2000, colour = "#f0b429", roughness = .5 }
 material "wood" { friction = .6, density = 650, colour = "#b9824f", roughness = .8 }
-camera "main" { eye = { 1.5, -5.3, 2.1 }, target = { .05, 0, 1.42 }, fov = 44 }
+camera "main" { eye = { -2.2, -4.9, 1.9 }, target = { .2, 0, 1.6 }, fov = 50 }
 
 local high, seat, leg = 2.2, .06, .4 -- m: the rail; thickness of a seat, length of a leg
 local stack, first, spacing = 1.9, -2.2, .8 -- m: places along the rail

@@ -5,8 +5,8 @@ local cells = param("cells", 80, { min = 10, max = 300 })
 local balls = param("balls", 24, { min = 0, max = 42 })
 
 scene { title = "A car over hills", duration = 14 }
-sky { top = "#5f8fc4", horizon = "#f3e9dc" }
-sun { towards = { -.6, -.5, .5 } }
+sky { top = "#5f8fc4", horizon = "#dfe9f0" }
+sun { towards = { .35, -.75, .38 } }
 material "turf" { friction = .9, colour = "#7d9b5c", roughness = .95 }
 material "rubber" { friction = 1.2, density = 500, colour = "#2b2d31" }
 material "paint" { friction = .4, density = 120, colour = "#d1495b", roughness = .3 }
@@ -41,5 +41,6 @@ for i = 1, balls do
 	sphere { radius = random(.15, .4), at = { bx, by, height(bx, by) + random(.6, 2) }, density = 300, friction = .6, restitution = .3 }
 end
 
-camera "main" { eye = { -27, -15, 11 }, target = { -8, 0, 0 }, fov = 46 }
+camera "main" { follow = "car", eye = { x - 5.2, y - 6.4, z + 2.4 }, target = { x + 2.3, y + 1.5, z - .1 }, fov = 42 }
+camera "all" { eye = { -27, -15, 11 }, target = { -8, 0, 0 }, fov = 46 }
 camera "behind" { follow = "car", eye = { x - 7, y - 3, z + 3 }, target = { x, y, z } }
