@@ -4,8 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "measure/measure.h"
 #include "motion/flight.h"
+#include "table/free.h"
+#include "table/table.h"
 
 static void put_numbers(ob_message *m, const char *name, const double *v, int n)
 {
@@ -13,6 +16,11 @@ static void put_numbers(ob_message *m, const char *name, const double *v, int n)
 	for (int i = 0; i < n; i++)
 		ob_message_print(m, isfinite(v[i]) ? "%s%.9g" : "%snull", i ? "," : "", v[i]);
 	ob_message_print(m, "]");
+}
+
+static void put_number(ob_message *m, const char *name, double x)
+{
+	ob_message_print(m, isfinite(x) ? ",\"%s\":%.9g" : ",\"%s\":null", name, x);
 }
 
 static void put_text(ob_message *m, const char *name, const char *text)
@@ -107,15 +115,21 @@ ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_u
 	return m;
 }
 
+static uint64_t cpu_of_workers(const ob_universe *u)
+{
+	ob_worker_info w;
+	uint64_t ns = 0;
+	for (uint32_t i = 0; ob_universe_get_worker(u, i, &w); i++)
+		ns += w.cpu_ns;
+	return ns;
+}
+
 ob_message *ob_facts_metrics(ob_host *h, uint32_t viewers)
 {
 	const ob_universe *u = ob_host_universe(h);
 	ob_universe_info info;
-	ob_worker_info w;
-	uint64_t cpu_ns = 0;
+	const uint64_t cpu_ns = cpu_of_workers(u);
 	ob_universe_get_info(u, &info);
-	for (uint32_t i = 0; ob_universe_get_worker(u, i, &w); i++)
-		cpu_ns += w.cpu_ns;
 	const struct metric {
 		const char *name, *type, *help;
 		double value;
@@ -160,6 +174,33 @@ ob_message *ob_facts_workers(const ob_host *h)
 	return m;
 }
 
+// True if nothing was published for another step while the snapshot was taken.
+static bool is_of_one_step(const ob_snapshot *s, const ob_universe *u)
+{
+	ob_universe_info now;
+	ob_universe_get_info(u, &now);
+	for (uint32_t id = 0; id < s->count; id++)
+		if (s->motion[id].step > s->step)
+			return false;
+	return now.step == s->step;
+}
+
+static bool is_late(void *end)
+{
+	return ob_clock_wall() > *(const double *)end;
+}
+
+// Deepest penetration, m; NaN: the run is free, the snapshot is between two steps, or it would take too long.
+static double deepest(const ob_snapshot *s, const ob_universe *u)
+{
+	const double patience = .005; // s: viewers wait
+	double end = ob_clock_wall() + patience;
+	ob_penetration p;
+	const bool known = !ob_free_settings_of(u) && is_of_one_step(s, u) &&
+			   ob_measure_penetration_unless(s, &p, is_late, &end, NULL);
+	return known ? p.max_m : NAN;
+}
+
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy)
 {
 	const ob_universe *u = ob_host_universe(h);
@@ -169,7 +210,8 @@ ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy)
 	ob_universe_get_info(u, &info);
 	const bool ended = info.state == OB_UNIVERSE_FINISHED,
 		   taken = (energy || ended) && ob_snapshot_take(&s, u, 0, NULL);
-	const double joules = taken && energy ? ob_measure_energy(&s, info.gravity) : NAN;
+	const double joules = taken && energy ? ob_measure_energy(&s, info.gravity) : NAN,
+		     depth = taken && energy ? deepest(&s, u) : NAN;
 	if (taken && ended)
 		snprintf(hash, sizeof hash, "%016llx", (unsigned long long)ob_measure_hash(&s));
 	ob_snapshot_finish(&s);
@@ -182,7 +224,10 @@ ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy)
 			 viewers, info.objects, info.awake, info.pairs, info.islands, (unsigned long long)info.step,
 			 info.frozen, ended ? "true" : "false", info.deaths, hash);
 	ob_message_put_json(m, info.last_death);
-	ob_message_print(m, isfinite(joules) ? ",\"energy\":%.9g}}" : ",\"energy\":null}}", joules);
+	put_number(m, "cpu", 1e-9 * (double)cpu_of_workers(u));
+	put_number(m, "energy", joules);
+	put_number(m, "penetration", depth);
+	ob_message_print(m, "}}");
 	return m;
 }
 

@@ -11,8 +11,8 @@
 // scene's meshes, by their numbers, less 1; NULL: they are sent otherwise.
 ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
 			     const ob_content *mesh);
-// {"statistics": objects, awake, pairs, islands, step, viewers, energy (J), deaths, ended, then the hash of the state ..}
-// energy: someone looks at it; else it is null.
+// {"statistics": objects, awake, pairs, islands, step, viewers, deaths, ended, then the hash of the state, cpu (s, of all
+// workers), energy (J), penetration (m, the deepest) ..}. energy: someone looks at the last two; else they are null.
 ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy);
 // {"notice": text}
 ob_message *ob_facts_notice(const char *text);

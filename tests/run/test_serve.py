@@ -506,6 +506,24 @@ controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 		v.until(lambda: v.told["statistics"]["energy"] is not None)
 		self.end()
 
+	def test_figures(self):
+		"""Energy and penetration of a universe that stands are those of its step, and CPU only grows."""
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("scene { gravity = { 0, 0, 0 } }\nfor i, x in ipairs { 0, 1.9 } do sphere { name = 'ball ' .. i, radius = 1, mass = 2, at = { x, 0, 0 }, velocity = { 0, 3, 0 } } end\n"
+				"box { size = { 1, 1, 1 }, at = { 9, 0, 0 }, static = true }\n")
+		self.serve_file(self.path("scene.lua"), "--paused")
+		v = self.viewer()
+		v.send(do="energy", on=True)
+		v.until(lambda: v.told["statistics"]["penetration"] is not None)
+		first = v.told["statistics"]
+		self.assertAlmostEqual(first["penetration"], .1, delta=1e-9)
+		self.assertAlmostEqual(first["energy"], 2 * .5 * 2 * 3**2, delta=1e-9)
+		v.send(do="step", steps=60)
+		v.until(lambda: v.told["statistics"]["step"] == 60 and v.told["statistics"]["penetration"] is not None)
+		self.assertLess(v.told["statistics"]["penetration"], .01)
+		self.assertGreaterEqual(v.told["statistics"]["cpu"], first["cpu"])
+		self.end(saying="begin 100 mm inside each other")
+
 	def test_look_only(self):
 		self.serve("--readonly")
 		v = self.viewer()

@@ -197,7 +197,7 @@ class Viewer(server.Case):
 		b.click(*middle)
 		b.wait("document.querySelector('#details h2').textContent === 'crate'")
 		b.key("o") # all objects, the picked one's plots, and this viewpoint's address
-		b.wait("document.querySelector('#plot-height') && !document.querySelector('#plot-height').hidden")
+		b.wait("['height', 'energy', 'penetration', 'cpu'].every((name) => !document.querySelector('#plot-' + name).hidden)")
 		b.run("const s = document.querySelector('#search'); s.value = 'CRA'; s.dispatchEvent(new Event('input'))")
 		self.assertEqual(b.run("return [...document.querySelectorAll('#tree button')].map((x) => x.textContent)"), ["crate"])
 		b.run("document.querySelector('#tree button').click(); document.querySelector('[data-do=link]').click()")

@@ -1,7 +1,7 @@
 // The panel of all objects: a tree by name with a search, plots that stream, pictures, video, and the viewpoint's address.
 const MOST = 100; // objects of an open group; beyond, the search finds them
 const SPAN = 240; // values in a plot: a minute, a quarter of a second each
-const LINES = { awake: 'objects awake', pace: 'simulated s a second', energy: 'energy, J', height: 'height of the picked, m', speed: 'speed of the picked, m/s' };
+const LINES = { awake: 'objects awake', pace: 'simulated s a second', cpu: 'CPU of simulators, s a second', energy: 'energy, J', penetration: 'deepest penetration, mm', height: 'height of the picked, m', speed: 'speed of the picked, m/s' };
 const HIGH = 34; // px
 const FPS = 30;
 const SVG = 'http://www.w3.org/2000/svg';
@@ -33,6 +33,7 @@ export class Explore extends EventTarget {
 		super();
 		this.universe = universe;
 		this.values = Object.fromEntries(Object.keys(LINES).map((name) => [name, []]));
+		this.marks = {}; // by name: { total, at: s, rate } from which the next rate is taken
 		this.open = new Set(); // groups
 		$('#search').addEventListener('input', () => this.list());
 		$('#tree').addEventListener('click', (e) => {
@@ -92,6 +93,14 @@ export class Explore extends EventTarget {
 			values.shift();
 		if (!$('#objects').hidden)
 			this.draw(name, values);
+	}
+
+	// Adds the rate at which a total grows, as a mean over a second.
+	addRate(name, total, now = performance.now() / 1000) {
+		const mark = this.marks[name] ??= { total, at: now, rate: 0 }, span = now - mark.at;
+		if (span >= 1)
+			Object.assign(mark, { total, at: now, rate: Math.max(0, total - mark.total) / span });
+		this.add(name, mark.rate);
 	}
 
 	drop(...names) {

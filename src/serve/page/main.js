@@ -423,8 +423,11 @@ universe.addEventListener('statistics', (e) => {
 	universe.ended = e.detail.ended;
 	explore.add('awake', e.detail.awake);
 	explore.add('pace', universe.paused || universe.ended ? 0 : universe.speed);
+	explore.addRate('cpu', e.detail.cpu);
 	if (e.detail.energy !== null)
 		explore.add('energy', e.detail.energy);
+	if (e.detail.penetration !== null)
+		explore.add('penetration', 1000 * e.detail.penetration);
 	panel.statistics(e.detail);
 });
 setInterval(() => {
