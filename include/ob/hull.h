@@ -28,6 +28,9 @@ typedef struct ob_hull_edge {
 // A compound is a body of several convex parts. Its hull holds them all, and is what planes touch; volume, moments and
 // frame are those of the parts, the thickness is the least of theirs. The hulls of its parts follow it by number, in the
 // compound's frame: the origin may lie outside a part.
+//
+// A part may be a sphere, a capsule or a cylinder. Then its polyhedron is its look: corners on its surface. The compound's
+// own hull is then a box about its parts, and planes touch each part.
 typedef struct ob_hull {
 	uint32_t corners, faces, edges; // 4 .., 4 .., 6 ..
 	uint16_t parts; // of a compound: so many hulls after this one; 0: the body is this hull
@@ -40,6 +43,9 @@ typedef struct ob_hull {
 	ob_vec3 inertia; // m^2, principal moments per kilogram; a part's are about its own centre
 	ob_vec3 centre; // m, the origin in the frame of the original points; a part's own centre in the compound's frame
 	ob_quat frame; // body's frame to that of the original points; a part's principal frame to the compound's
+	uint32_t round; // of a round part: its ob_shape; of a compound: number of such parts
+	uint32_t zero;
+	ob_vec3 size; // of a round part: see ob_shape; about its own centre and frame
 	ob_vec3 corner[OB_HULL_CORNERS_MAX]; // m
 	ob_vec3 normal[OB_HULL_FACES_MAX]; // unit, outward
 	double offset[OB_HULL_FACES_MAX]; // m, distance of the face from the origin

@@ -5,6 +5,7 @@
 #include "contact/pairs.h"
 #include "contact/support.h"
 #include "motion/drift.h"
+#include "shape/part.h"
 #include "shape/shape.h"
 
 typedef void pair_function(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
@@ -19,8 +20,24 @@ static void flip(ob_manifold *m)
 	m->normal = ob_scale(m->normal, -1);
 }
 
+const ob_placed *ob_placed_own(const ob_placed *x, ob_placed *room)
+{
+	if (!ob_part_is_round(x->hull))
+		return x;
+	*room = *x;
+	room->shape = (ob_shape)x->hull->round;
+	room->size = x->hull->size;
+	room->hull = NULL;
+	ob_part_enter(x->hull, &room->p, &room->r);
+	room->v = ob_add(x->v, ob_cross(x->w, ob_sub(room->p, x->p)));
+	return room;
+}
+
 bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
+	ob_placed part[2];
+	a = ob_placed_own(a, &part[0]);
+	b = ob_placed_own(b, &part[1]);
 	if (pair_functions[a->shape][b->shape]) {
 		pair_functions[a->shape][b->shape](a, b, margin, out);
 	} else if (pair_functions[b->shape][a->shape]) {

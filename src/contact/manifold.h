@@ -21,8 +21,11 @@ typedef struct ob_placed {
 	// does not count as closing; 0: any closing counts
 	double far_future;
 	ob_vec3 a; // m/s^2, external acceleration: a standing cylinder has a point where it presses most on the rim
-	const ob_hull *hull; // NULL unless the shape needs one
+	const ob_hull *hull; // NULL unless the shape needs one; a round part's body has its shape, size, pose and rates
 } ob_placed;
+
+// Returns the shape itself, or in "room" that of a round part, in its own frame, with the velocity of its centre.
+const ob_placed *ob_placed_own(const ob_placed *x, ob_placed *room);
 
 typedef struct ob_manifold {
 	ob_vec3 normal; // unit, from b to a; without points a separating axis, or 0 if none is known

@@ -4,14 +4,17 @@
 #define OB_CONTACT_SUPPORT_H
 
 #include "contact/manifold.h"
+#include "shape/part.h"
 
 // Support point: the farthest point of the shape along n (world frame, any length). Boxes, cylinders, capsules, hulls.
 ob_vec3 ob_support(const ob_placed *x, ob_vec3 n);
 
-// Middle of the shape (m): its centre, or of a compound's part that does not hold the body's centre, its own.
+// Middle of the shape (m): its centre, or of a compound's part that is round or does not hold the body's centre, its own.
 static inline ob_vec3 ob_middle(const ob_placed *x)
 {
-	return x->hull && x->hull->inner < 0 ? ob_add(x->p, ob_rotate(&x->r, x->hull->centre)) : x->p;
+	return x->hull && (x->hull->inner < 0 || ob_part_is_round(x->hull))
+		       ? ob_add(x->p, ob_rotate(&x->r, x->hull->centre))
+		       : x->p;
 }
 
 // Extent of the shape from its centre along n, times the length of n (m): a convex function of n.

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "elementary/elementary.h"
+#include "shape/shape.h"
 
 static_assert(sizeof(ob_hull_edge) == 4 && OB_HULL_CORNERS_MAX <= UINT8_MAX && OB_HULL_FACES_MAX <= UINT8_MAX,
 	      "indices of corners and faces have a byte");
@@ -519,6 +520,75 @@ bool ob_hull_set_inertia(ob_hull *h, ob_vec3 inertia, ob_error *e)
 	       ob_fail(e, "inertia: expected the origin, which is the centre of mass then, well inside the hull");
 }
 
+// ---- round parts
+
+// Adds points of a circle about z, n of them, to those of a part.
+static uint32_t add_ring(ob_vec3 *point, uint32_t count, uint32_t n, double radius, double z)
+{
+	for (uint32_t i = 0; i < n; i++) {
+		double s, c;
+		ob_sincos(2 * M_PI * i / n, &s, &c);
+		point[count++] = ob_v3(radius * c, radius * s, z);
+	}
+	return count;
+}
+
+// Finds points of a round shape: its look.
+static uint32_t points_of_round(ob_shape shape, ob_vec3 size, ob_vec3 *point)
+{
+	enum { RIM = 32, SLICES = 10, RINGS = 3 };
+	uint32_t n = 0;
+	if (ob_shape_is(shape, OB_RIMMED))
+		return add_ring(point, add_ring(point, 0, RIM, size.x, -size.y), RIM, size.x, size.y);
+	const double half = ob_shape_is(shape, OB_AXIAL) ? size.y : 0;
+	for (int side = -1; side <= 1; side += 2) {
+		point[n++] = ob_v3(0, 0, side * (half + size.x));
+		for (int i = half > 0 || side < 0 ? 0 : 1; i < RINGS; i++) {
+			double s, c;
+			ob_sincos(M_PI / 2 * i / RINGS, &s, &c);
+			n = add_ring(point, n, SLICES, size.x * c, side * (half + size.x * s));
+		}
+	}
+	return n;
+}
+
+static bool build_round(const ob_hull_part *p, ob_hull *out, ob_error *e)
+{
+	ob_vec3 point[OB_HULL_CORNERS_MAX];
+	const ob_mat3 r = ob_quat_matrix(p->pose.q);
+	const uint32_t n = points_of_round(p->round, p->size, point);
+	for (uint32_t i = 0; i < n; i++)
+		point[i] = ob_add(p->pose.p, ob_rotate(&r, point[i]));
+	if (!ob_hull_build(point, n, out, e))
+		return false;
+	move_frame(out, p->pose.p, &r);
+	out->round = p->round;
+	out->size = p->size;
+	out->centre = p->pose.p;
+	out->frame = p->pose.q;
+	out->volume = ob_shape_volume(p->round, p->size, NULL);
+	out->inertia = ob_shape_inertia(p->round, p->size, NULL, 1);
+	out->thickness = ob_shape_thickness(p->round, p->size);
+	return true;
+}
+
+// Radius of the smallest ball about the origin around a round part.
+static double radius_of_round(const ob_hull *part)
+{
+	const ob_mat3 r = ob_quat_matrix(part->frame);
+	const ob_vec3 z = ob_column(&r, 2);
+	const double half = ob_shape_is(part->round, OB_AXIAL) ? part->size.y : 0;
+	double most = 0;
+	for (int side = -1; side <= 1; side += 2) {
+		const ob_vec3 end = ob_madd(part->centre, side * half, z);
+		const double along = ob_dot(end, z), across = ob_norm(ob_madd(end, -along, z));
+		const double rim = across + part->size.x;
+		most = fmax(most, ob_shape_is(part->round, OB_RIMMED) ? sqrt(along * along + rim * rim)
+								      : ob_norm(end) + part->size.x);
+	}
+	return most;
+}
+
 // ---- compounds
 
 // Adds m (kg) times the tensor of a part about the point "centre" (m): its own moments, and those of its distance.
@@ -563,35 +633,27 @@ static parts_mass weigh(const ob_hull_part *part, uint32_t parts, const ob_hull 
 	return out;
 }
 
-// Moves a compound's hull and those of its parts into the frame of its mass.
-static void join_parts(ob_hull *out, uint32_t parts, const parts_mass *m)
+// Moves the hulls of parts into the frame of the compound's mass.
+static void move_parts(ob_hull *hull, uint32_t parts, const parts_mass *m)
 {
 	const ob_mat3 turn = ob_quat_matrix(m->frame);
-	const ob_quat back = { m->frame.w, -m->frame.x, -m->frame.y, -m->frame.z };
-	for (uint32_t i = 0; i <= parts; i++) {
-		ob_hull *h = &out[i];
+	for (uint32_t i = 0; i < parts; i++) {
+		ob_hull *h = &hull[i];
 		move_frame(h, m->centre, &turn);
-		h->centre = i ? ob_rotate_back(&turn, ob_sub(h->centre, m->centre)) : m->centre;
-		h->frame = i ? ob_quat_mul(back, h->frame) : m->frame;
-		h->is_part = i > 0;
-		out->thickness = fmin(out->thickness, h->thickness);
+		h->centre = ob_rotate_back(&turn, ob_sub(h->centre, m->centre));
+		h->frame = ob_quat_mul(ob_quat_conjugate(m->frame), h->frame);
+		h->is_part = 1;
+		if (h->round)
+			h->radius = radius_of_round(h);
 	}
-	out->parts = (uint16_t)parts;
-	out->volume = m->volume;
-	out->inertia = m->inertia;
 }
 
-bool ob_hull_build_compound(const ob_hull_part *part, uint32_t parts, ob_vec3 inertia, ob_hull *out, uint32_t *failed,
-			    ob_error *e)
+// Hull of the points of all parts, in their frame.
+static bool hull_of_all(const ob_hull_part *part, uint32_t parts, ob_hull *out, ob_error *e)
 {
 	size_t all = 0;
-	for (*failed = 1; *failed <= parts; ++*failed) {
-		const ob_hull_part *p = &part[*failed - 1];
-		if (!ob_hull_build(p->point, p->points, &out[*failed], e))
-			return false;
-		all += p->points;
-	}
-	*failed = 0;
+	for (uint32_t i = 0; i < parts; i++)
+		all += part[i].points;
 	ob_vec3 *point = calloc(all, sizeof *point), *at = point;
 	if (!point)
 		return ob_fail(e, "no memory");
@@ -599,7 +661,50 @@ bool ob_hull_build_compound(const ob_hull_part *part, uint32_t parts, ob_vec3 in
 		memcpy(at, part[i].point, part[i].points * sizeof *at);
 	const bool built = ob_hull_build(point, all, out, e);
 	free(point);
-	if (!built)
+	return built;
+}
+
+// Box about moved parts, along the axes of the compound. Its ball is that about the parts.
+static bool box_of_all(const ob_hull *part, uint32_t parts, ob_hull *out, ob_error *e)
+{
+	static const ob_vec3 axis[] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+	const ob_mat3 same = ob_quat_matrix(ob_quat_identity());
+	double high[6], radius = 0;
+	ob_vec3 corner[8];
+	for (int k = 0; k < 6; k++) {
+		high[k] = -INFINITY;
+		for (uint32_t i = 0; i < parts; i++) {
+			const ob_vec3 n = ob_scale(axis[k % 3], k < 3 ? 1 : -1);
+			high[k] = fmax(high[k], ob_dot(n, ob_shape_hull.farthest(NULL, &part[i], &n)));
+		}
+	}
+	for (uint32_t i = 0; i < parts; i++)
+		radius = fmax(radius, part[i].radius);
+	for (int k = 0; k < 8; k++)
+		corner[k] = ob_v3(k & 1 ? high[0] : -high[3], k & 2 ? high[1] : -high[4], k & 4 ? high[2] : -high[5]);
+	if (!ob_hull_build(corner, 8, out, e))
+		return false;
+	move_frame(out, ob_v3(0, 0, 0), &same);
+	out->radius = radius;
+	return true;
+}
+
+static bool build_part(const ob_hull_part *p, ob_hull *out, ob_error *e)
+{
+	return p->points ? ob_hull_build(p->point, p->points, out, e) : build_round(p, out, e);
+}
+
+bool ob_hull_build_compound(const ob_hull_part *part, uint32_t parts, ob_vec3 inertia, ob_hull *out, uint32_t *failed,
+			    ob_error *e)
+{
+	uint32_t round = 0;
+	for (*failed = 1; *failed <= parts; ++*failed) {
+		if (!build_part(&part[*failed - 1], &out[*failed], e))
+			return false;
+		round += out[*failed].round != 0;
+	}
+	*failed = 0;
+	if (!round && !hull_of_all(part, parts, out, e))
 		return false;
 	parts_mass m = weigh(part, parts, out + 1);
 	if (!isnan(inertia.x)) {
@@ -607,6 +712,21 @@ bool ob_hull_build_compound(const ob_hull_part *part, uint32_t parts, ob_vec3 in
 		m.frame = ob_quat_identity();
 		m.inertia = inertia;
 	}
-	join_parts(out, parts, &m);
+	move_parts(out + 1, parts, &m);
+	if (round) {
+		if (!box_of_all(out + 1, parts, out, e))
+			return false;
+	} else {
+		const ob_mat3 turn = ob_quat_matrix(m.frame);
+		move_frame(out, m.centre, &turn);
+	}
+	for (uint32_t i = 1; i <= parts; i++)
+		out->thickness = fmin(out->thickness, out[i].thickness);
+	out->centre = m.centre;
+	out->frame = m.frame;
+	out->parts = (uint16_t)parts;
+	out->round = round;
+	out->volume = m.volume;
+	out->inertia = m.inertia;
 	return ob_hull_makes_sense(out) || ob_fail(e, "expected the centre of mass inside of the hull of its parts");
 }

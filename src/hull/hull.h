@@ -14,11 +14,14 @@ enum { OB_HULL_POINTS_MAX = 1 << 14 };
 // without a place, on fewer than four points, all in one plane, too thin, too many corners, or not finite. Thread-safe.
 bool ob_hull_build(const ob_vec3 *point, size_t points, ob_hull *out, ob_error *e);
 
-// A convex part of a compound: its points (m), in the frame of the compound's author.
+// A convex part of a compound, in the frame of the compound's author: a hull of points, or a round shape.
 typedef struct ob_hull_part {
-	const ob_vec3 *point;
-	size_t points;
+	const ob_vec3 *point; // m
+	size_t points; // 0: a round shape
 	double density; // kg/m^3, or in any unit if the parts' ratios alone matter
+	ob_shape round; // sphere, capsule or cylinder
+	ob_vec3 size; // m, as of ob_shape
+	ob_pose pose;
 } ob_hull_part;
 
 // Builds the hulls of a compound and of its parts, of which there are 1 to OB_HULL_PARTS_MAX: out[0], and out[1] ..

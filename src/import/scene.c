@@ -215,8 +215,8 @@ static void add_moving(writer *w, int body)
 		leave_out(w, "%s collides as the hull of its %u geoms, with %u corners, up to %.2g m inside it",
 			  p->name, p->solid.geoms, p->solid.hull->corners, p->solid.inside);
 	else if (p->solid.inside > 0)
-		leave_out(w, "%s collides as %u hulls of its geoms, up to %.2g m inside them", p->name, p->solid.pieces,
-			  p->solid.inside);
+		leave_out(w, "%s collides as %u parts for its geoms, up to %.2g m inside them", p->name,
+			  p->solid.pieces, p->solid.inside);
 	if (p->solid.shape == OB_SHAPE_NONE)
 		give_box(w, p);
 }
@@ -357,6 +357,13 @@ static void write_piece(const writer *w, const ob_imported_piece *p)
 		write_pose(w, &p->pose);
 		return;
 	}
+	if (p->round) {
+		fprintf(w->out, "shape = \"%s\", radius = %.17g", ob_shape_name(p->round), p->size.x);
+		if (p->size.y > 0)
+			fprintf(w->out, ", length = %.17g", 2 * p->size.y);
+		write_pose(w, &p->pose);
+		return;
+	}
 	fputs("points = {", w->out);
 	for (uint32_t k = 0; k < p->points; k++)
 		fprintf(w->out, "%s{ %.17g, %.17g, %.17g }", k ? ", " : " ", p->point[k].x, p->point[k].y,
@@ -367,12 +374,13 @@ static void write_piece(const writer *w, const ob_imported_piece *p)
 // Writes the parts of a compound, or the points of a hull.
 static void write_pieces(const writer *w, const ob_imported_solid *s)
 {
-	fputs(s->pieces > 1 ? "parts = { { " : "", w->out);
+	const bool compound = ob_solid_is_compound(s);
+	fputs(compound ? "parts = { { " : "", w->out);
 	for (uint32_t i = 0; i < s->pieces; i++) {
 		fputs(i ? " }, { " : "", w->out);
 		write_piece(w, &s->piece[i]);
 	}
-	fputs(s->pieces > 1 ? " } }" : "", w->out);
+	fputs(compound ? " } }" : "", w->out);
 }
 
 static void write_shape(const writer *w, const ob_imported_solid *s)
@@ -420,7 +428,8 @@ static void write_look(writer *w, const part *p, int number)
 static void write_part(writer *w, const part *p, int groups)
 {
 	const ob_imported_solid *s = &p->solid;
-	fprintf(w->out, "%s { name = \"%s\", ", s->pieces > 1 ? "compound" : ob_shape_name(s->shape), p->name);
+	fprintf(w->out, "%s { name = \"%s\", ", ob_solid_is_compound(s) ? "compound" : ob_shape_name(s->shape),
+		p->name);
 	if (s->shape == OB_SHAPE_PLANE) {
 		write_plane(w, p);
 	} else {
@@ -715,13 +724,12 @@ static void write_excluded(writer *w)
 static ob_solid solid_of(const part *p, uint32_t k)
 {
 	const ob_imported_solid *s = &p->solid;
+	if (ob_solid_is_compound(s))
+		return ob_solid_of(s->shape, ob_hull_size(s->hull + 1 + k), s->pose, s->hull + 1 + k);
 	ob_solid out = { s->shape, s->size, s->pose.p, ob_quat_matrix(s->pose.q), s->hull };
 	if (!s->hull)
 		return out;
-	out.hull += s->pieces > 1 ? 1 + k : 0;
 	out.size = ob_hull_size(out.hull);
-	if (s->pieces > 1)
-		return out;
 	const ob_mat3 r = out.r;
 	out.p = ob_add(out.p, ob_rotate(&r, s->hull->centre));
 	out.r = ob_quat_matrix(ob_quat_mul(s->pose.q, s->hull->frame));

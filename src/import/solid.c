@@ -207,17 +207,29 @@ static double standing_out(const group *g, const ob_imported_piece *piece)
 	return most > alike * ob_norm(piece->point[0]) ? most : 0;
 }
 
-// Makes the piece of the only geometry of the group if that is a box.
-static bool take_box(const group *g, ob_imported_piece *to)
+static bool is_round(const group *g)
+{
+	ob_vec3 size;
+	return g->geom >= 0 && ob_shape_is(shape_of(g->d->model, g->geom, &size), OB_ROUND);
+}
+
+// Makes the piece of the only geometry of the group if that is a box, or round.
+static bool take_exact_piece(const group *g, ob_imported_piece *to)
 {
 	const mjModel *m = g->d->model;
-	if (g->geom < 0 || m->geom_type[g->geom] != mjGEOM_BOX)
+	ob_vec3 size;
+	const ob_shape shape = g->geom < 0 ? OB_SHAPE_NONE : shape_of(m, g->geom, &size);
+	if (shape != OB_SHAPE_BOX && !ob_shape_is(shape, OB_ROUND))
 		return false;
 	const ob_mat3 r = ob_quat_matrix(g->frame.q);
 	const ob_vec3 off = ob_sub(vec(g->d->data->geom_xpos + 3 * g->geom), g->frame.p);
-	*to = (ob_imported_piece){ .half = vec(m->geom_size + 3 * g->geom), .points = 8 };
-	to->pose.p = ob_rotate_back(&r, off);
+	*to = (ob_imported_piece){ .pose.p = ob_rotate_back(&r, off) };
 	to->pose.q = ob_quat_mul(ob_quat_conjugate(g->frame.q), quat_of(g->d->data->geom_xmat + 9 * g->geom));
+	if (shape != OB_SHAPE_BOX) {
+		to->round = shape, to->size = size;
+		return true;
+	}
+	to->half = size, to->points = 8;
 	const ob_mat3 turn = ob_quat_matrix(to->pose.q);
 	for (uint32_t k = 0; k < 8; k++)
 		to->point[k] = ob_add(to->pose.p, ob_rotate(&turn, ob_box_corner(to->half, k)));
@@ -231,11 +243,12 @@ static bool build(bool inward, ob_imported_solid *s)
 	const ob_vec3 any = ob_v3(1, 1, 1);
 	uint32_t failed;
 	ob_error e;
-	if (s->pieces == 1)
+	if (!ob_solid_is_compound(s))
 		return ob_hull_build(s->piece->point, s->piece->points, s->hull, &e) &&
 		       (!inward || ob_hull_set_inertia(s->hull, any, &e));
 	for (uint32_t i = 0; i < s->pieces; i++)
-		part[i] = (ob_hull_part){ s->piece[i].point, s->piece[i].points, 1 };
+		part[i] = (ob_hull_part){ s->piece[i].point, s->piece[i].points, 1,
+					  s->piece[i].round, s->piece[i].size,   s->piece[i].pose };
 	return ob_hull_build_compound(part, s->pieces, any, s->hull, &failed, &e) &&
 	       s->hull->inner >= least_inside * s->hull->thickness;
 }
@@ -251,7 +264,7 @@ static bool take_hulls(const group *g, uint32_t groups, bool inward, ob_imported
 	for (size_t k = 0; out->piece && out->hull && !done && k < sizeof directions / sizeof *directions; k++) {
 		bool fit = true;
 		for (uint32_t i = 0; i < groups; i++)
-			fit &= (groups > 1 && take_box(&g[i], &out->piece[i])) ||
+			fit &= ((groups > 1 || is_round(&g[i])) && take_exact_piece(&g[i], &out->piece[i])) ||
 			       add_points(&g[i], directions[k], &out->piece[i]);
 		done = fit && build(inward, out);
 	}
@@ -263,7 +276,7 @@ static bool take_hulls(const group *g, uint32_t groups, bool inward, ob_imported
 	out->shape = OB_SHAPE_HULL;
 	out->inside = 0;
 	for (uint32_t i = 0; i < groups; i++) {
-		out->piece[i].inside = standing_out(&g[i], &out->piece[i]);
+		out->piece[i].inside = out->piece[i].round ? 0 : standing_out(&g[i], &out->piece[i]);
 		out->inside = fmax(out->inside, out->piece[i].inside);
 	}
 	return true;
@@ -286,7 +299,8 @@ void ob_solid_of_body(const ob_drawn *d, int body, ob_imported_solid *out)
 	if (out->geoms == 1 && take_exact(d, body, each->geom, out))
 		return;
 	out->inertia = vec(m->body_inertia + 3 * body);
-	if (out->geoms > 1 && out->geoms <= OB_HULL_PARTS_MAX && take_hulls(each, out->geoms, true, out))
+	const bool compound = out->geoms > 1 || (out->geoms == 1 && is_round(each));
+	if (compound && out->geoms <= OB_HULL_PARTS_MAX && take_hulls(each, out->geoms, true, out))
 		return;
 	if (out->geoms)
 		take_hulls(&all, 1, true, out);

@@ -287,9 +287,8 @@ static uint32_t solids_of(const ob_snapshot *s, uint32_t id)
 static ob_solid solid_of(const ob_snapshot *s, uint32_t id, uint32_t k)
 {
 	const ob_passport *p = &s->passport[id];
-	const ob_pose pose = ob_snapshot_state(s, id).pose;
 	const ob_hull *hull = ob_snapshot_part(s, id, ob_snapshot_parts(s, id) ? k + 1 : 0);
-	return (ob_solid){ p->shape, p->size, pose.p, ob_quat_matrix(pose.q), hull };
+	return ob_solid_of(p->shape, p->size, ob_snapshot_state(s, id).pose, hull);
 }
 
 static void find_box(const ob_solid *solid, ob_pose pose, double bounds[6])
@@ -297,7 +296,11 @@ static void find_box(const ob_solid *solid, ob_pose pose, double bounds[6])
 	if (solid->hull)
 		ob_hull_bounds(solid->hull, pose, bounds);
 	else
-		ob_shape_bounds(solid->shape, solid->size, pose, bounds);
+		for (int i = 0; i < 3; i++) {
+			const double *r = solid->r.m[i], at = i == 0 ? solid->p.x : i == 1 ? solid->p.y : solid->p.z;
+			const double reach = ob_shape_extent(solid->shape, solid->size, ob_v3(r[0], r[1], r[2]));
+			bounds[i] = at - reach, bounds[i + 3] = at + reach;
+		}
 }
 
 // Fills item[] with solids: those of finite size, each with a box, from the front, and planes from the back.

@@ -2,7 +2,20 @@
 
 #include "elementary/elementary.h"
 #include "motion/hull_depth.h"
+#include "shape/part.h"
 #include "shape/shape.h"
+
+ob_solid ob_solid_of(ob_shape shape, ob_vec3 size, ob_pose pose, const ob_hull *hull)
+{
+	ob_solid out = { shape, size, pose.p, ob_quat_matrix(pose.q), hull };
+	if (!ob_part_is_round(hull))
+		return out;
+	ob_part_enter(hull, &out.p, &out.r);
+	out.shape = (ob_shape)hull->round;
+	out.size = hull->size;
+	out.hull = NULL;
+	return out;
+}
 
 // Half length (m) of the segment inside a capsule; 0 for a sphere.
 static double core_length(const ob_solid *s)

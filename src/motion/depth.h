@@ -13,6 +13,10 @@ typedef struct ob_solid {
 	const ob_hull *hull; // NULL unless the shape needs one
 } ob_solid;
 
+// Returns the solid of an object, or of its part; a round part is a solid of its own shape. hull: the part's, or the
+// object's; NULL: it has none.
+ob_solid ob_solid_of(ob_shape shape, ob_vec3 size, ob_pose pose, const ob_hull *hull);
+
 // Depth (m); <= 0: no overlap, and its negative is a lower bound of the distance. Closed forms, exact to rounding, for
 // spheres, capsules, planes and boxes in any pair but two planes (-infinity), and for cylinders with spheres and
 // planes. Boxes use separating axes (Gottschalk, Lin and Manocha 1996). Hulls with all but cylinders have closed forms,

@@ -1,5 +1,7 @@
 #include <ob/hull.h>
 
+#include "shape/shape.h"
+
 static bool is_length(double x)
 {
 	return x > 0 && isfinite(x);
@@ -22,13 +24,22 @@ static bool faces_make_sense(const ob_hull *h)
 	return true;
 }
 
+static bool roundness_makes_sense(const ob_hull *h)
+{
+	if (!h->is_part)
+		return h->round <= h->parts;
+	return !h->round ||
+	       (ob_shape_is((ob_shape)h->round, OB_ROUND) && h->round < OB_SHAPE_KINDS && is_length(h->size.x) &&
+		(!ob_shape_is((ob_shape)h->round, OB_AXIAL) || is_length(h->size.y)));
+}
+
 bool ob_hull_makes_sense(const ob_hull *h)
 {
 	const ob_quat q = h->frame;
 	const double norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
 	if (h->corners < 4 || h->corners > OB_HULL_CORNERS_MAX || h->faces < 4 || h->faces > OB_HULL_FACES_MAX ||
 	    h->edges != h->corners + h->faces - 2 || h->edges > OB_HULL_EDGES_MAX || h->parts > OB_HULL_PARTS_MAX ||
-	    h->is_part > 1 || (h->is_part && h->parts))
+	    h->is_part > 1 || (h->is_part && h->parts) || !roundness_makes_sense(h))
 		return false;
 	if (!is_length(h->radius) || !(h->is_part ? isfinite(h->inner) : is_length(h->inner)) ||
 	    !is_length(h->thickness) || !is_length(h->volume) || !ob_is_finite(h->inertia) ||

@@ -6,7 +6,7 @@
 
 // A new member of one of these structures may be needed to draw a record again: decide here.
 static_assert(sizeof(ob_passport) == 184 && sizeof(ob_motion) == 176, "members of /events and /motions");
-static_assert(sizeof(ob_hull) == 7008, "members of /hulls");
+static_assert(sizeof(ob_hull) == 7040, "members of /hulls");
 static_assert(sizeof(ob_joint_passport) == 312, "members of /joints");
 static_assert(sizeof(ob_camera_def) == 200 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
 
@@ -106,6 +106,8 @@ static const ob_record_member hull_members[] = {
 	HULL(inertia, OB_RECORD_VEC3),
 	HULL(centre, OB_RECORD_VEC3),
 	HULL(frame, OB_RECORD_QUAT),
+	HULL(round, OB_RECORD_U32),
+	HULL(size, OB_RECORD_VEC3),
 	HULL_ARRAY(corner, OB_RECORD_VEC3),
 	HULL_ARRAY(normal, OB_RECORD_VEC3),
 	HULL_ARRAY(offset, OB_RECORD_F64),

@@ -3,6 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "shape/part.h"
+#include "shape/shape.h"
+
 enum { VERTICES_MAX = 16384, INDICES_MAX = 65536 };
 
 // Segments around the axis; multiples of 4, so that a ball has an equator.
@@ -138,15 +141,30 @@ void ob_mesh_set_finish(ob_mesh_set *s)
 	free(s->index);
 }
 
+// Normal of a round part at a corner of face f: that of the face for the caps of a cylinder.
+static ob_vec3 normal_of_round(const ob_hull *part, uint32_t f, ob_vec3 corner)
+{
+	const double flat = .99; // cosine
+	const ob_mat3 r = ob_quat_matrix(part->frame);
+	const ob_vec3 z = ob_column(&r, 2), from = ob_sub(corner, part->centre);
+	const bool rimmed = ob_shape_is((ob_shape)part->round, OB_RIMMED);
+	if (rimmed && fabs(ob_dot(z, part->normal[f])) > flat)
+		return part->normal[f];
+	const double half = ob_shape_is((ob_shape)part->round, OB_AXIAL) ? part->size.y : 0, along = ob_dot(from, z);
+	const ob_vec3 out = ob_madd(from, -fmin(half, fmax(-half, along)), z);
+	return ob_scale(out, 1 / ob_norm(out));
+}
+
 uint32_t ob_mesh_of_hull(const ob_hull *h, ob_vertex *vertex)
 {
 	uint32_t n = 0;
+	const bool round = ob_part_is_round(h);
 	for (uint32_t f = 0; f < h->faces; f++)
 		for (uint32_t k = h->first[f] + 1u; k + 1 < h->first[f + 1]; k++) {
 			const uint8_t corner[3] = { h->loop[h->first[f]], h->loop[k], h->loop[k + 1] };
-			const ob_vec3 m = h->normal[f];
 			for (int i = 0; i < 3; i++, n++) {
-				const ob_vec3 c = h->corner[corner[i]];
+				const ob_vec3 c = h->corner[corner[i]],
+					      m = round ? normal_of_round(h, f, c) : h->normal[f];
 				if (vertex)
 					vertex[n] = (ob_vertex){ { (float)c.x, (float)c.y, (float)c.z },
 								 { (float)m.x, (float)m.y, (float)m.z } };

@@ -64,10 +64,14 @@ const ob_hull *ob_builder_hull(lua_State *L, ob_builder *b, const ob_points *p, 
 
 // ---- compounds
 
+enum { SPHERE, CAPSULE, CYLINDER, UNSAID }; // numbers of the choices of shape
+
 // Fields of a part; NaN = not set.
 typedef struct part {
 	ob_vec3 size, at;
 	ob_points points;
+	uint32_t shape;
+	double radius, length;
 	ob_quat q, rotation;
 	double density;
 } part;
@@ -77,13 +81,22 @@ typedef struct part {
 static const ob_field part_fields[] = {
 	F(size, .kind = OB_FIELD_VECTOR, .low = OB_LENGTH_LEAST, .high = OB_LENGTH_MOST),
 	F(points, .kind = OB_FIELD_POINTS, .low = -OB_LENGTH_MOST, .high = OB_LENGTH_MOST),
+	F(shape, .kind = OB_FIELD_CHOICE, .choices = "sphere|capsule|cylinder"),
+	F(radius, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST, .high = OB_LENGTH_MOST),
+	F(length, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST, .high = OB_LENGTH_MOST),
 	F(at, .kind = OB_FIELD_VECTOR, .low = -OB_LENGTH_MOST, .high = OB_LENGTH_MOST),
 	F(q, .kind = OB_FIELD_QUATERNION),
 	F(rotation, .kind = OB_FIELD_ROTATION),
 	F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9),
 };
 
-static const part no_part = { .size = { NAN, NAN, NAN }, .q = { .w = NAN }, .rotation = { .w = NAN }, .density = NAN };
+static const part no_part = { .size = { NAN, NAN, NAN },
+			      .shape = UNSAID,
+			      .radius = NAN,
+			      .length = NAN,
+			      .q = { .w = NAN },
+			      .rotation = { .w = NAN },
+			      .density = NAN };
 
 // Parts as they are read. Their points are Lua's memory, so that an error leaves nothing behind.
 typedef struct parts_read {
@@ -92,14 +105,31 @@ typedef struct parts_read {
 	uint32_t densities; // number of parts that have one
 } parts_read;
 
+static ob_quat attitude_of(const part *p)
+{
+	return !isnan(p->q.w) ? p->q : !isnan(p->rotation.w) ? p->rotation : ob_quat_identity();
+}
+
 // Turns the part's points into the compound's frame; to: room for them.
 static void place_points(const part *p, const ob_vec3 *from, uint32_t count, ob_vec3 *to)
 {
-	const ob_mat3 r = ob_quat_matrix(!isnan(p->q.w)          ? p->q
-					 : !isnan(p->rotation.w) ? p->rotation
-								 : ob_quat_identity());
+	const ob_mat3 r = ob_quat_matrix(attitude_of(p));
 	for (uint32_t i = 0; i < count; i++)
 		to[i] = ob_add(p->at, ob_rotate(&r, from[i]));
+}
+
+// Takes a part with a radius.
+static void take_round(lua_State *L, const char *where, const part *p, ob_hull_part *to)
+{
+	static const ob_shape shape[] = { OB_SHAPE_SPHERE, OB_SHAPE_CAPSULE, OB_SHAPE_CYLINDER };
+	if (p->shape == UNSAID && !isnan(p->length))
+		ob_sandbox_fail(L, "%s.shape: expected \"capsule\" or \"cylinder\" with a length", where);
+	const uint32_t at = p->shape == UNSAID ? SPHERE : p->shape;
+	if (isnan(p->length) != (at == SPHERE))
+		ob_sandbox_fail(L, "%s.length: expected %s", where, at == SPHERE ? "none for a sphere" : "one");
+	to->round = shape[at];
+	to->size = ob_v3(p->radius, at == SPHERE ? 0 : .5 * p->length, 0);
+	to->pose = (ob_pose){ p->at, attitude_of(p) };
 }
 
 // Reads the part at the top of the stack. Its points stay below it, on the stack.
@@ -110,17 +140,27 @@ static void read_part(lua_State *L, parts_read *to)
 	ob_vec3 corner[8];
 	snprintf(where, sizeof where, "compound.parts[%u]", to->count + 1);
 	ob_fields_read(L, -1, where, part_fields, sizeof part_fields / sizeof *part_fields, &p);
-	if (isnan(p.size.x) == !p.points.at)
-		ob_sandbox_fail(L, "%s: expected either size, of a box, or points, of a hull", where);
+	if (!isnan(p.size.x) + (p.points.at != NULL) + !isnan(p.radius) != 1)
+		ob_sandbox_fail(L, "%s: expected either size, of a box, or points, of a hull, or radius", where);
+	if (isnan(p.radius) && (p.shape != UNSAID || !isnan(p.length)))
+		ob_sandbox_fail(L, "%s.radius: expected one with a shape or a length", where);
 	if (!isnan(p.q.w) && !isnan(p.rotation.w))
 		ob_sandbox_fail(L, "%s.rotation: expected either q or rotation, got both", where);
+	ob_hull_part *next = &to->part[to->count++];
+	*next = (ob_hull_part){ .density = isnan(p.density) ? 1 : p.density };
+	to->densities += !isnan(p.density);
+	if (!isnan(p.radius)) {
+		take_round(L, where, &p, next);
+		lua_pushnil(L); // in place of points
+		return;
+	}
 	for (uint32_t k = 0; !p.points.at && k < 8; k++)
 		corner[k] = ob_box_corner(ob_scale(p.size, .5), k);
 	const uint32_t count = p.points.at ? p.points.count : 8;
 	ob_vec3 *points = lua_newuserdatauv(L, count * sizeof *points, 0);
 	place_points(&p, p.points.at ? p.points.at : corner, count, points);
-	to->densities += !isnan(p.density);
-	to->part[to->count++] = (ob_hull_part){ points, count, isnan(p.density) ? 1 : p.density };
+	next->point = points;
+	next->points = count;
 }
 
 static void read_parts(lua_State *L, parts_read *to)
@@ -145,6 +185,9 @@ static uint64_t hash_parts(const parts_read *x, ob_vec3 inertia)
 	for (uint32_t i = 0; i < x->count; i++) {
 		const ob_hull_part *p = &x->part[i];
 		hash = ob_hash_on(hash, p->point, p->points * sizeof *p->point);
+		hash = ob_hash_on(hash, &p->round, sizeof p->round);
+		hash = ob_hash_on(hash, &p->size, sizeof p->size);
+		hash = ob_hash_on(hash, &p->pose, sizeof p->pose);
 		hash = ob_hash_on(hash, &p->density, sizeof p->density);
 	}
 	return hash_inertia(hash, inertia);

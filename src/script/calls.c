@@ -237,7 +237,7 @@ static ob_solid solid_of(const ob_script_runner *r, uint32_t id, uint32_t part)
 {
 	const ob_passport *p = ob_passport_of(r->u, id);
 	const ob_state s = ob_published_at(ob_newest_motion(r->u, id), p, now_of(r));
-	return (ob_solid){ p->shape, p->size, s.pose.p, ob_quat_matrix(s.pose.q), ob_part_of(r->u, p, part) };
+	return ob_solid_of(p->shape, p->size, s.pose, ob_part_of(r->u, p, part));
 }
 
 // True if the two overlap, compounds by any of their parts. L is charged for it.

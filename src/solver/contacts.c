@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "shape/part.h"
 #include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/contact_order.h"
@@ -67,7 +68,8 @@ static uint32_t free_colour(const ob_island_work *w, const ob_contact *contact, 
 static ob_batch_kind kind_of(const ob_solver *s, const ob_contact *contact)
 {
 	const ob_island_work *w = &s->island;
-	ob_shape a = w->body[contact->a].shape, b = w->body[contact->b].shape;
+	const ob_shape a = ob_part_shape(w->body[contact->a].shape, contact->part[0]),
+		       b = ob_part_shape(w->body[contact->b].shape, contact->part[1]);
 	bool point = ob_shape_is(a, OB_ISOTROPIC) || ob_shape_is(b, OB_ISOTROPIC); // their boxes have four
 	return (point && !s->methods.boxes ? OB_KIND_POINT : OB_KIND_FULL) |
 	       (contact->mu > 0 ? OB_KIND_FULL : OB_KIND_FRICTIONLESS);
@@ -125,9 +127,11 @@ static void leave_lane(ob_island_work *w, ob_contact *contact)
 }
 
 // True if the area over which the two touch may be a polygon: one of them is a hull.
-static bool may_have_area(const ob_body *a, const ob_body *b)
+static bool may_have_area(const ob_contact *contact, const ob_body *a, const ob_body *b)
 {
 	const bool sides_a = ob_shape_is(a->shape, OB_SIDED), sides_b = ob_shape_is(b->shape, OB_SIDED);
+	if (ob_part_is_round(contact->part[0]) || ob_part_is_round(contact->part[1]))
+		return false;
 	return (sides_a || a->hull || ob_shape_is(a->shape, OB_UNBOUNDED)) &&
 	       (sides_b || b->hull || ob_shape_is(b->shape, OB_UNBOUNDED)) && (a->hull || b->hull);
 }
@@ -158,7 +162,7 @@ static void fill_lane(ob_island_work *w, ob_contact *contact, ob_vec3 normal, co
 			       .inv_inertia_b = b->inv_inertia };
 	ob_batch_set(&w->batch[contact->lane / OB_LANES], contact->lane % OB_LANES, &lane, &contact->friction_a,
 		     &contact->friction_b);
-	contact->area_due = contact->points > 2 && contact->mu > 0 && may_have_area(a, b);
+	contact->area_due = contact->points > 2 && contact->mu > 0 && may_have_area(contact, a, b);
 	w->areas_due |= contact->area_due;
 }
 
@@ -195,11 +199,16 @@ static int only_loaded(const saved_impulses *old)
 }
 
 // True if the point, at "arm" now, is on the rim on which it was. moved: m.
-static bool on_same_rim(const ob_body *body, ob_vec3 arm, ob_vec3 moved)
+static bool on_same_rim(const ob_body *body, const ob_hull *part, ob_vec3 arm, ob_vec3 moved)
 {
-	const ob_vec3 axis = ob_column(&body->r, 2);
-	return ob_shape_is(body->shape, OB_RIMMED) && ob_dot(axis, arm) * ob_dot(axis, ob_sub(arm, moved)) > 0 &&
-	       ob_norm(moved) < same_rim * body->size.x;
+	ob_vec3 centre = { 0, 0, 0 };
+	ob_mat3 r = body->r;
+	double radius = body->size.x;
+	if (ob_part_is_round(part))
+		radius = part->size.x, ob_part_enter(part, &centre, &r);
+	const ob_vec3 axis = ob_column(&r, 2), from = ob_sub(arm, centre);
+	return ob_shape_is(ob_part_shape(body->shape, part), OB_RIMMED) &&
+	       ob_dot(axis, from) * ob_dot(axis, ob_sub(from, moved)) > 0 && ob_norm(moved) < same_rim * radius;
 }
 
 // Matches points with old ones, nearest pairs first, so that the order of neither matters. Points are near if they are
@@ -247,16 +256,18 @@ static unsigned match_nearest(ob_contact *contact, const saved_impulses *old, do
 static void match_points(const ob_island_work *w, ob_contact *contact, const saved_impulses *old)
 {
 	const ob_body *ma = &w->body[contact->a], *mb = &w->body[contact->b];
-	const bool sphere = ob_shape_is(ma->shape, OB_ISOTROPIC) || ob_shape_is(mb->shape, OB_ISOTROPIC);
+	const ob_shape sa = ob_part_shape(ma->shape, contact->part[0]), sb = ob_part_shape(mb->shape, contact->part[1]);
+	const bool sphere = ob_shape_is(sa, OB_ISOTROPIC) || ob_shape_is(sb, OB_ISOTROPIC);
 	const double near = same_place * ob_min(ma->thickness, mb->thickness);
 	const unsigned taken = match_nearest(contact, old, sphere ? INFINITY : near * near);
-	if (contact->was[0] >= 0 || !(ob_shape_is(ma->shape, OB_RIMMED) || ob_shape_is(mb->shape, OB_RIMMED)))
+	if (contact->was[0] >= 0 || !(ob_shape_is(sa, OB_RIMMED) || ob_shape_is(sb, OB_RIMMED)))
 		return;
 	const int k = only_loaded(old);
 	if (k < 0 || taken >> k & 1)
 		return;
 	const ob_vec3 moved = ob_sub(contact->arm_a[0], old->arm[k]);
-	if (on_same_rim(ma, contact->arm_a[0], moved) || on_same_rim(mb, contact->arm_b[0], moved))
+	if (on_same_rim(ma, contact->part[0], contact->arm_a[0], moved) ||
+	    on_same_rim(mb, contact->part[1], contact->arm_b[0], moved))
 		contact->was[0] = (int8_t)k;
 }
 
@@ -304,7 +315,8 @@ static const double same_distance = 1e-9; // share of the squared distance: smal
 static void order_points(const ob_island_work *w, ob_contact *contact, double *gap)
 {
 	double far[OB_PAIR_POINTS];
-	const ob_shape sa = w->body[contact->a].shape, sb = w->body[contact->b].shape;
+	const ob_shape sa = ob_part_shape(w->body[contact->a].shape, contact->part[0]),
+		       sb = ob_part_shape(w->body[contact->b].shape, contact->part[1]);
 	const double of_a = ob_shape_is(sa, OB_UNBOUNDED) && contact->mu == 0 ? 0 : 1,
 		     of_b = ob_shape_is(sb, OB_UNBOUNDED) && contact->mu == 0 ? 0 : 1;
 	if (ob_shape_is(sa, OB_RIMMED) || ob_shape_is(sb, OB_RIMMED))

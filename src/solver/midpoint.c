@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "motion/drift.h"
+#include "shape/part.h"
 #include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/contacts.h"
@@ -25,10 +26,16 @@ static double least_change(const ob_island_work *w, uint32_t held)
 
 // ---- contacts that take part
 
-// True if a round body is on one that ends.
-static bool rolls_on(const ob_body *round, const ob_body *on)
+// True if a round body, or part, is on one that ends.
+static bool rolls_on(const ob_body *round, const ob_hull *part, const ob_body *on)
 {
-	return ob_shape_is(round->shape, OB_ROUND) && !ob_shape_is(on->shape, OB_UNBOUNDED);
+	return ob_shape_is(ob_part_shape(round->shape, part), OB_ROUND) && !ob_shape_is(on->shape, OB_UNBOUNDED);
+}
+
+// Radius of the ball around a body, or around a round part and its own centre.
+static double radius_of(const ob_body *body, const ob_hull *part)
+{
+	return ob_part_is_round(part) ? ob_shape_radius((ob_shape)part->round, part->size) : body->radius;
 }
 
 // Bounds the change of a row by turning in half the partial substep (m/s). The rows of a sphere turn with its centre,
@@ -38,8 +45,9 @@ static double change_bound(const ob_island_work *w, const ob_contact *contact)
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
 	double speed = ob_contact_speed(w, contact);
 	double turn = ob_contact_turn_rate(w, w->v, contact);
-	if (rolls_on(a, b) || rolls_on(b, a))
-		turn += speed / ob_min(a->radius, b->radius);
+	const ob_hull *const *part = contact->part;
+	if (rolls_on(a, part[0], b) || rolls_on(b, part[1], a))
+		turn += speed / ob_min(radius_of(a, part[0]), radius_of(b, part[1]));
 	return .5 * w->h * turn * speed;
 }
 

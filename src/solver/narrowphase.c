@@ -45,6 +45,9 @@ static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, do
 {
 	const double far = 1e30; // m: beyond all that moves within a run
 	ob_solver *s = with;
+	ob_placed part[2];
+	a = ob_placed_own(a, &part[0]);
+	b = ob_placed_own(b, &part[1]);
 	ob_budget_note(s, work_of_test(a, b));
 	out->disc_radius = 0;
 	out->valid_path = INFINITY;

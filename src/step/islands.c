@@ -290,13 +290,14 @@ static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 
 // ---- ballistic advance
 
-// True if the pair is one with a plane, or with a terrain that is a plane there.
+// True if the pair is one of a whole object with a plane, or with a terrain that is a plane there.
 static bool is_with_plane(const ob_sim *s, const ob_pair_key *k)
 {
 	ob_terrain_view view;
-	return s->data->schedule[k->a].state == OB_SCHEDULE_PLANE ||
-	       s->data->schedule[k->b].state == OB_SCHEDULE_PLANE ||
-	       (k->region && !k->part_a && !k->part_b && ob_terrain_see(s->u, k, &view) && view.flat);
+	return !k->part_a && !k->part_b &&
+	       (s->data->schedule[k->a].state == OB_SCHEDULE_PLANE ||
+		s->data->schedule[k->b].state == OB_SCHEDULE_PLANE ||
+		(k->region && ob_terrain_see(s->u, k, &view) && view.flat));
 }
 
 // True for a body near planes only, or two that are no compounds near each other and planes, with no resting contact, and

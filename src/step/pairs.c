@@ -274,8 +274,14 @@ static void renew_regions(ob_universe *u, uint32_t terrain, uint32_t id, uint64_
 		free(region);
 }
 
-// Adds a pair of the two, or one for each part of a compound. A plane touches the hull of all parts, a terrain each of
-// them.
+// Number of parts that each have a pair with a plane: if any of them is round. 0: the hull of all parts has one.
+static uint32_t parts_on_plane(const ob_universe *u, const ob_passport *p)
+{
+	const ob_hull *h = ob_hull_of(u, p);
+	return h && h->round ? ob_parts_of(u, p) : 0;
+}
+
+// Adds a pair of the two, or one for each part of a compound.
 static void add_pairs(ob_universe *u, uint32_t id, uint32_t other, uint64_t steps)
 {
 	ob_pair_key k = {
@@ -287,8 +293,8 @@ static void add_pairs(ob_universe *u, uint32_t id, uint32_t other, uint64_t step
 		return;
 	}
 	const bool plane = ob_shape_is(a->shape, OB_UNBOUNDED) || ob_shape_is(b->shape, OB_UNBOUNDED);
-	const uint32_t of_a = plane ? 0 : ob_parts_of(u, a), of_b = plane ? 0 : ob_parts_of(u, b);
-	add_part_pairs(u, k, of_a, of_b, steps);
+	uint32_t (*const parts_of)(const ob_universe *u, const ob_passport *p) = plane ? parts_on_plane : ob_parts_of;
+	add_part_pairs(u, k, parts_of(u, a), parts_of(u, b), steps);
 }
 
 void ob_pairs_measure(ob_universe *u, uint64_t steps)

@@ -8,7 +8,7 @@
 typedef struct copy {
 	ob_passport passport;
 	ob_hull hull;
-	ob_solid solid;
+	ob_pose pose;
 	float bounds[6];
 } copy;
 
@@ -19,29 +19,37 @@ static bool take(const ob_universe *u, uint32_t id, double time, copy *out)
 	const ob_passport *p = &out->passport;
 	if (!ob_universe_get_motion(u, id, &m))
 		return false;
-	const bool hulled = ob_shape_is(p->shape, OB_HULLED);
-	if (hulled && !ob_universe_get_hull(u, p->hull, &out->hull))
+	if (ob_shape_is(p->shape, OB_HULLED) && !ob_universe_get_hull(u, p->hull, &out->hull))
 		return false;
 	const ob_state s = ob_published_at(&m, p, time);
-	out->solid = (ob_solid){ p->shape, p->size, s.pose.p, ob_quat_matrix(s.pose.q), hulled ? &out->hull : NULL };
+	out->pose = s.pose;
 	return true;
 }
 
-// Copies the hull of part k of n of an object that was taken. n 0: it is no compound, and has its hull.
-static bool take_part(const ob_universe *u, uint32_t k, uint32_t n, copy *x)
+static bool has_hull(const copy *x)
 {
-	return !n || ob_universe_get_hull(u, x->passport.hull + k + 1, &x->hull);
+	return ob_shape_is(x->passport.shape, OB_HULLED);
+}
+
+// Makes the solid of part k of n of an object that was taken. n 0: it is no compound.
+static bool take_part(const ob_universe *u, uint32_t k, uint32_t n, copy *x, ob_solid *out)
+{
+	if (n && !ob_universe_get_hull(u, x->passport.hull + k + 1, &x->hull))
+		return false;
+	*out = ob_solid_of(x->passport.shape, x->passport.size, x->pose, has_hull(x) ? &x->hull : NULL);
+	return true;
 }
 
 // True if a part of one overlaps a part of the other. An object that is no compound is its only part.
 static bool overlap(const ob_universe *u, copy *a, copy *b)
 {
-	const uint32_t of_a = a->solid.hull ? a->hull.parts : 0, of_b = b->solid.hull ? b->hull.parts : 0;
+	const uint32_t of_a = has_hull(a) ? a->hull.parts : 0, of_b = has_hull(b) ? b->hull.parts : 0;
+	ob_solid one, other;
 	bool found = false;
 	for (uint32_t i = 0; !found && i <= of_a - (of_a > 0); i++)
 		for (uint32_t j = 0; !found && j <= of_b - (of_b > 0); j++)
-			found = take_part(u, i, of_a, a) && take_part(u, j, of_b, b) &&
-				ob_depth(&a->solid, &b->solid) > 0;
+			found = take_part(u, i, of_a, a, &one) && take_part(u, j, of_b, b, &other) &&
+				ob_depth(&one, &other) > 0;
 	return found;
 }
 

@@ -277,7 +277,7 @@ void ob_terrain_column(const ob_terrain *t, uint32_t triangle, double depth, ob_
 	corners_of(t, triangle, c);
 	*centre = ob_madd(ob_scale(ob_add(c[0], ob_add(c[1], c[2])), 1. / 3), .5, down);
 	out->corners = 6, out->faces = 5, out->edges = 9;
-	out->parts = 0, out->is_part = 1;
+	out->parts = 0, out->is_part = 1, out->round = 0;
 	for (int k = 0; k < 3; k++) {
 		out->corner[k] = ob_sub(c[k], *centre);
 		out->corner[k + 3] = ob_add(out->corner[k], down);
@@ -331,7 +331,7 @@ void ob_terrain_take(const ob_terrain *t, uint32_t region, ob_terrain_part *out)
 	reach[2] = ob_norm(half); // whatever the axes
 	ob_hull *h = &out->hull;
 	h->corners = 8, h->faces = h->edges = 0;
-	h->parts = 0, h->is_part = 1;
+	h->parts = 0, h->is_part = 1, h->round = 0;
 	h->centre = ob_madd(middle, r->offset - ob_dot(n, middle) - reach[2], n);
 	h->radius = 0;
 	for (uint32_t k = 0; k < h->corners; k++) {

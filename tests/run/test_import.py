@@ -14,6 +14,19 @@ import robots
 MODELS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "models")
 
 
+def rolled_off_centre(mass, radius, off, moment):
+	"""Way in a second of the centre of mass of a roller under gravity 1 ahead and 9 down, that lies ahead of its axis at first."""
+	def speed_up(turn, rate):
+		inertia = mass * (radius ** 2 + off ** 2 - 2 * radius * off * math.sin(turn)) + moment
+		change = -2 * mass * radius * off * math.cos(turn)
+		return (mass * (radius - off * math.sin(turn)) + 9 * mass * off * math.cos(turn) - .5 * change * rate ** 2) / inertia
+	turn, rate, h = 0, 0, 1e-4
+	for _ in range(round(1 / h)):
+		middle = turn + .5 * h * rate, rate + .5 * h * speed_up(turn, rate)
+		turn, rate = turn + h * middle[1], rate + h * speed_up(*middle)
+	return radius * turn + off * math.cos(turn)
+
+
 class Import(program.Case):
 	def convert(self, name):
 		"""The scene, its objects that move by name, and what it leaves out."""
@@ -49,7 +62,7 @@ class Import(program.Case):
 		self.assertRegex(scene, r'\nplane \{ name = "floor"')
 		self.assertRegex(scene, r'\nuniversal \{ "hand", "fore"')
 		self.assertRegex(scene, r'\nslider \{ "finger", "hand"')
-		self.assertRegex(scene, r'\ncompound \{ name = "upper", parts = \{ \{ points = .* \}, \{ size = \{ 0.08\d*, 0.12\d*, 0.1\d* \}, at = ')
+		self.assertRegex(scene, r'\ncompound \{ name = "upper", parts = \{ \{ shape = "capsule", .* \}, \{ size = \{ 0.08\d*, 0.12\d*, 0.1\d* \}, at = ')
 
 	def test_humanoid(self):
 		scene, _, said = self.compare("humanoid.xml")
@@ -107,6 +120,29 @@ class Import(program.Case):
 		self.assertEqual(len(re.findall(r"\{ size = ", scene)), 3)
 		found = dict(zip(bodies, robots.states(scene, bodies.values(), 2, self.directory.name)))
 		self.assertAlmostEqual(found["peg"]["at"][2], .09, 3)
+
+	def test_round_geoms(self):
+		"""Spheres, capsules and cylinders are exact, also the only one of a body, off its centre of mass: they roll."""
+		path = self.write("rollers.xml", """<mujoco><option gravity="1 0 -9"/><worldbody>
+			<geom type="plane" size="1 1 1"/>
+			<body name="axle" pos="0 0 .1"><freejoint/>
+				<geom type="sphere" size=".1" pos="0 -.3 0"/><geom type="sphere" size=".1" pos="0 .3 0"/>
+				<geom type="cylinder" size=".03 .2" euler="90 0 0"/>
+			</body>
+			<body name="roller" pos="0 3 .1"><freejoint/><inertial pos=".001 0 0" mass="1" diaginertia=".03 .005 .03"/>
+				<geom type="capsule" size=".1 .2" euler="90 0 0"/>
+			</body>
+		</worldbody></mujoco>""")
+		scene, bodies, said = self.convert(path)
+		self.assertEqual(said, "")
+		self.assertRegex(scene, r'\ncompound \{ name = "axle", parts = \{ \{ shape = "sphere", .*shape = "cylinder", radius = 0.0[23]')
+		self.assertRegex(scene, r'\ncompound \{ name = "roller", parts = \{ \{ shape = "capsule", .* \} \}')
+		axle = bodies["axle"]
+		found = dict(zip(bodies, robots.states(scene, bodies.values(), 1, self.directory.name)))
+		rolled = .5 / (1 + axle.tensor[1] / (axle.mass * .1 ** 2)) # half the acceleration
+		self.assertAlmostEqual(found["axle"]["at"][0], rolled, 6)
+		self.assertAlmostEqual(found["axle"]["at"][2], .1, 5)
+		self.assertAlmostEqual(found["roller"]["at"][0], rolled_off_centre(1, .1, .001, .005), 4)
 
 	def test_many_geoms(self):
 		"""More parts than a compound has become the hull of all."""

@@ -150,6 +150,36 @@ static void check_compounds(void)
 	ob_scene_free(s);
 }
 
+// Round parts: masses and moments of the exact shapes, by the parallel axes.
+static void check_round_parts(void)
+{
+	ob_scene *s = load_good(
+		"compound { at = { 1, 2, 3 }, density = 7, parts = {\n"
+		"\t{ shape = 'cylinder', radius = .5, length = 2, rotation = { axis = { 0, 1, 0 }, degrees = 90 } },\n"
+		"\t{ radius = 1, at = { 3, 0, 0 } }, { size = { 1, 1, 1 }, at = { 0, 2, 0 } } } }");
+	CHECK(s);
+	if (!s)
+		return;
+	const ob_hull *h = &s->hull[s->object[0].passport.hull];
+	const double drum = M_PI * .25 * 2, ball = 4. / 3 * M_PI, all = drum + ball + 1;
+	const ob_vec3 p = s->object[0].state.pose.p;
+	CHECK(h->parts == 3 && h->round == 2 && h[1].round == OB_SHAPE_CYLINDER && h[2].round == OB_SHAPE_SPHERE &&
+	      !h[3].round);
+	CHECK_NEAR(s->object[0].passport.mass, 7 * all, 1e-9);
+	check_vec(h[1].size, .5, 1, 0);
+	CHECK_NEAR(p.x, 1 + 3 * ball / all, 1e-12);
+	CHECK_NEAR(p.y, 2 + 2 / all, 1e-12);
+	CHECK_NEAR(p.z, 3, 1e-12);
+	const double x = 3 * ball / all, y = 2 / all;
+	const double zz = drum * (.25 / 4 + 4. / 12 + x * x + y * y) + ball * (.4 + (3 - x) * (3 - x) + y * y) +
+			  1. / 6 + x * x + (2 - y) * (2 - y);
+	const ob_vec3 i = h->inertia;
+	CHECK_NEAR(fmax(i.x, fmax(i.y, i.z)), zz / all, 1e-12); // flat in z: the largest
+	CHECK_NEAR(h->radius, hypot(hypot(x + .5, 2.5 - y), .5), 1e-12); // a corner of the box
+	CHECK_NEAR(h[1].radius, hypot(x + 1, y + .5), 1e-12); // the far rim
+	ob_scene_free(s);
+}
+
 // A heightfield: its terrain, and a mesh that shows it.
 static void check_heightfields(void)
 {
@@ -334,6 +364,7 @@ int main(void)
 	check_groups();
 	check_inertia();
 	check_compounds();
+	check_round_parts();
 	check_heightfields();
 	check_free();
 	check_exactness();

@@ -26,7 +26,7 @@ static ob_world_body compound(little_scene *s, double mass, const block *each, u
 	ob_hull_part part[OB_HULL_PARTS_MAX];
 	for (uint32_t i = 0; i < blocks; i++) {
 		corners_of(each[i].half, each[i].at, corner[i]);
-		part[i] = (ob_hull_part){ corner[i], CORNERS, each[i].density };
+		part[i] = (ob_hull_part){ .point = corner[i], .points = CORNERS, .density = each[i].density };
 	}
 	return ob_world_compound(&s->world, mass, part, blocks, p);
 }
