@@ -12,9 +12,11 @@
 //   apart       everything: its two objects pass through each     any
 //               other, and that is all
 //
-// Along the free axis of a hinge (rad), a slider (m) and a distance (m) limits, a spring with a damper, dry friction and a
-// motor may act. The value of an axis is the first object's turn, or shift, relative to the second since the scene began;
-// of a distance the length itself.
+// Along the free axis of a hinge (rad), a slider (m) and a distance (m), and each of the two of a universal (rad), limits, a
+// spring with a damper, dry friction and a motor may act. The value of an axis is the first object's turn, or shift,
+// relative to the second since the scene began; of a distance the length itself. All turns of a ball have one spring to the
+// attitude at the scene's start, one damper, and a rotor that turns with the first object; its value is the angle of its
+// turn since then, which may have an upper limit.
 //
 // A joint pulls and turns its objects with the forces that it needs. With breaks_force or breaks_torque it breaks when the
 // mean over a substep is greater: it ends, and a new contact of its objects may begin in the next step.
@@ -42,7 +44,7 @@ typedef enum ob_joint_kind {
 
 enum { // ob_joint_passport.flags
 	OB_JOINT_COLLIDES = 1 << 0, // its two objects may touch each other
-	OB_JOINT_DRIVEN = 1 << 1, // something acts along its free axis; a distance with this flag is free to change
+	OB_JOINT_DRIVEN = 1 << 1, // something acts along its free axes; a distance with this flag is free to change
 	OB_JOINT_BROKEN = 1 << 2, // it has broken, so it holds nothing any more; set for readers
 };
 
@@ -65,7 +67,7 @@ typedef struct ob_joint_axis {
 	double armature; // kg, kg m^2: inertia of a rotor that moves at the axis' rate, beside that of the objects
 } ob_joint_axis;
 
-// Properties of a joint. It holds while both objects are present with these generations, and until it breaks. 312 bytes.
+// Properties of a joint. It holds while both objects are present with these generations, and until it breaks. 416 bytes.
 typedef struct ob_joint_passport {
 	uint32_t object[2]; // ids; the second may be OB_JOINT_WORLD
 	uint32_t generation[2]; // of the objects
@@ -73,7 +75,8 @@ typedef struct ob_joint_passport {
 	uint32_t flags; // OB_JOINT_*
 	ob_pose frame[2]; // frame of the joint in the frame of each object, as of a body; in the world's
 	double length; // m, of a distance; else 0
-	ob_joint_axis axis; // if the joint is OB_JOINT_DRIVEN
+	ob_joint_axis axis; // if the joint is OB_JOINT_DRIVEN; of a universal x of the first object
+	ob_joint_axis second; // of a universal: y of the second object
 	double breaks_force, breaks_torque; // N, N m: it breaks if it needs more; infinite: never
 	char name[OB_NAME_MAX]; // as the scene has it, or of its kind and number: "hinge#3"; ends with 0
 } ob_joint_passport;
@@ -89,7 +92,7 @@ static inline bool ob_joint_exists(const ob_joint_passport *j)
 typedef struct ob_joint_load {
 	ob_vec3 force; // N
 	ob_vec3 torque; // N m, about the joint's origin in the first object
-	double along; // N, N m: share along its free axis: of limits, spring, damper, friction, motor
+	double along; // N, N m: share along its first free axis: of limits, spring, damper, friction, motor; 0 of a ball
 	uint64_t broke; // number of complete steps when it had broken; 0: it holds
 } ob_joint_load;
 
@@ -99,8 +102,8 @@ const char *ob_joint_kind_name(uint32_t kind);
 // its objects does not exist any more. A joint that is added takes the number of one that has been removed.
 uint32_t ob_universe_joints(const ob_universe *u);
 bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passport *out);
-// Value and rate of its free axis (m, rad; m/s, rad/s), at the present time of the universe. false: it has no such joint now,
-// or this kind has no such axis.
+// Value and rate of its first free axis (m, rad; m/s, rad/s), at the present time of the universe. false: it has no such joint
+// now, or this kind has no such axis.
 bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *value, double *rate);
 // Action of the joint; 0 in a universe that has not stepped. false: it has no such joint now.
 bool ob_universe_get_joint_load(const ob_universe *u, uint32_t joint, ob_joint_load *out);

@@ -35,7 +35,7 @@ class JointAxis(ctypes.Structure):
 
 class Joint(ctypes.Structure):
     _fields_ = [('object', ctypes.c_uint32 * 2), ('generation', ctypes.c_uint32 * 2), ('kind', ctypes.c_uint32),
-                ('flags', ctypes.c_uint32), ('frame', Pose * 2), ('length', ctypes.c_double), ('axis', JointAxis),
+                ('flags', ctypes.c_uint32), ('frame', Pose * 2), ('length', ctypes.c_double), ('axis', JointAxis), ('second', JointAxis),
                 ('breaks_force', ctypes.c_double), ('breaks_torque', ctypes.c_double),
                 ('name', ctypes.c_char * NAME_MAX)]
 

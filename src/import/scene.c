@@ -504,7 +504,9 @@ static bool acts(const writer *w, int joint)
 // True if a scene may have the limits (call_joint.c).
 static bool limits_fit(const writer *w, int joint, double low, double high)
 {
-	const double turn = 2 * M_PI, widest = 6.2;
+	const double turn = 2 * M_PI, widest = 6.2, widest_ball = 3;
+	if (w->m->jnt_type[joint] == mjJNT_BALL)
+		return high > 0 && high <= widest_ball;
 	return low <= high &&
 	       (w->m->jnt_type[joint] != mjJNT_HINGE || (low >= -turn && high <= turn && high - low <= widest));
 }
@@ -515,17 +517,13 @@ static void list_lost(writer *w, int joint)
 	const mjModel *m = w->m;
 	const int dof = m->jnt_dofadr[joint];
 	const char *name = name_of(w, mjOBJ_JOINT, "joint", joint);
-	const double start = m->qpos0[m->jnt_qposadr[joint]], *range = m->jnt_range + 2 * joint;
-	const bool axis = has_one_axis(w, joint), ball = m->jnt_type[joint] == mjJNT_BALL;
-	if (m->jnt_limited[joint] && !(axis && limits_fit(w, joint, range[0] - start, range[1] - start)))
+	const bool ball = m->jnt_type[joint] == mjJNT_BALL, free = m->jnt_type[joint] == mjJNT_FREE;
+	const double start = ball ? 0 : m->qpos0[m->jnt_qposadr[joint]], *range = m->jnt_range + 2 * joint;
+	if (m->jnt_limited[joint] && !limits_fit(w, joint, range[0] - start, range[1] - start))
 		leave_out(w, "%s: its limits, %.4g to %.4g, are left out", name, range[0], range[1]);
-	if (ball && m->jnt_stiffness[joint] > 0)
-		leave_out(w, "%s: its stiffness, %.4g, is left out", name, m->jnt_stiffness[joint]);
-	if (ball && m->dof_damping[dof] > 0)
-		leave_out(w, "%s: its damping, %.4g, is left out", name, m->dof_damping[dof]);
 	if (ball && m->dof_frictionloss[dof] > 0)
 		leave_out(w, "%s: its frictionloss, %.4g, is left out", name, m->dof_frictionloss[dof]);
-	if (!axis && m->dof_armature[dof] > 0)
+	if (free && m->dof_armature[dof] > 0)
 		leave_out(w, "%s: its armature, %.4g, is left out", name, m->dof_armature[dof]);
 }
 
@@ -573,6 +571,22 @@ static void write_axis(const writer *w, int joint)
 		write_servo(w, servo, start);
 }
 
+// Writes what acts on the turns of a ball. MuJoCo's ball begins without a turn.
+static void write_ball(const writer *w, int joint)
+{
+	const mjModel *m = w->m;
+	const int dof = m->jnt_dofadr[joint];
+	const double *range = m->jnt_range + 2 * joint;
+	if (m->jnt_limited[joint] && limits_fit(w, joint, 0, range[1]))
+		write_number(w, "high", range[1]);
+	if (m->jnt_stiffness[joint] > 0)
+		write_number(w, "stiffness", m->jnt_stiffness[joint]);
+	if (m->dof_damping[dof] > 0)
+		write_number(w, "damping", m->dof_damping[dof]);
+	if (m->dof_armature[dof] > 0)
+		write_number(w, "armature", m->dof_armature[dof]);
+}
+
 static ob_vec3 anchor(const writer *w, int joint)
 {
 	const double *x = w->d->data->xanchor + 3 * joint;
@@ -597,23 +611,32 @@ static void write_joint(writer *w, int joint, const char *child, const char *par
 	const int type = w->m->jnt_type[joint];
 	write_ends(w, type == mjJNT_BALL ? "ball" : type == mjJNT_SLIDE ? "slider" : "hinge", child, parent);
 	write_vec(w, ", at", anchor(w, joint));
-	if (type != mjJNT_BALL) {
+	if (type == mjJNT_BALL) {
+		write_ball(w, joint);
+	} else {
 		write_vec(w, ", axis", axis(w, joint));
 		write_axis(w, joint);
 	}
 	fputs(" }\n", w->out);
 }
 
-// True if all joints of the body are hinges through one point, along which nothing acts.
+// True if all joints of the body are hinges through one point.
 static bool meet(const writer *w, int body)
 {
 	const mjModel *m = w->m;
 	const int first = m->body_jntadr[body];
 	for (int j = first; j < first + m->body_jntnum[body]; j++)
-		if (m->jnt_type[j] != mjJNT_HINGE || acts(w, j) ||
-		    ob_norm(ob_sub(anchor(w, j), anchor(w, first))) > 1e-9)
+		if (m->jnt_type[j] != mjJNT_HINGE || ob_norm(ob_sub(anchor(w, j), anchor(w, first))) > 1e-9)
 			return false;
 	return true;
+}
+
+static bool any_acts(const writer *w, int body)
+{
+	bool any = false;
+	for (int j = w->m->body_jntadr[body]; j < w->m->body_jntadr[body] + w->m->body_jntnum[body]; j++)
+		any |= acts(w, j);
+	return any;
 }
 
 // A light ball between two joints of one body, which nothing touches.
@@ -651,8 +674,14 @@ static void write_joints(writer *w, int body)
 		write_vec(w, ", at", anchor(w, first));
 		write_vec(w, ", axis", axis(w, first + 1));
 		write_vec(w, ", across", axis(w, first));
+		write_axis(w, first + 1);
+		if (acts(w, first)) {
+			fputs(", second = { restitution = 0", w->out);
+			write_axis(w, first);
+			fputs(" }", w->out);
+		}
 		fputs(" }\n", w->out);
-	} else if (n == 3 && meet(w, body)) {
+	} else if (n == 3 && meet(w, body) && !any_acts(w, body)) {
 		write_ends(w, "ball", own, parent);
 		write_vec(w, ", at", anchor(w, first));
 		fputs(" }\n", w->out);

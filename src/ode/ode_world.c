@@ -331,7 +331,7 @@ bool ob_ode_has_joint(const ob_joint_passport *p)
 	const ob_joint_axis *a = &p->axis;
 	if (!(p->flags & OB_JOINT_DRIVEN))
 		return true;
-	return p->kind != OB_JOINT_DISTANCE && !(a->armature > 0) &&
+	return (p->kind == OB_JOINT_HINGE || p->kind == OB_JOINT_SLIDER) && !(a->armature > 0) &&
 	       (a->friction > 0) + (a->stiffness > 0 || a->damping > 0) + (a->motor != OB_MOTOR_NONE) <= 1;
 }
 

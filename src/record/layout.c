@@ -7,7 +7,7 @@
 // A new member of one of these structures may be needed to draw a record again: decide here.
 static_assert(sizeof(ob_passport) == 184 && sizeof(ob_motion) == 176, "members of /events and /motions");
 static_assert(sizeof(ob_hull) == 7040, "members of /hulls");
-static_assert(sizeof(ob_joint_passport) == 312, "members of /joints");
+static_assert(sizeof(ob_joint_passport) == 416, "members of /joints");
 static_assert(sizeof(ob_camera_def) == 200 && sizeof(ob_look_def) == 64, "members of /cameras and /look");
 
 // A brace that clang-format would spread over lines

@@ -625,7 +625,7 @@ static ob_joint_passport recorded_joint(const ob_snapshot *s, uint32_t joint)
 	if (!ob_snapshot_has_joint(s, joint))
 		return p;
 	p = s->joint[joint];
-	p.axis = (ob_joint_axis){ .low = 0 };
+	p.axis = p.second = (ob_joint_axis){ .low = 0 };
 	p.breaks_force = p.breaks_torque = 0;
 	return p;
 }

@@ -860,7 +860,7 @@ static bool make_room_for_joints(ob_snapshot *s, uint32_t joints)
 
 static bool joint_makes_sense(const ob_snapshot *s, ob_joint_passport *j)
 {
-	j->axis = (ob_joint_axis){ .low = 0 };
+	j->axis = j->second = (ob_joint_axis){ .low = 0 };
 	j->breaks_force = j->breaks_torque = INFINITY;
 	j->name[OB_NAME_MAX - 1] = 0;
 	ob_utf8_make_plain(j->name);

@@ -20,7 +20,7 @@ typedef struct joint {
 	ob_vec3 at, axis, across, from, to;
 	double length;
 	const char *name;
-	bool collide, motor, breaks_at;
+	bool collide, motor, breaks_at, second;
 	ob_joint_axis along; // low, high, rest and motor_target may be NaN
 } joint;
 
@@ -40,11 +40,25 @@ typedef struct joint {
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), F(collide, .kind = OB_FIELD_BOOLEAN), \
 		F(breaks_at, .kind = OB_FIELD_TABLE)
 
-static const ob_field ball_fields[] = { REQUIRED_PLACE(at), COMMON };
+#define BALL_MOST 3 // rad
+
+static const ob_field ball_fields[] = { REQUIRED_PLACE(at),
+					ALONG(high, .high = BALL_MOST, .above = true),
+					ALONG(restitution, .high = 1),
+					ALONG(stiffness, .high = OB_JOINT_MOST),
+					ALONG(damping, .high = OB_JOINT_MOST),
+					ALONG(armature, .high = OB_JOINT_MOST),
+					COMMON };
 static const ob_field fixed_fields[] = { PLACE(at), COMMON };
 static const ob_field hinge_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), AXIS(2 * M_PI), COMMON };
 static const ob_field slider_fields[] = { PLACE(at), DIRECTION(axis), AXIS(2 * OB_PLACE_MOST), COMMON };
-static const ob_field universal_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), DIRECTION(across), COMMON };
+static const ob_field universal_fields[] = { REQUIRED_PLACE(at),
+					     DIRECTION(axis),
+					     DIRECTION(across),
+					     AXIS(2 * M_PI),
+					     F(second, .kind = OB_FIELD_TABLE),
+					     COMMON };
+static const ob_field second_fields[] = { AXIS(2 * M_PI) };
 static const ob_field distance_fields[] = {
 	PLACE(from), PLACE(to), F(length, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST, .high = 2 * OB_PLACE_MOST),
 	AXIS(2 * OB_PLACE_MOST), COMMON
@@ -217,14 +231,14 @@ static void set_frames(lua_State *L, const ob_joined end[2], const joint *d, ob_
 
 // ---- the axis
 
-// Reads the motor's table, of the call's table at place 1.
+// Reads the motor's table, of the table at the top of the stack.
 static void read_motor(lua_State *L, const char *kind, ob_joint_axis *a)
 {
 	enum { NAME = 40 };
 	char where[NAME];
 	motor m = { NAN, NAN, INFINITY, NAN, 0 };
 	snprintf(where, sizeof where, "%s.motor", kind);
-	lua_getfield(L, 1, "motor");
+	lua_getfield(L, -1, "motor");
 	ob_fields_read(L, lua_gettop(L), where, motor_fields, sizeof motor_fields / sizeof *motor_fields, &m);
 	lua_pop(L, 1);
 	if (isnan(m.rate) == isnan(m.to))
@@ -258,9 +272,10 @@ static void set_strength(lua_State *L, const char *kind, const joint *d, ob_join
 	j->breaks_force = s.force, j->breaks_torque = s.torque;
 }
 
-static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_passport *j)
+// Sets an axis that the table at the top of the stack has, and that has been read.
+static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_passport *j, ob_joint_axis *a)
 {
-	ob_joint_axis *a = &j->axis;
+	const bool turns = j->kind == OB_JOINT_HINGE || j->kind == OB_JOINT_UNIVERSAL;
 	*a = d->along;
 	const bool limited = !isnan(a->low) || !isnan(a->high);
 	a->low = isnan(a->low) ? -INFINITY : a->low;
@@ -269,7 +284,7 @@ static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_pa
 		a->rest = j->kind == OB_JOINT_DISTANCE ? j->length : 0;
 	if (!(a->low <= a->high))
 		ob_sandbox_fail(L, "%s.high: expected at least low, %.10g, got %.10g", kind, a->low, a->high);
-	if (j->kind == OB_JOINT_HINGE && limited && isfinite(a->high - a->low) && !(a->high - a->low <= OB_TURN_MOST))
+	if (turns && limited && isfinite(a->high - a->low) && !(a->high - a->low <= OB_TURN_MOST))
 		ob_sandbox_fail(L, "%s.high: expected at most %.10g (rad) above low, got %.10g", kind, OB_TURN_MOST,
 				a->high - a->low);
 	if (d->motor)
@@ -279,6 +294,21 @@ static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_pa
 	if (j->flags & OB_JOINT_DRIVEN && j->kind == OB_JOINT_DISTANCE && !isnan(d->length))
 		ob_sandbox_fail(L, "distance.length: expected rest, low and high in its place where a spring, limits, "
 				   "friction or a motor let the distance change");
+}
+
+// Sets the axes of both arms of a universal, or the only one.
+static void set_axes(lua_State *L, const char *kind, const joint *d, ob_joint_passport *j)
+{
+	static const char second[] = "universal.second";
+	joint other = { .length = NAN, .along = { .low = NAN, .high = NAN, .rest = NAN } };
+	set_axis(L, kind, d, j, &j->axis);
+	if (d->second) {
+		lua_getfield(L, 1, "second");
+		ob_fields_read(L, lua_gettop(L), second, second_fields, sizeof second_fields / sizeof *second_fields,
+			       &other);
+	}
+	set_axis(L, second, &other, j, &j->second);
+	lua_settop(L, 1);
 }
 
 static void set_name(lua_State *L, const ob_builder *b, const char *kind, const char *name, ob_joint_passport *j)
@@ -321,16 +351,15 @@ int ob_scene_call_joint(lua_State *L)
 	ob_joint_passport j = { .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
 	ob_joined end[2];
 	const ob_vec3 none = { NAN, NAN, NAN };
-	joint d = {
-		none, none, none, none, none, NAN, NULL, false, false, false, { .low = NAN, .high = NAN, .rest = NAN }
-	};
+	joint d = { none, none,  none,  none,  none,  NAN,
+		    NULL, false, false, false, false, { .low = NAN, .high = NAN, .rest = NAN } };
 	const char *kind = ob_joint_kind_name(j.kind);
 	lua_settop(L, 1);
 	read_objects(L, b, kind, end, &j);
 	ob_fields_read(L, 1, kind, calls[j.kind].field, calls[j.kind].fields, &d);
 	j.flags = d.collide ? OB_JOINT_COLLIDES : 0;
 	set_frames(L, end, &d, &j);
-	set_axis(L, kind, &d, &j);
+	set_axes(L, kind, &d, &j);
 	set_strength(L, kind, &d, &j);
 	set_name(L, b, kind, d.name, &j);
 	add(L, b, kind, &j);

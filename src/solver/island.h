@@ -192,6 +192,7 @@ typedef struct ob_joint_end {
 	ob_pose frame; // of the joint in the body
 	ob_vec3 arm; // m, world: from the body's centre to the joint's origin
 	ob_vec3 at, axis[3]; // m, world: origin; axes of the frame
+	ob_quat attitude; // of the frame
 	ob_body_row given; // m/s, rad/s: velocity of one that does not move by forces
 } ob_joint_end;
 
@@ -213,7 +214,10 @@ typedef struct ob_held_joint {
 	} action;
 	double length; // m, of a distance
 	ob_joint_end end[2];
+	uint32_t number; // in the island's input
+	uint32_t part; // 0: holds; else one of the axes of a universal or a ball, which follow it (joint_rows.c)
 	const ob_joint_axis *axis; // what acts along its free axis; NULL: nothing
+	ob_joint_axis own; // that of a part of a ball
 	uint32_t base; // number of equality rows; the axis' row follows
 	struct { // of the axis (solver/joint_axis.h)
 		double value; // m, rad
@@ -226,6 +230,7 @@ typedef struct ob_held_joint {
 		double applied; // N s, among contacts: impulse of forces that do not depend on the rate
 		double flight; // s, of the flight that is aimed; 0: none
 		double rotor, rotor_rate; // value and rate of its rotor as the flight begins, or its rate at the end
+		ob_quat rotor_attitude; // of a ball's rotor, relative to the second end, as the flight begins
 	} along;
 	uint32_t child, parent; // rows of the elimination: the first end that moves, the other; OB_SPARSE_FIXED: none
 	ob_joint rows; // J at the present poses, and the last impulses
@@ -251,7 +256,7 @@ typedef struct ob_joint_set {
 	double step_begin; // s, time of the step's start
 	double stiffness; // 1/s: largest rate, by their forces, at which bodies may swing, in this step so far
 	bool failed; // a stage of this step was too long to be solved
-	uint32_t axes; // number of joints on whose axis something acts
+	uint32_t axes; // number of axes along which something acts
 	bool damped; // one of them has a damper
 	double now; // s: time of the poses at which the ends were found
 	// Share of its part, and s, length of the part, of the last flight; 0: none whose impulses are a guess for the next.

@@ -9,10 +9,11 @@ static const double slowest_bounce = .01; // m/s, rad/s: slower hits on a limit 
 
 // ---- value
 
-// Difference of two values: of a hinge the least, for its value jumps after half a turn.
+// Difference of two values: of a turn about an axis the least, for its value jumps after half a turn.
 static double difference(const ob_held_joint *j, double x, double y)
 {
-	return j->kind == OB_JOINT_HINGE ? x - y - 2 * M_PI * nearbyint((x - y) / (2 * M_PI)) : x - y;
+	const bool turn = j->kind == OB_JOINT_HINGE || j->kind == OB_JOINT_UNIVERSAL;
+	return turn ? x - y - 2 * M_PI * nearbyint((x - y) / (2 * M_PI)) : x - y;
 }
 
 double ob_axis_armature(const ob_held_joint *j)
@@ -20,7 +21,7 @@ double ob_axis_armature(const ob_held_joint *j)
 	return j->axis ? j->axis->armature : 0;
 }
 
-void ob_axis_find(ob_held_joint *j, double value, double time)
+void ob_axis_find(ob_held_joint *j, double value, double turned, double time)
 {
 	double *error = &j->error[j->base];
 	const double held = j->along.goal + j->along.goal_rate * (time - j->along.since);
@@ -30,7 +31,8 @@ void ob_axis_find(ob_held_joint *j, double value, double time)
 	if (j->along.flight != 0 && j->axis->armature > 0) {
 		const uint32_t row = j->along.engaged;
 		const double rate = j->along.rotor_rate - j->sum[j->base + row] / j->axis->armature;
-		error[row] = difference(j, value, j->along.rotor + j->along.flight * rate);
+		error[row] = j->kind == OB_JOINT_BALL ? turned - j->along.flight * rate
+						      : difference(j, value, j->along.rotor + j->along.flight * rate);
 	}
 }
 

@@ -26,8 +26,8 @@ typedef enum ob_axis_event {
 	OB_AXIS_FASTER,
 } ob_axis_event;
 
-// Takes the value, and finds its violation at this time (s) of the run.
-void ob_axis_find(ob_held_joint *j, double value, double time);
+// Takes the value, and finds its violation at this time (s) of the run. turned: rad, of a ball's axis: since the flight began.
+void ob_axis_find(ob_held_joint *j, double value, double turned, double time);
 // Finds the state of an axis with this rate, at the time and value found. Rows are to be factored anew.
 void ob_axis_enter(ob_held_joint *j, double rate, double time);
 // Lets it rest on a limit (-1, 1), or leave its equality.

@@ -14,7 +14,7 @@ static const double compliance = 1e-9; // of a row, as a share of its own respon
 // ---- rows
 
 typedef struct row_rule {
-	enum { NO_ROW, ALONG, ACROSS, LENGTH, TURN } type;
+	enum { NO_ROW, ALONG, ACROSS, LENGTH, TURN, FIRST_ARM, SECOND_ARM, TWIST, ANGLE } type;
 	int a, b; // axes of the first and the second end
 } row_rule;
 
@@ -48,9 +48,22 @@ static const row_rule axis_rules[OB_JOINT_KINDS] = {
 	[OB_JOINT_DISTANCE] = { LENGTH, 0, 0 },
 };
 
+enum { PARTS_MAX = 4 };
+
+// Axes of the parts of a joint.
+static const row_rule part_rules[OB_JOINT_KINDS][PARTS_MAX] = {
+	[OB_JOINT_UNIVERSAL] = { { FIRST_ARM, 0, 0 }, { SECOND_ARM, 0, 0 } },
+	[OB_JOINT_BALL] = { { TWIST, 0, 0 }, { TWIST, 0, 1 }, { TWIST, 0, 2 }, { ANGLE, 0, 0 } },
+};
+
+static const row_rule *axis_rule_of(const ob_held_joint *j)
+{
+	return j->part ? &part_rules[j->kind][j->part - 1] : &axis_rules[j->kind];
+}
+
 static const row_rule *rule_of(const ob_held_joint *j, uint32_t r)
 {
-	return r < j->base ? &rules[j->kind][r] : &axis_rules[j->kind];
+	return r < j->base ? &rules[j->kind][r] : axis_rule_of(j);
 }
 
 static void set_row(double *row, ob_vec3 linear, ob_vec3 angular)
@@ -70,11 +83,23 @@ static void find_end(const ob_island_work *w, ob_joint_end *e, double time)
 		at = now.pose;
 		set_row(e->given, now.v, now.w);
 	}
-	const ob_mat3 r = ob_quat_matrix(at.q), axes = ob_quat_matrix(ob_quat_mul(at.q, e->frame.q));
+	e->attitude = ob_quat_mul(at.q, e->frame.q);
+	const ob_mat3 r = ob_quat_matrix(at.q), axes = ob_quat_matrix(e->attitude);
 	e->arm = ob_rotate(&r, e->frame.p);
 	e->at = ob_add(at.p, e->arm);
 	for (int i = 0; i < 3; i++)
 		e->axis[i] = ob_column(&axes, i);
+}
+
+// Attitude of the first end, in the frame of the second.
+static ob_quat relative_attitude(const ob_held_joint *j)
+{
+	return ob_quat_mul(ob_quat_conjugate(j->end[1].attitude), j->end[0].attitude);
+}
+
+static double component(ob_vec3 v, int axis)
+{
+	return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
 // The number that a row holds or limits, at the places that its ends have.
@@ -82,17 +107,40 @@ static double value_of(const ob_held_joint *j, const row_rule *rule)
 {
 	const ob_joint_end *a = &j->end[0], *b = &j->end[1];
 	const ob_vec3 apart = ob_sub(a->at, b->at);
-	return rule->type == ALONG    ? ob_dot(b->axis[rule->b], apart)
-	       : rule->type == ACROSS ? ob_dot(a->axis[rule->a], b->axis[rule->b])
-	       : rule->type == TURN   ? ob_joint_turn(j->axis, a->axis[0], b->axis[0], b->axis[1])
-				      : ob_norm(apart);
+	switch (rule->type) {
+	case ALONG:
+		return ob_dot(b->axis[rule->b], apart);
+	case ACROSS:
+		return ob_dot(a->axis[rule->a], b->axis[rule->b]);
+	case TURN:
+		return ob_joint_turn(j->axis, a->axis[0], b->axis[0], b->axis[1]);
+	case FIRST_ARM:
+		return ob_joint_turn(j->axis, a->axis[1], b->axis[1], ob_cross(a->axis[0], b->axis[1]));
+	case SECOND_ARM:
+		return ob_joint_turn(j->axis, a->axis[0], b->axis[0], ob_scale(b->axis[2], -1));
+	case TWIST:
+		return component(ob_joint_twist(relative_attitude(j)), rule->b);
+	case ANGLE:
+		return ob_norm(ob_joint_twist(relative_attitude(j)));
+	default:
+		return ob_norm(apart);
+	}
+}
+
+// Turn (rad) of a ball along one of its axes since the flight began.
+static double turned_since(const ob_held_joint *j, const row_rule *rule)
+{
+	if (rule->type != TWIST || j->along.flight == 0)
+		return 0;
+	const ob_quat since = ob_quat_mul(relative_attitude(j), ob_quat_conjugate(j->along.rotor_attitude));
+	return component(ob_joint_twist(since), rule->b);
 }
 
 // Finds the violation of each row, at this time (s) of the run.
 static void find_errors(ob_held_joint *j, double time)
 {
 	if (j->axis)
-		ob_axis_find(j, value_of(j, &axis_rules[j->kind]), time);
+		ob_axis_find(j, value_of(j, axis_rule_of(j)), turned_since(j, axis_rule_of(j)), time);
 	for (uint32_t r = 0; r < j->base; r++) {
 		const row_rule *rule = &rules[j->kind][r];
 		j->error[r] = value_of(j, rule) - (rule->type == LENGTH ? j->length : 0);
@@ -110,6 +158,22 @@ void ob_joints_find(ob_island_work *w, double time)
 	}
 }
 
+// Axis, in the world, about which the first end turns along a free axis.
+static ob_vec3 axis_of_turn(const ob_held_joint *j, const row_rule *rule)
+{
+	const ob_joint_end *a = &j->end[0], *b = &j->end[1];
+	if (rule->type == FIRST_ARM)
+		return a->axis[0];
+	if (rule->type == SECOND_ARM)
+		return b->axis[1];
+	if (rule->type != ANGLE)
+		return b->axis[rule->b];
+	const ob_vec3 twist = ob_joint_twist(relative_attitude(j));
+	const double angle = ob_norm(twist);
+	const ob_vec3 n = angle > 0 ? ob_scale(twist, 1 / angle) : ob_v3(0, 0, 1);
+	return ob_madd(ob_madd(ob_scale(b->axis[0], n.x), n.y, b->axis[1]), n.z, b->axis[2]);
+}
+
 // Sets the derivative of a row's value by the motions of both ends.
 static void find_row(const ob_held_joint *j, const row_rule *rule, double *of_a, double *of_b)
 {
@@ -121,9 +185,10 @@ static void find_row(const ob_held_joint *j, const row_rule *rule, double *of_a,
 		set_row(of_b, none, ob_scale(turn, -1));
 		return;
 	}
-	if (rule->type == TURN) {
-		set_row(of_a, none, b->axis[rule->b]);
-		set_row(of_b, none, ob_scale(b->axis[rule->b], -1));
+	if (rule->type >= TURN) {
+		const ob_vec3 axis = axis_of_turn(j, rule);
+		set_row(of_a, none, axis);
+		set_row(of_b, none, ob_scale(axis, -1));
 		return;
 	}
 	const bool along = rule->type == ALONG;
@@ -305,23 +370,74 @@ static void load_end(ob_island_work *w, const ob_island_input *in, uint32_t obje
 		e->row = w->row_of[object];
 	else
 		e->motion = in->object[object].motion;
-	if (!e->row)
+	if (e->row)
+		w->body[e->row].moved_freely = false;
+}
+
+// True if something acts along an axis.
+static bool acts(const ob_joint_axis *a)
+{
+	return isfinite(a->low) || isfinite(a->high) || a->stiffness > 0 || a->damping > 0 || a->friction > 0 ||
+	       a->armature > 0 || a->motor != OB_MOTOR_NONE;
+}
+
+// Adds a joint that has no rows but those of an axis of another.
+static void add_part(ob_island_work *w, uint32_t of, uint32_t part, const ob_joint_axis *axis)
+{
+	const ob_held_joint *whole = &w->joints.joint[of];
+	ob_held_joint *j = &w->joints.joint[w->joints.count++];
+	*j = (ob_held_joint){ .kind = whole->kind,
+			      .breaks_force = INFINITY,
+			      .breaks_torque = INFINITY,
+			      .end = { whole->end[0], whole->end[1] },
+			      .number = whole->number,
+			      .part = part,
+			      .child = whole->child,
+			      .parent = whole->parent,
+			      .own = *axis };
+	j->axis = &j->own;
+	w->joints.axes++;
+	w->joints.damped |= ob_axis_is_damped(j);
+	ob_sparse_link(&w->joints.sparse, j->child, j->parent);
+}
+
+// Adds the axes of a universal, or of a ball, along which something acts.
+static void add_parts(ob_island_work *w, uint32_t of, const ob_joint_passport *from)
+{
+	const ob_joint_axis *a = &from->axis;
+	if (from->kind == OB_JOINT_UNIVERSAL) {
+		if (acts(a))
+			add_part(w, of, 1, a);
+		if (acts(&from->second))
+			add_part(w, of, 2, &from->second);
 		return;
-	w->body[e->row].joints++;
-	w->body[e->row].moved_freely = false;
+	}
+	const ob_joint_axis turns = { .low = -INFINITY,
+				      .high = INFINITY,
+				      .stiffness = a->stiffness,
+				      .damping = a->damping,
+				      .armature = a->armature };
+	const ob_joint_axis angle = { .low = -INFINITY, .high = a->high, .restitution = a->restitution };
+	for (uint32_t i = 1; acts(&turns) && i < PARTS_MAX; i++)
+		add_part(w, of, i, &turns);
+	if (acts(&angle))
+		add_part(w, of, PARTS_MAX, &angle);
 }
 
 static void load_joint(ob_island_work *w, const ob_island_input *in, const ob_island_joint *from)
 {
-	ob_held_joint *j = &w->joints.joint[w->joints.count++];
+	const uint32_t at = w->joints.count++;
+	ob_held_joint *j = &w->joints.joint[at];
 	*j = (ob_held_joint){ .kind = from->joint->kind,
 			      .length = from->joint->length,
+			      .number = (uint32_t)(from - in->joint),
 			      .breaks_force = from->joint->breaks_force,
 			      .breaks_torque = from->joint->breaks_torque };
 	w->joints.breakable |= isfinite(j->breaks_force) || isfinite(j->breaks_torque);
 	for (int side = 0; side < 2; side++) {
 		j->end[side].frame = from->joint->frame[side];
 		load_end(w, in, from->object[side], &j->end[side]);
+		w->body[j->end[side].row].joints += j->end[side].row != 0;
 	}
 	if (from->joint->flags & OB_JOINT_DRIVEN && axis_rules[j->kind].type != NO_ROW) {
 		j->axis = &from->joint->axis;
@@ -337,6 +453,8 @@ static void load_joint(ob_island_work *w, const ob_island_input *in, const ob_is
 	j->child = (a ? a : b) - 1;
 	j->parent = a && b ? b - 1 : OB_SPARSE_FIXED;
 	ob_sparse_link(&w->joints.sparse, j->child, j->parent);
+	if (from->joint->flags & OB_JOINT_DRIVEN && part_rules[j->kind][0].type != NO_ROW)
+		add_parts(w, at, from->joint);
 }
 
 void ob_joints_load(ob_solver *s, const ob_island_input *in)
@@ -346,8 +464,11 @@ void ob_joints_load(ob_solver *s, const ob_island_input *in)
 	set->count = 0;
 	if (!in->joints)
 		return;
-	if (in->joints > set->max) {
-		set->max = in->joints + in->joints / 2;
+	uint32_t most = 0;
+	for (uint32_t i = 0; i < in->joints; i++)
+		most += 1 + (in->joint[i].joint->flags & OB_JOINT_DRIVEN ? PARTS_MAX : 0);
+	if (most > set->max) {
+		set->max = most + most / 2;
 		set->joint = ob_reallocate(set->joint, set->max * sizeof *set->joint);
 	}
 	set->step_begin = (double)in->step * s->settings->step_length;

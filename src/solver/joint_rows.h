@@ -11,6 +11,13 @@
 // Forces along a free axis add a row (solver/joint_axis.h) while something holds it, and among contacts another
 // one, with the compliance of its spring and damper.
 //
+// The two axes of a universal, the three of a ball's turns, and its angle, are parts: joints of their own with no rows but
+// those of their axis, which follow the joint. Their values are turns:
+//
+//   arm      about x of the first end, or y of the second, from the other end to the cross
+//   twist    a component of the rotation from the second end to the first, in the second's frame
+//   angle    the length of that rotation
+//
 // The elimination needs some compliance, which also makes rows that depend on each other harmless. What it leaves is solved
 // for again, so nothing of it is left in the solution.
 #ifndef OB_SOLVER_JOINT_ROWS_H

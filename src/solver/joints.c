@@ -86,8 +86,10 @@ static void note_rates(ob_island_work *w)
 {
 	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
 		ob_held_joint *j = &w->joints.joint[i];
-		if (j->axis)
-			j->along.rotor = j->along.value, j->along.rotor_rate = ob_joint_axis_rate(j, w->v);
+		if (!j->axis)
+			continue;
+		j->along.rotor = j->along.value, j->along.rotor_rate = ob_joint_axis_rate(j, w->v);
+		j->along.rotor_attitude = ob_quat_mul(ob_quat_conjugate(j->end[1].attitude), j->end[0].attitude);
 	}
 }
 

@@ -70,7 +70,7 @@ static void set_end(ob_step_data *data, uint32_t end)
 	__atomic_store_n(&data->joint_counts->used, end, __ATOMIC_RELEASE);
 }
 
-static_assert(sizeof(ob_joint_passport) == 312, "passport of a joint");
+static_assert(sizeof(ob_joint_passport) == 416, "passport of a joint");
 
 // Links from the last to the first, so that each one is linked at once.
 void ob_joints_write(ob_universe *u, const ob_joint_passport *joint, uint32_t joints)
@@ -206,8 +206,9 @@ static bool pose_makes_sense(const ob_pose *p)
 bool ob_joint_makes_sense(const ob_joint_passport *j)
 {
 	return j->kind < OB_JOINT_KINDS && ob_joint_exists(j) && j->object[0] != OB_JOINT_WORLD &&
-	       axis_makes_sense(&j->axis) && pose_makes_sense(&j->frame[0]) && pose_makes_sense(&j->frame[1]) &&
-	       j->breaks_force > 0 && j->breaks_torque > 0 && isfinite(j->length) && memchr(j->name, 0, sizeof j->name);
+	       axis_makes_sense(&j->axis) && axis_makes_sense(&j->second) && pose_makes_sense(&j->frame[0]) &&
+	       pose_makes_sense(&j->frame[1]) && j->breaks_force > 0 && j->breaks_torque > 0 && isfinite(j->length) &&
+	       memchr(j->name, 0, sizeof j->name);
 }
 
 uint32_t ob_universe_joints(const ob_universe *u)

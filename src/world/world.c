@@ -158,6 +158,7 @@ ob_joint_passport *ob_world_join(ob_world *w, ob_joint_kind kind, uint32_t a, ui
 	*j = (ob_joint_passport){ .object = { a, b },
 				  .kind = kind,
 				  .axis = { .low = -INFINITY, .high = INFINITY },
+				  .second = { .low = -INFINITY, .high = INFINITY },
 				  .breaks_force = INFINITY,
 				  .breaks_torque = INFINITY };
 	snprintf(j->name, sizeof j->name, "%s#%u", ob_joint_kind_name(kind), w->joints++);

@@ -85,6 +85,16 @@ class Import(program.Case):
 		self.assertIn('obsim: actuator "idle" is left out\n', said)
 		self.assertNotIn('"hold"', said)
 
+	def test_limbs(self):
+		"""Springs, dampers, rotors and limits of balls, and of two hinges that cross."""
+		scene, _, said = self.compare("limbs.xml")
+		self.assertRegex(scene, r'\nball \{ "upper arm".*, high = 2.5, stiffness = 6, damping = 0.4\d*, armature = 0.0\d+ \}')
+		self.assertRegex(scene, r'\nuniversal \{ "forearm", .*, low = -2, high = 2, damping = 0.05\d*, armature = 0.0\d+, '
+			r'second = \{ restitution = 0, stiffness = 3, rest = 0.4\d*, damping = 0.1')
+		self.assertRegex(scene, r'\nuniversal \{ "spinner".*, stiffness = 2, rest = 0, second = \{ restitution = 0, armature = 0.1')
+		self.assertIn('obsim: joint "wrist": its frictionloss, 1e-09, is left out\n', said)
+		self.assertEqual(said.count("joint"), 1, said)
+
 	def test_crane(self):
 		"""A link named world stands still, and what is fixed to it."""
 		scene, bodies, said = self.compare("crane.urdf")

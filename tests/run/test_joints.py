@@ -20,7 +20,7 @@ box { name = "turntable", size = { 1, 1, .2 }, kind = "kinematic", at = { 0, 0, 
 box { name = "arm", size = { 1.5, .1, .1 }, at = { 1.1, 0, 2.8 } }
 hinge { "arm", "turntable", at = { .4, 0, 2.85 }, axis = { 0, 1, 0 } }
 sphere { name = "tip", radius = .1, at = { 1.9, 0, 2.8 }, dies = 1 }
-ball { "tip", "arm", at = { 1.85, 0, 2.8 } }
+ball { "tip", "arm", at = { 1.85, 0, 2.8 }, stiffness = 3, damping = .2, armature = .01 }
 box { name = "shaker", size = { .3, .3, .3 }, kind = "kinematic", at = { 3, 0, 4 },
 	path = { kind = "sine", amplitude = { .5, 0, 0 }, frequency = 1 } }
 sphere { name = "bob", radius = .1, at = { 3, 0, 3 }, script = [[ function step(self) self:torque(0, .01, 0) end ]] }
@@ -32,7 +32,8 @@ box { name = "w2", size = { 1, .2, .2 }, at = { -2.4, 1, 2.4 } }
 fixed { "w1", "w2" }
 box { name = "u1", size = { .2, .2, 1 }, at = { -3, -2, 4 } }
 box { name = "u2", size = { .2, .2, 1 }, at = { -3, -2, 3 }, spin = { 1, 2, 3 } }
-universal { "u1", "u2", at = { -3, -2, 3.5 }, axis = { 1, 0, 0 }, across = { 0, 1, 0 } }
+universal { "u1", "u2", at = { -3, -2, 3.5 }, axis = { 1, 0, 0 }, across = { 0, 1, 0 }, low = -.4, high = .4, restitution = .5,
+	second = { stiffness = 20, damping = 1, friction = .2 } }
 """
 
 # A script turns a crank back and forth, by its angle.

@@ -68,6 +68,7 @@ static void check_joints(void)
 		return;
 	const ob_joint_passport *j = s->joint;
 	CHECK(s->joints == 4 && j[0].kind == OB_JOINT_HINGE && j[0].flags == OB_JOINT_COLLIDES);
+	CHECK(isinf(j[0].second.low) && isinf(j[0].second.high) && j[0].second.stiffness == 0);
 	CHECK(j[0].object[0] == 0 && j[0].object[1] == 1 && j[0].generation[0] == 1 && j[0].generation[1] == 1);
 	check_vec(j[0].frame[0].p, 2, .5, 0);
 	check_vec(j[0].frame[1].p, -3, 2, 0);
