@@ -168,6 +168,14 @@ static void unjoin(ob_universe *u, uint32_t joint)
 	renew_ends(u, &j);
 }
 
+static void set_motor(ob_universe *u, uint32_t joint, double target)
+{
+	ob_joint_passport *j = &ob_universe_step_data(u)->joint[joint];
+	if (j->axis.target != target)
+		(void)ob_sim_wake_joined(u, j);
+	j->axis.target = target;
+}
+
 void ob_joint_request_carry_out(ob_universe *u, const ob_request *r)
 {
 	ob_joint_passport j;
@@ -175,7 +183,7 @@ void ob_joint_request_carry_out(ob_universe *u, const ob_request *r)
 	if (!ob_joint_request_check(u, r, &e))
 		ob_log_warn("a request was left out: %s", e.text);
 	else if (r->kind == OB_REQUEST_MOTOR)
-		ob_universe_step_data(u)->joint[r->joint].axis.target = r->motor;
+		set_motor(u, r->joint, r->motor);
 	else if (r->kind == OB_REQUEST_UNJOIN)
 		unjoin(u, r->joint);
 	else if (joint_of(r, &j) && !join(u, &j, &e))

@@ -5,6 +5,7 @@
 #include "solver/bodies.h"
 #include "solver/contact_solver.h"
 #include "solver/contacts.h"
+#include "solver/joints.h"
 
 static const double sleep_delay = .5, sleep_interval = .5; // s: rest time before the first test; interval of tests
 static const double unbalanced_share = 1e-5; // share of the largest external acceleration that may remain unbalanced
@@ -41,17 +42,18 @@ static void restore_impulses(ob_island_work *w)
 		memcpy(w->batch[i].impulse, w->batch[i].impulse_start, sizeof w->batch[i].impulse);
 }
 
-// True if contacts bring the bodies to rest from their present velocities.
+// True if contacts and joints bring the bodies to rest from their present velocities.
 static bool contacts_stop(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	ob_bodies_predict_velocities(s);
+	ob_joints_find_rest(s);
 	ob_solver_converge(s, converged_share * own_speed * w->unit.speed, max_stop_iterations);
 	restore_impulses(w);
 	return fastest(w) <= own_speed * w->unit.speed;
 }
 
-// True if contacts hold the bodies at rest against the external accelerations.
+// True if contacts and joints hold the bodies at rest against the external accelerations.
 static bool contacts_hold(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
@@ -60,6 +62,7 @@ static bool contacts_hold(ob_solver *s)
 	w->v = w->drift; // free as scratch memory here
 	memset(w->v, 0, w->rows * sizeof *w->v);
 	ob_bodies_predict_velocities(s);
+	ob_joints_find_rest(s);
 	ob_solver_converge(s, converged_share * enough, max_hold_iterations);
 	w->v = v;
 	return fastest(w) <= enough;

@@ -462,7 +462,7 @@ double ob_bodies_update_rest(ob_solver *s)
 	for (uint32_t i = 1; i <= w->bodies; i++) {
 		ob_body *body = &w->body[i];
 		body->rest_time = body->speed < rest_speed ? body->rest_time + (float)s->settings->step_length : 0;
-		since = ob_min(since, body->contacts > 0 ? body->rest_time : 0);
+		since = ob_min(since, body->contacts > 0 || body->joints > 0 ? body->rest_time : 0);
 	}
 	return since;
 }

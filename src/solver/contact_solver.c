@@ -123,23 +123,29 @@ static double solve_contacts(ob_solver *s, const ob_solver_iteration *iteration,
 	return sqrt(residual);
 }
 
-// Runs conjugate iterations on u, over all contacts, until none changes a velocity by more than the wake threshold.
-// Returns the largest change (m/s) of the last.
+static void solve_joints(ob_solver *s, double threshold, bool *any);
+
+// Runs iterations on u, over all contacts and joints, until none changes a velocity by more than the wake threshold; without
+// joints conjugate ones. Returns the largest change (m/s) of the last.
 static double converge(ob_solver *s, ob_solver_iteration *iteration, uint32_t max_iterations)
 {
 	ob_island_work *w = &s->island;
 	double residual = INFINITY, changed;
 	bool any_active = true;
-	ob_conjugate_begin(w);
+	const bool conjugate = !w->joints.count;
+	if (conjugate)
+		ob_conjugate_begin(w);
 	for (uint32_t k = 0; k < max_iterations && any_active && !ob_budget_spent(s); k++) {
-		if (k)
+		if (k && conjugate)
 			ob_conjugate_go_on(w);
 		s->counters.solver_iterations++;
 		s->methods.read(s, w->u, k);
 		for (uint32_t i = 0; i < w->batches; i++)
 			w->batch_due[i] = w->iteration;
-		ob_conjugate_note(w);
+		if (conjugate)
+			ob_conjugate_note(w);
 		residual = solve_contacts(s, iteration, &any_active, &changed);
+		solve_joints(s, iteration->wake_threshold, &any_active);
 		iteration->first = false;
 	}
 	return residual;

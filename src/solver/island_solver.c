@@ -170,9 +170,11 @@ static bool solve_equilibrium(ob_solver *s, const ob_island_input *in)
 static uint32_t rest_flag(ob_solver *s)
 {
 	const double rest_time = ob_bodies_update_rest(s);
-	if (s->island.joints.count || s->island.torques || ob_norm2(s->island.frame) > 0 ||
+	if (s->island.torques || ob_norm2(s->island.frame) > 0 ||
 	    ob_surfaces_carry_any(&s->island)) // equilibrium and sleep know of forces alone
 		return 0;
+	if (s->island.joints.count) // their impulses are none of a step before
+		return ob_joints_may_rest(&s->island) && ob_balance_may_sleep(s, rest_time) ? OB_MOTION_ASLEEP : 0;
 	if (ob_equilibrium_reached(&s->island))
 		return s->settings->sleeping ? OB_MOTION_ASLEEP : OB_MOTION_EQUILIBRIUM;
 	return ob_balance_may_sleep(s, rest_time) ? OB_MOTION_ASLEEP : 0;

@@ -730,3 +730,38 @@ void ob_joints_end(ob_solver *s)
 		ob_joint_break(w, weakest, w->substep);
 	ob_joint_loads_end(&w->joints);
 }
+
+// ---- at rest
+
+bool ob_joints_may_rest(const ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		for (int side = 0; side < 2; side++) {
+			const ob_motion *m = w->joints.joint[i].end[side].motion;
+			if (m && (ob_norm2(m->v) > 0 || ob_norm2(m->w) > 0 || ob_norm2(m->a) > 0 ||
+				  isfinite(m->valid_until)))
+				return false;
+		}
+	return true;
+}
+
+void ob_joints_find_rest(ob_solver *s)
+{
+	ob_island_work *w = &s->island;
+	if (!w->joints.count)
+		return;
+	update_poses(w);
+	if (w->joints.axes)
+		disengage_axes(w);
+	ob_joints_find(w, w->joints.now);
+	ob_joints_factor(w);
+	clear_sums(w);
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		memset(w->joints.joint[i].target, 0, sizeof w->joints.joint[i].target);
+	if (!w->joints.axes)
+		return;
+	begin_axes(w);
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		if (w->joints.joint[i].axis)
+			ob_joint_push_axis(&w->joints.joint[i], w->joints.joint[i].along.applied, w->u);
+}

@@ -30,4 +30,10 @@ void ob_joints_project(ob_solver *s);
 // Lets the joint break that the substep has overloaded most. At its end.
 void ob_joints_end(ob_solver *s);
 
+// True if no end of a joint is on an object that goes, or may go, by itself.
+bool ob_joints_may_rest(const ob_island_work *w);
+// Finds the rows with which joints hold bodies at rest in their present poses over a partial substep, after ob_bodies_predict_velocities.
+// Adds what acts along axes to the velocities u.
+void ob_joints_find_rest(ob_solver *s);
+
 #endif

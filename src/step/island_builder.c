@@ -45,6 +45,17 @@ static bool is_in_range(const ob_involved *p, const ob_pair_key *k)
 	return ob_object_in_range(p->data, k->a) && ob_object_in_range(p->data, k->b);
 }
 
+// Body that a joint holds to another one; NONE: it holds no body that this rank solves.
+static uint32_t joined_body(const ob_involved *p, uint32_t joint, uint32_t id)
+{
+	const ob_joint_passport *j = &p->data->joint[joint - 1];
+	const uint32_t other = j->object[j->object[0] == id];
+	return j->kind == OB_JOINT_APART || other == OB_JOINT_WORLD || other >= p->data->objects_max ||
+			       !is_own(p, other) || !ob_joint_holds(p->u, j)
+		       ? NONE
+		       : other;
+}
+
 // ---- bodies involved, when islands are merged
 
 // Involves both bodies of a link, so that they are solved in this step.
@@ -100,6 +111,17 @@ static void involve_late(ob_involved *p)
 	}
 }
 
+// Involves the sleeping bodies that joints hold to one that is woken.
+static void involve_joined(ob_involved *p, uint32_t id)
+{
+	const ob_step_data *data = p->data;
+	for (uint32_t j = ob_joint_first(data, id); j; j = ob_joint_next(data, j, id)) {
+		const uint32_t other = joined_body(p, j, id);
+		if (other != NONE && is_asleep(p, other))
+			ob_involve_joined(p, id, other);
+	}
+}
+
 // Involves linked bodies; the list grows while the loop runs: breadth first.
 static void involve_linked(ob_involved *p)
 {
@@ -114,6 +136,7 @@ static void involve_linked(ob_involved *p)
 			if (is_link(p, &data->pair[at.pair]))
 				ob_involve_joined(p, data->pair[at.pair].a, data->pair[at.pair].b);
 		}
+		involve_joined(p, p->body[i]);
 	}
 }
 
@@ -164,10 +187,8 @@ static void follow_joints(const ob_involved *p, uint32_t id, uint32_t *stack)
 {
 	const ob_step_data *data = p->data;
 	for (uint32_t j = ob_joint_first(data, id); j; j = ob_joint_next(data, j, id)) {
-		const ob_joint_passport *joint = &data->joint[j - 1];
-		const uint32_t other = joint->object[joint->object[0] == id];
-		if (joint->kind == OB_JOINT_APART || other == OB_JOINT_WORLD || other >= data->objects_max ||
-		    !is_own(p, other) || !ob_joint_holds(p->u, joint))
+		const uint32_t other = joined_body(p, j, id);
+		if (other == NONE)
 			continue;
 		if (ob_involve(p, other)) {
 			p->place[other] = *stack;

@@ -214,6 +214,20 @@ static void wake_object(ob_universe *u, uint32_t id)
 	note_change(u, id);
 }
 
+bool ob_sim_wake_joined(ob_universe *u, const ob_joint_passport *j)
+{
+	bool any = false;
+	for (int side = 0; side < 2; side++) {
+		const uint32_t id = j->object[side];
+		if (id >= ob_universe_step_data(u)->objects_max ||
+		    ob_universe_step_data(u)->schedule[id].state != OB_SCHEDULE_ASLEEP)
+			continue;
+		wake_object(u, id);
+		any = true;
+	}
+	return any;
+}
+
 static void replace(ob_universe *u, uint32_t id, const ob_passport *p, const ob_state *state)
 {
 	ob_sim_remove(u, id);
@@ -289,6 +303,8 @@ void ob_sim_remove(ob_universe *u, uint32_t id)
 			continue;
 		wake_object(u, other);
 	}
+	for (uint32_t j = ob_joint_first(data, id); j; j = ob_joint_next(data, j, id))
+		(void)ob_sim_wake_joined(u, &data->joint[j - 1]);
 	ob_pairs_drop(u, id);
 	ob_broadphase_remove(u, id);
 	data->schedule[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };

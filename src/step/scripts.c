@@ -184,19 +184,28 @@ static void remove_object(ob_step_data *data, const ob_script_turn *from, ob_scr
 	data->script_counts->requests++;
 }
 
-static void set_motor(ob_step_data *data, const ob_script_post *post)
+// Sets the target of a motor. true: that wakes its objects.
+static bool set_motor(const ob_sim *s, const ob_script_post *post)
 {
 	ob_script_motor m;
+	bool wakes = false;
 	if (post->used < sizeof m)
-		return;
+		return false;
 	memcpy(&m, post + 1, sizeof m);
-	if (m.joint < ob_joints_end(data) && isfinite(m.target))
-		data->joint[m.joint].axis.target = m.target;
+	if (m.joint >= ob_joints_end(s->data) || !isfinite(m.target))
+		return false;
+	ob_joint_passport *j = &s->data->joint[m.joint];
+	if (j->axis.target != m.target && !s->baseline)
+		wakes = ob_sim_wake_joined(s->u, j);
+	j->axis.target = m.target;
+	return wakes;
 }
 
-// Carries out the posts in a cell's outbox, which are aligned to 8 bytes.
-static void post_all(ob_step_data *data, const ob_script_turn *from, ob_script_cell *c)
+// Carries out the posts in a cell's outbox, which are aligned to 8 bytes. true: they wake objects.
+static bool post_all(const ob_sim *s, const ob_script_turn *from, ob_script_cell *c)
 {
+	ob_step_data *data = s->data;
+	bool wakes = false;
 	for (uint32_t at = 0; at + sizeof(ob_script_post) <= c->outbox_bytes;) {
 		ob_script_post *post = (ob_script_post *)(void *)(c->outbox + at);
 		at += (uint32_t)sizeof *post + post->bytes;
@@ -205,10 +214,11 @@ static void post_all(ob_step_data *data, const ob_script_turn *from, ob_script_c
 		else if (post->kind == OB_SCRIPT_REMOVE)
 			remove_object(data, from, post);
 		else if (post->kind == OB_SCRIPT_MOTOR)
-			set_motor(data, post);
+			wakes |= set_motor(s, post);
 		else
 			data->script_counts->requests++;
 	}
+	return wakes;
 }
 
 bool ob_scripts_carry_out(ob_sim *s)
@@ -225,7 +235,7 @@ bool ob_scripts_carry_out(ob_sim *s)
 		if (c->asks & ~(uint32_t)(OB_SCRIPT_ASKS_POST | OB_SCRIPT_ASKS_ERROR))
 			other |= change_object(s, turn->object, c);
 		if (c->asks & OB_SCRIPT_ASKS_POST)
-			post_all(data, turn, c);
+			other |= post_all(s, turn, c);
 		count->failed += (c->asks & OB_SCRIPT_ASKS_ERROR) != 0;
 		c->asks = 0;
 	}

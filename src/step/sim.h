@@ -52,6 +52,10 @@ void ob_sim_push(ob_universe *u, uint32_t id, ob_vec3 force, bool changes);
 // force, too.
 void ob_sim_kick(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist);
 
+// Host, at a pause, or a simulator where scripts' changes are carried out: wakes the objects of a joint. Returns true if one
+// was asleep.
+bool ob_sim_wake_joined(ob_universe *u, const ob_joint_passport *j);
+
 // Host, at a pause: the object goes on from this state; its contacts end, and its neighbours wake.
 void ob_sim_place_anew(ob_universe *u, uint32_t id, const ob_state *state);
 

@@ -143,15 +143,29 @@ bool ob_joint_broke_now(const ob_universe *u, uint32_t joint)
 	return u->step_data.joint_state[joint].broke == ob_step_count(u) && ob_step_count(u) > 0;
 }
 
+// True if one of its objects is asleep: then its load is the last one.
+static bool rests(const ob_universe *u, uint32_t joint)
+{
+	ob_motion m;
+	bool any = false;
+	for (int side = 0; side < 2; side++)
+		any |= ob_universe_get_motion(u, u->step_data.joint[joint].object[side], &m) &&
+		       m.flags & OB_MOTION_RESTS;
+	return any;
+}
+
 ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint)
 {
 	const ob_joint_state *s = &u->step_data.joint_state[joint];
 	const uint64_t step = ob_step_count(u), of = has_broken(u, joint) ? s->broke : step;
 	ob_joint_load out = { .broke = has_broken(u, joint) ? of : 0 };
-	if (s->stamp[of % 2] == of) {
-		out.force = s->version[of % 2].force;
-		out.torque = s->version[of % 2].torque;
-		out.along = s->version[of % 2].along;
+	uint32_t last = of % 2;
+	if (s->stamp[last] != of && s->stamp[!last] < of && s->stamp[!last] > s->stamp[last])
+		last = !last;
+	if (s->stamp[last] == of || (s->stamp[last] > 0 && s->stamp[last] < of && rests(u, joint))) {
+		out.force = s->version[last].force;
+		out.torque = s->version[last].torque;
+		out.along = s->version[last].along;
 	}
 	return out;
 }

@@ -207,6 +207,41 @@ def state(*words):
 	return found.group(1), done.stdout
 
 
+# Mechanisms that come to rest, and are woken: by a script's motor, a ball, the end of what held one.
+SLEEPERS = """scene { title = "Sleepers", duration = 2.5 }
+ground {}
+box { name = "base", size = { 1, 1, .4 }, at = { 0, 0, .2 }, script = [[
+	function on_start() self:wake(1.5) end
+	function on_wake() motor("axle", 2) end
+]] }
+box { name = "arm", size = { 1, .1, .1 }, at = { .5, 0, .5 } }
+hinge { "arm", "base", name = "axle", at = { 0, 0, .5 }, axis = { 0, 0, 1 }, motor = { rate = 0, most = 100 } }
+for i = 1, 4 do
+	box { name = "plank" .. i, size = { .4, .4, .1 }, at = { 3 + .5 * i, 0, .05 } }
+	if i > 1 then hinge { "plank" .. i, "plank" .. i - 1, at = { 2.75 + .5 * i, 0, .05 }, axis = { 0, 1, 0 }, friction = .1 } end
+end
+sphere { name = "ball", radius = .15, at = { 3.6, 0, 10 }, velocity = { 0, 0, .5 }, density = 3000 }
+sphere { name = "hook", radius = .1, at = { -3, 0, 3 }, static = true, dies = 1.6 }
+for i = 1, 3 do
+	capsule { name = "link" .. i, radius = .05, length = .3, at = { -3, 0, 3.15 - .45 * i } }
+	universal { "link" .. i, i > 1 and "link" .. i - 1 or "hook", at = { -3, 0, 3.35 - .45 * i }, axis = { 1, 0, 0 }, across = { 0, 1, 0 },
+		friction = .1, second = { friction = .1 } }
+end
+sphere { name = "look", radius = .1, at = { 90, 0, 0 }, static = true, script = [[
+	function on_start() self:wake(1.45) end
+	function on_wake()
+		if time() < 2 then self:wake(1) end
+		local arm, rate = joint("axle")
+		local link, plank = find("link3"), find("plank4")
+		local _, _, z = link:position()
+		local _, _, speed = link:velocity()
+		local _, turn = plank:spin()
+		print("@at", time(), rate, z, speed, turn)
+	end
+]] }
+"""
+
+
 class Joints(unittest.TestCase):
 	# The ball hits the wall in the first second.
 	scenes = [[program.scene("wrecking_ball"), "-D", "links=4", "-D", "rows=3", "--duration", 1.4],
@@ -217,7 +252,7 @@ class Joints(unittest.TestCase):
 			self.assertEqual(len({state(*scene, *way)[0] for way in WAYS}), 1, scene)
 
 	def test_mechanisms(self):
-		for text in (MECHANISMS, DRIVES, CRANK, BREAKS, GRABS, TWICE):
+		for text in (MECHANISMS, DRIVES, CRANK, BREAKS, GRABS, TWICE, SLEEPERS):
 			with tempfile.TemporaryDirectory() as folder:
 				path = kept(folder, text)
 				self.assertEqual(len({state(path, *way)[0] for way in WAYS}), 1)
@@ -234,6 +269,18 @@ class Joints(unittest.TestCase):
 			self.assertAlmostEqual(at["seat"][2], 1 - 15 * 9.81 / 2000, delta=1e-3)
 			self.assertAlmostEqual(at["lift"][2], 1.2, delta=fine)
 			self.assertAlmostEqual(at["car"][3], 2, delta=.01 if arch == "obs" else .1)
+
+	def test_sleepers(self):
+		with tempfile.TemporaryDirectory() as folder:
+			done = program.call("run", kept(folder, SLEEPERS), "--measure", "end")
+		self.assertEqual(done.returncode, 0, done.stderr)
+		at = [[float(x) for x in line.split()] for line in re.findall(r"@at (.*)", done.stderr)]
+		self.assertEqual(len(at), 2, done.stderr)
+		self.assertEqual(at[0][1::2], [0, 0], "not asleep before it is woken")
+		self.assertEqual(at[0][4], 0)
+		self.assertAlmostEqual(at[1][1], 2, 6)
+		self.assertLess(at[1][2], .5) # the links have fallen
+		self.assertNotEqual(at[1][4], 0)
 
 	def told(self, *words):
 		"""Instants and loads of all breaks by the joints' names, and the ended program."""
@@ -291,13 +338,13 @@ class Joints(unittest.TestCase):
 		self.assertEqual(re.findall(r"@(\w)\s+(\d)\s+(\d)", done.stderr), [("a", "0", "1"), ("b", "0", "1"), ("c", "0", "1")])
 
 	def test_again(self):
-		for text, durations in ((BREAKS, (1 / 60, .2, .8)), (GRABS, (.3, 1, 1.9))):
+		for text, end, durations in ((BREAKS, 1.5, (1 / 60, .2, .8)), (GRABS, 2, (.3, 1, 1.9)), (SLEEPERS, 2.5, (.5, 1.3, 1.6))):
 			with tempfile.TemporaryDirectory() as folder:
 				path, saved = kept(folder, text), os.path.join(folder, "kept.ck")
 				bits = state(path)[0]
 				for duration in durations:
 					state(path, "--duration", duration, "--checkpoint", saved)
-					self.assertEqual(state("--resume", saved, "--duration", 1.5 if text == BREAKS else 2)[0], bits)
+					self.assertEqual(state("--resume", saved, "--duration", end)[0], bits)
 				killed, words = state(path, "--isolation", "process", "--workers", 2, "--fault", "kill:p=.01,seed=3")
 				self.assertRegex(words, r"deaths +[1-9]")
 				self.assertEqual(killed, bits)

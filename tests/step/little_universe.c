@@ -48,6 +48,7 @@ ob_universe *little_populate(const little_scene *s, uint32_t workers)
 				    .capacity = s->capacity ? s->capacity : s->world.objects,
 				    .workers = workers,
 				    .hulls = s->world.hulls,
+				    .joints = s->world.joints,
 				    .terrains = s->world.terrains,
 				    .isolation = "thread",
 				    .checked = s->checked,
@@ -63,6 +64,7 @@ ob_universe *little_populate(const little_scene *s, uint32_t workers)
 			give_up("hull", "no room");
 	for (uint32_t i = 0; i < s->world.objects; i++)
 		ob_write_passport(u, i, &s->world.passport[i]);
+	ob_joints_write(u, s->world.joint, s->world.joints);
 	for (uint32_t i = 0; i < s->world.objects; i++)
 		ob_sim_place(u, i, &s->world.state[i]);
 	prescribe(u, &s->world);
