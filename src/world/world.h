@@ -74,6 +74,9 @@ ob_world_body ob_world_terrain(ob_world *w, ob_terrain *t, ob_vec3 p);
 // Joins two bodies, or one and the world (b: OB_JOINT_WORLD), as they are. frame: of the joint, at a place; its axes are
 // those of ob/joint.h. The joint may be edited until the next one is built; "axis" has no limits, and acts if its flag is set.
 ob_joint_passport *ob_world_join(ob_world *w, ob_joint_kind kind, uint32_t a, uint32_t b, ob_pose frame);
+// A ragdoll of ten bodies and nine joints, 1.8 m tall, with its feet's origin at p, turned by "lean" (rad): crosses at neck,
+// shoulders and hips, hinges at elbows and knees, all with limits and dry friction.
+void ob_world_ragdoll(ob_world *w, ob_vec3 p, double lean);
 // Plane z = 0, and the same turned by "angle" (rad) about y: bodies on it slide towards +x.
 ob_world_body ob_world_ground(ob_world *w);
 ob_world_body ob_world_slope(ob_world *w, double angle);

@@ -39,69 +39,12 @@ static const ob_quat z_axis = { 1, 0, 0, 0 }, y_axis = { M_SQRT1_2, -M_SQRT1_2, 
 
 // ---- a ragdoll
 
-enum { LIMBS = 8, BODIES = 2 + LIMBS };
-
-static ob_world_body limb(little_scene *s, ob_vec3 from, ob_vec3 to, double radius)
-{
-	const ob_vec3 d = ob_sub(to, from), n = ob_scale(d, 1 / ob_norm(d));
-	const double half = .5 * ob_norm(d);
-	ob_world_body b = ob_world_capsule(&s->world, 1000 * M_PI * radius * radius * (2 * half + 4. / 3 * radius),
-					   radius, half, ob_scale(ob_add(from, to), .5));
-	b.state->pose.q = ob_quat_normalize((ob_quat){ 1 + n.z, -n.y, n.x, 0 });
-	return b;
-}
-
-// Lets an axis turn so far, with dry friction (N m).
-static void stiffen(ob_joint_axis *a, double low, double high, double friction)
-{
-	a->low = low, a->high = high, a->friction = friction, a->damping = .1;
-}
-
-// Crosses at hips, shoulders and neck, hinges at knees and elbows, at this height and angle to the upright.
-static void ragdoll(little_scene *s, double height, double lean)
-{
-	const uint32_t first = s->world.objects, trunk = first, head = first + 1;
-	limb(s, ob_v3(0, 0, 1), ob_v3(0, 0, 1.4), .13);
-	ob_world_sphere(&s->world, 5, .11, ob_v3(0, 0, 1.68));
-	ob_joint_passport *j =
-		ob_world_join(&s->world, OB_JOINT_UNIVERSAL, head, trunk, (ob_pose){ { 0, 0, 1.55 }, z_axis });
-	stiffen(drive(j), -.5, .5, .3);
-	stiffen(&j->second, -.6, .6, .3);
-	for (int side = -1; side <= 1; side += 2) {
-		const uint32_t id = s->world.objects;
-		limb(s, ob_v3(0, .22 * side, 1.38), ob_v3(.05, .45 * side, 1.3), .05);
-		limb(s, ob_v3(.05, .5 * side, 1.28), ob_v3(.2, .65 * side, 1.2), .045);
-		limb(s, ob_v3(0, .1 * side, .88), ob_v3(.05, .12 * side, .55), .075);
-		limb(s, ob_v3(.05, .12 * side, .45), ob_v3(0, .13 * side, .1), .06);
-		const ob_vec3 at[] = { { 0, .17 * side, 1.4 },
-				       { .05, .475 * side, 1.29 },
-				       { 0, .1 * side, .93 },
-				       { .05, .12 * side, .5 } };
-		for (int k = 0; k < 4; k++) {
-			const bool knee = k % 2;
-			j = ob_world_join(&s->world, knee ? OB_JOINT_HINGE : OB_JOINT_UNIVERSAL, id + k,
-					  knee ? id + k - 1 : trunk, (ob_pose){ at[k], k == 3 ? y_axis : z_axis });
-			stiffen(drive(j), knee ? -.1 : -1.2, knee ? 2 : 1.2, .4);
-			if (!knee)
-				stiffen(&j->second, -1.3, 1.3, .4);
-		}
-	}
-	const ob_quat q = { cos(.5 * lean), .6 * sin(.5 * lean), .8 * sin(.5 * lean), 0 };
-	const ob_mat3 r = ob_quat_matrix(q);
-	for (uint32_t id = first; id < s->world.objects; id++) {
-		ob_pose *p = &s->state[id].pose;
-		p->p = ob_add(ob_rotate(&r, p->p), ob_v3(0, 0, height));
-		p->q = ob_quat_mul(q, p->q);
-		s->passport[id].friction = .8;
-	}
-}
-
 // Ragdolls that fall come to rest and sleep, none of their joints apart or beyond its limit; a ball that hits one wakes it.
 static void test_ragdoll(double height, double lean)
 {
 	little_scene *s = sleepy_scene();
 	little_universe l;
-	ragdoll(s, height, lean);
+	ob_world_ragdoll(&s->world, ob_v3(0, 0, height), lean);
 	ob_world_ground(&s->world);
 	little_open(&l, s);
 	double asleep = 0;
@@ -221,9 +164,9 @@ static void test_carried(void)
 
 int main(void)
 {
-	test_ragdoll(1, 1);
-	test_ragdoll(.5, 2.5);
-	test_ragdoll(.8, 1.7);
+	test_ragdoll(.8, .8);
+	test_ragdoll(.8, 1.2);
+	test_ragdoll(2.2, 2.8);
 	test_waking();
 	test_held();
 	test_carried();

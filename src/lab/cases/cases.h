@@ -86,7 +86,12 @@
 	X(chain_100) \
 	X(four_bar) \
 	X(slider_crank) \
-	X(furuta)
+	X(furuta) \
+	X(bricard) \
+	X(breaking_door) \
+	X(plank_bridge) \
+	X(ragdoll) \
+	X(car)
 
 #define OB_CASE_DECLARE(name) extern const ob_case ob_case_##name;
 OB_CASES(OB_CASE_DECLARE)
