@@ -307,20 +307,29 @@ static void update_poses(ob_island_work *w)
 			ob_body_update_pose(w, row);
 }
 
-// Leaves the rows of axes that are beyond a limit.
-static void keep_limits_alone(ob_island_work *w)
+static void disengage_axes(ob_island_work *w)
 {
-	update_poses(w);
-	ob_joints_find(w, w->joints.step_begin + w->time);
 	for (uint32_t i = 0; i < w->joints.count; i++) {
-		ob_held_joint *j = &w->joints.joint[i];
-		if (!j->axis)
-			continue;
-		j->along.softness = 0;
-		ob_axis_disengage(j);
-		if (j->along.value > j->axis->high || j->along.value < j->axis->low)
-			ob_axis_rest(j, j->along.value > j->axis->high ? 1 : -1, w->joints.now);
+		w->joints.joint[i].along.softness = 0;
+		ob_axis_disengage(&w->joints.joint[i]);
 	}
+}
+
+// Finds the rows, with those of axes that are beyond a limit. true: some have come.
+static bool find_with_limits(ob_island_work *w, double time)
+{
+	bool any = false;
+	ob_joints_find(w, time);
+	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		if (!j->axis || j->along.limit || !(j->along.value > j->axis->high || j->along.value < j->axis->low))
+			continue;
+		ob_axis_rest(j, j->along.value > j->axis->high ? 1 : -1, time);
+		any = true;
+	}
+	if (any)
+		ob_joints_find(w, time);
+	return any;
 }
 
 void ob_joints_project(ob_solver *s)
@@ -329,10 +338,11 @@ void ob_joints_project(ob_solver *s)
 	ob_island_work *w = &s->island;
 	double before = INFINITY, none;
 	if (w->joints.axes)
-		keep_limits_alone(w);
+		disengage_axes(w);
 	for (int round = 0; w->joints.count && round < ROUNDS; round++) {
 		update_poses(w);
-		ob_joints_find(w, w->joints.step_begin + w->time);
+		if (find_with_limits(w, w->joints.step_begin + w->time))
+			before = INFINITY;
 		const double error = largest_error(w, &none);
 		if (error <= none || !(error < .5 * before))
 			return;
@@ -588,14 +598,6 @@ static void fly_whole_part(ob_solver *s, const division *d, uint32_t part)
 		fly_with_axes(s, d, part);
 	else
 		fly_part(s, d, part, d->h);
-}
-
-static void disengage_axes(ob_island_work *w)
-{
-	for (uint32_t i = 0; i < w->joints.count; i++) {
-		w->joints.joint[i].along.softness = 0;
-		ob_axis_disengage(&w->joints.joint[i]);
-	}
 }
 
 static void find_axes(ob_island_work *w, double time)
