@@ -7,6 +7,7 @@ static const double steep_cap = .3, steep_side = .95; // cosines: a cap with les
 static const double steepest_face = .05; // cosine: over a cap, a steeper face has nothing but its edges
 static const double upright = 1e-6; // rad: a cap that leans by less is level
 static const double pressing = 1e-6; // relative to an acceleration: a smaller part along a facet presses nowhere
+static const double standing = 1 - 1e-6; // cosine: a cap that leans more, by 1.4 mrad, touches with its rim
 static const double parallel = .99; // cosine: caps with rims that count as in one plane
 static const double border = 1e-9; // relative to the facet's size: so far outside counts as inside
 static const double as_low = 1e-4; // relative to ob_spots' same: spots that are lower by less are not lower
@@ -97,6 +98,12 @@ typedef struct disc {
 	ob_vec3 centre, normal; // outward
 	double radius;
 } disc;
+
+// Returns the radius (m) of a cap of four points that stands on the other facet; 0: it leans on its rim.
+static double standing_radius(const ob_spots *s, const disc *cap)
+{
+	return s->n == 4 && fabs(ob_dot(cap->normal, s->normal)) > standing ? cap->radius : 0;
+}
 
 typedef struct polygon {
 	int n;
@@ -254,8 +261,8 @@ static void polygon_and_disc(ob_spots *s, const polygon *p, const disc *c, const
 			add(s, polygon_is_on ? y : x, polygon_is_on ? x : y);
 		}
 	}
-	if (whole == 4 && s->n == 4)
-		s->disc_radius = c->radius;
+	if (whole == 4)
+		s->disc_radius = standing_radius(s, c);
 }
 
 // Finds the crossing of two discs' rims near x, which is in the plane of the first, as seen along the normal n. Solves
@@ -295,7 +302,7 @@ static void disc_and_disc(ob_spots *s, const disc *on, const disc *over, const o
 			add(s, y, x), whole++;
 	}
 	if (!level || l + q <= r * (1 + border)) {
-		s->disc_radius = whole == 4 && s->n == 4 ? q : 0;
+		s->disc_radius = whole == 4 ? standing_radius(s, over) : 0;
 	} else if (l + r <= q * (1 + border)) {
 		s->n = 0;
 		for (int k = 0; k < 4; k++) {
@@ -379,7 +386,7 @@ static void cap_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 			ob_vec3 x = ob_madd(cap.centre, cap.radius, rim[k]);
 			add(s, into_plane(x, s->normal, on->p, s->normal), x);
 		}
-		s->disc_radius = s->n == 4 ? cap.radius : 0;
+		s->disc_radius = standing_radius(s, &cap);
 	} else if (ob_shape_is(on->shape, OB_CORNERED)) {
 		const polygon p = face_of(on, s->normal);
 		polygon_and_disc(s, &p, &cap, rim, true);
