@@ -115,7 +115,7 @@ typedef struct ob_solver_iteration {
 	bool first; // first iteration of the substep: sets the bias from the gaps
 	bool jacobi; // adds the changes to delta instead of the velocities
 	bool ghosts; // velocities change between iterations, even in isolated lanes
-	double resting_gap, turning_gap; // m: a loaded point keeps a gap below this; turning_gap if the geometry turns
+	double resting_gap; // m: a loaded point keeps a gap below this
 	const ob_body_row *dv; // expected change of v in the substep
 } ob_solver_iteration;
 

@@ -556,7 +556,7 @@ PER_KIND void set_bias(ob_batch *b, ob_batch_kind kind, const ob_solver_iteratio
 	for (int i = 0; i < points_of(kind); i++)
 		b->bias[i] = b->gap[i] + moved[i];
 	const lane_mask turning = lanes_mask(b->turning);
-	const lanes most = lanes_select(turning, lanes_of(iteration->turning_gap), lanes_of(iteration->resting_gap));
+	const lanes most = lanes_of(iteration->resting_gap);
 	lane_mask keeps[4];
 	for (int i = 0; i < points_of(kind); i++)
 		keeps[i] = bias_keeps(b->impulse[i], b->bias[i], most);

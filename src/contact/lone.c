@@ -511,8 +511,7 @@ static inline lanes lone_bias(const ob_batch *b, int l, const lone *p, const lon
 	const double h = iteration->h;
 	const bool turning = b->turning >> l & 1;
 	lanes bias = lone_four(b->gap, l) + lone_rates_of(b, l, o, d).opening;
-	const lanes most = lanes_of(turning ? iteration->turning_gap : iteration->resting_gap);
-	const lane_mask keeps = bias_keeps(p->x, bias, most);
+	const lane_mask keeps = bias_keeps(p->x, bias, lanes_of(iteration->resting_gap));
 	if (b->elastic >> l & 1) {
 		const lanes gained = lone_rates_of(b, l, o, iteration->dv).opening;
 		bias += bias_of_fall(bias, now, gained, h);

@@ -27,7 +27,6 @@ static const int max_settling_rounds = 32; // in a partial substep
 static const uint32_t max_settling_iterations = 512, max_failures = 4; // iterations; failures of direct solves
 
 static const double resting_gap = 1e-7; // m: a point that presses keeps its gap if that is smaller
-static const double turning_gap = 3e-6; // m: the same for contacts whose geometry turns
 
 // Few contacts in smooth motion (OB_FEW_CONTACTS at most) are solved to the end, in any order of contacts. Otherwise,
 // the remainder of each partial substep would be a force that nothing exerts.
@@ -163,7 +162,6 @@ void ob_solver_converge(ob_solver *s, double enough, uint32_t max_iterations)
 		.jacobi = s->methods.jacobi,
 		.ghosts = s->methods.restless,
 		.resting_gap = resting_gap * s->island.unit.length,
-		.turning_gap = turning_gap * s->island.unit.length,
 		.dv = s->island.dv,
 	};
 	converge(s, &iteration, max_iterations);
@@ -274,7 +272,6 @@ void ob_solver_iterate(ob_solver *s)
 		.jacobi = s->methods.jacobi,
 		.ghosts = s->methods.restless,
 		.resting_gap = resting_gap * w->unit.length,
-		.turning_gap = turning_gap * w->unit.length,
 		.dv = w->dv,
 	};
 	const double usual = iteration.wake_threshold;

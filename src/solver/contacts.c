@@ -185,10 +185,12 @@ static const double same_place = .2; // share of the smaller thickness: a point 
 static const double same_normal = .9; // cosine: no point is the same if the normal has turned farther
 static const double same_rim = .5; // share of the radius: distance that a rim may roll on with the same geometry
 
-// Returns the old point that carries load; -1 if there is none, or several.
-static int only_loaded(const saved_impulses *old)
+// Returns the old point that carries load, or the only one; -1 if there is none, or several.
+static int the_loaded(const saved_impulses *old)
 {
 	int found = -1;
+	if (old->points == 1)
+		return 0;
 	for (uint32_t k = 0; k < old->points; k++)
 		if (old->impulse[k] > 0) {
 			if (found >= 0)
@@ -262,7 +264,7 @@ static void match_points(const ob_island_work *w, ob_contact *contact, const sav
 	const unsigned taken = match_nearest(contact, old, sphere ? INFINITY : near * near);
 	if (contact->was[0] >= 0 || !(ob_shape_is(sa, OB_RIMMED) || ob_shape_is(sb, OB_RIMMED)))
 		return;
-	const int k = only_loaded(old);
+	const int k = the_loaded(old);
 	if (k < 0 || taken >> k & 1)
 		return;
 	const ob_vec3 moved = ob_sub(contact->arm_a[0], old->arm[k]);

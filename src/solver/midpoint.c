@@ -15,7 +15,8 @@ static const double least_turning = 1e-6; // m/s^2: less change of a row by turn
 static const double least_face_turning = 5e-5; // the same with three held points, which leave no freedom to tilt
 static const double longest_way = .2; // share of the smaller thickness: longest path of halved bodies in a partial
 	// substep
-static const double loose_gap = 1e-5; // m: a point farther off is not held at the surface
+static const double loose_gap = 1e-5; // m: a point farther off is not held at the surface, unless turning opens more
+static const double still_share = 1e-3; // of the rate that turning adds: a slower point is at rest on the surface
 
 // Returns the least change of velocity, m/s, in the partial substep that is noticed.
 static double least_change(const ob_island_work *w, uint32_t held)
@@ -73,7 +74,17 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 	return change > least_change(w, 0) &&
 	       (load_of(w, contact) > 0 ||
 		ob_contact_gap(w, contact) < loose_gap * w->unit.length + 2 * w->h * change) &&
-	       ob_contact_speed(w, contact) * w->h < longest_way * ob_min(a->thickness, b->thickness);
+	       (ob_shape_is(a->shape, OB_UNBOUNDED) || ob_shape_is(b->shape, OB_UNBOUNDED) ||
+		ob_contact_speed(w, contact) * w->h < longest_way * ob_min(a->thickness, b->thickness));
+}
+
+static void mark(ob_solver *s, ob_contact *contact)
+{
+	ob_island_work *w = &s->island;
+	ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
+	contact->turns = s->methods.instants && !a->among_others && !b->among_others && turns_noticeably(w, contact);
+	a->turns |= contact->turns;
+	b->turns |= contact->turns;
 }
 
 void ob_midpoint_mark(ob_solver *s)
@@ -90,14 +101,8 @@ void ob_midpoint_mark(ob_solver *s)
 		    ob_contact_in_reach(w, contact))
 			a->among_others = b->among_others = true;
 	}
-	for (uint32_t i = 0; i < w->contacts; i++) {
-		ob_contact *contact = &w->contact[i];
-		ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-		contact->turns =
-			s->methods.instants && !a->among_others && !b->among_others && turns_noticeably(w, contact);
-		a->turns |= contact->turns;
-		b->turns |= contact->turns;
-	}
+	for (uint32_t i = 0; i < w->contacts; i++)
+		mark(s, &w->contact[i]);
 }
 
 // ---- rows
@@ -185,9 +190,18 @@ static double turned(double now, double start, double impulse)
 	return start * impulse < 0 || fabs(start) > fabs(now - start) ? now - start : now;
 }
 
+// Returns the gap (m) that a pressed point keeps. As seen from the midpoint the start's gap is off by a quarter of what turning
+// adds. To close that would take the load away, and what approaches then would be stopped, which loses energy, in one partial
+// substep after another.
+static double kept_gap(const ob_island_work *w, double added)
+{
+	return loose_gap * w->unit.length + .3 * w->h * fabs(added);
+}
+
 // Sets the velocity by turning of each row. A point that opens at the midpoint may come back as fast, so no push on it
 // does work. The start's geometry is interpolated between the one before and this; a new point moved with its bodies.
-static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geometry *old)
+// Returns a bit for each point that is held. start_gap: m, of each point.
+static unsigned set_turn(ob_island_work *w, const ob_contact *contact, const old_geometry *old, const double *start_gap)
 {
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES, ia = contact->a, ib = contact->b;
@@ -198,7 +212,7 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 	const int points = (int)contact->points;
 	ob_vec3 arm_a0[OB_PAIR_POINTS], arm_b0[OB_PAIR_POINTS];
 	double gap[OB_PAIR_POINTS], most = 0;
-	uint32_t held_points = 0;
+	unsigned held_points = 0;
 	for (uint32_t j = 0; j < contact->points; j++) {
 		const int k = contact->was[j];
 		const ob_vec3 ra = contact->arm_a[j], rb = contact->arm_b[j];
@@ -207,8 +221,9 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 		ob_vec3 now = ob_sub(velocity_at(va, wa, ra), velocity_at(vb, wb, rb));
 		ob_vec3 start = ob_sub(velocity_at(va, wa0, arm_a0[j]), velocity_at(vb, wb0, arm_b0[j]));
 		const double opens = ob_dot(n, now), added = opens - ob_dot(start_n, start);
-		const bool pressed = b->impulse[j][l] > 0, held = pressed && b->gap[j][l] < loose_gap * w->unit.length;
-		held_points += held;
+		const bool stays = added < 0 && fabs(opens - added) <= still_share * -added,
+			   pressed = b->impulse[j][l] > 0 || stays, held = pressed && start_gap[j] < kept_gap(w, added);
+		held_points |= (unsigned)held << j;
 		b->turn[j][l] = ob_max(opens, held ? added : 0);
 		most = ob_max(most, ob_max(b->turn[j][l], pressed ? fabs(added) : 0));
 		gap[j] = b->gap[j][l];
@@ -227,8 +242,9 @@ static void set_turn(ob_island_work *w, const ob_contact *contact, const old_geo
 	b->turn[4][l] = ob_dot(slide, t1);
 	b->turn[5][l] = ob_dot(slide, t2);
 	b->turn[6][l] = turned(ob_dot(n, ob_sub(wa, wb)), ob_dot(start_n, ob_sub(wa0, wb0)), b->impulse[6][l]);
-	if (most > least_change(w, held_points))
+	if (most > least_change(w, (uint32_t)__builtin_popcount(held_points)))
 		b->turning |= 1u << l;
+	return held_points;
 }
 
 // Finds the contact at the midpoint, with the gaps at the start as extrapolated from there.
@@ -244,12 +260,15 @@ static void find_at_midpoint(ob_solver *s, ob_contact *contact)
 	if (contact->lane == OB_NO_LANE)
 		return;
 	contact->since = -.5 * w->h;
-	set_turn(w, contact, &old);
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES;
+	double gap[OB_PAIR_POINTS];
 	for (uint32_t j = 0; j < contact->points; j++)
-		b->gap[j][l] += ob_impacts_slack(s, contact, j) -
-				row_velocity(b, l, j, w->body[contact->a].first_half, w->body[contact->b].first_half);
+		gap[j] = b->gap[j][l] + ob_impacts_slack(s, contact, j) -
+			 row_velocity(b, l, j, w->body[contact->a].first_half, w->body[contact->b].first_half);
+	const unsigned held = set_turn(w, contact, &old, gap);
+	for (uint32_t j = 0; j < contact->points; j++)
+		b->gap[j][l] = held >> j & 1 ? ob_min(gap[j], 0) : gap[j];
 }
 
 static bool at_midpoint(const ob_island_work *w, const ob_contact *contact)
@@ -296,6 +315,11 @@ void ob_midpoint_begin(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	ob_solver_enter(s, OB_PROFILE_NARROWPHASE);
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		if (contact->began && !contact->turns && contact->since == 0 && !contact->as_of_instant)
+			mark(s, contact);
+	}
 	if (!all_go_on(s)) {
 		leave_midpoint(s);
 		return;

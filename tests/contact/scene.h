@@ -65,7 +65,6 @@ static inline ob_solver_iteration iteration_on(const scene *s, bool first)
 				      .impact_threshold = .1,
 				      .first = first,
 				      .resting_gap = 1e-7,
-				      .turning_gap = 1e-5,
 				      .dv = s->dv };
 }
 
