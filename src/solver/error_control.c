@@ -8,6 +8,7 @@ static_assert(1 << (OB_SUBSTEP_CHOICES - 1) == OB_MAX_SUBSTEPS, "each number of 
 static const uint32_t max_substeps_for_creep = 64; // more do not help friction to hold
 static const double creep_time = 1; // s: time for which slip is remembered
 static const double sticking_share = .999; // share of its bound: friction holds if its impulse is smaller
+static const double aim = .9; // share of the tolerance: a step that ends at all of it leaves nothing to the next
 static const double error_ratio = 8; // factor by which the error may grow with half as many substeps
 
 uint32_t ob_error_control_substeps(const ob_solver *s, const ob_island_input *in)
@@ -161,6 +162,20 @@ static void set_next_substeps(ob_solver *s)
 	}
 }
 
+// Finds contacts anew that may be deeper than the tolerance: corners that were no contact points approach by the path at most.
+static void renew_deep(ob_solver *s)
+{
+	const ob_island_work *w = &s->island;
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		ob_contact *contact = &w->contact[i];
+		if (contact->lane == OB_NO_LANE || contact->since == 0 ||
+		    !(contact->path - ob_contact_gap(w, contact) > s->settings->tolerance))
+			continue;
+		s->counters.narrowphase_tests++;
+		ob_contact_find(s, contact);
+	}
+}
+
 bool ob_error_control_accept(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
@@ -168,10 +183,11 @@ bool ob_error_control_accept(ob_solver *s)
 	if (!has_tolerance(s))
 		return true;
 	ob_contacts_update(s, 0);
+	renew_deep(s);
 	ob_error_control_note_depth(s, false);
 	note_creep(s);
 	w->error = ob_max(w->depth, ob_max(w->creep, w->bounce));
-	if (w->new_error > tolerance && w->substeps < max_substeps) {
+	if (w->new_error > aim * tolerance && w->substeps < max_substeps) {
 		w->substeps *= w->new_error > 16 * tolerance ? 4 : 2;
 		w->substeps = w->substeps < max_substeps ? w->substeps : max_substeps;
 		return false;

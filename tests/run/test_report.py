@@ -103,13 +103,13 @@ class Report(program.Case):
 		self.assertIn(" kept, ", done.stdout)
 
 	def test_rolling_is_refined(self):
-		"""A small disk that rolls takes more substeps once its errors are seen, and keeps its energy from then on."""
+		"""A disk that rolls takes more substeps once its errors are seen, and keeps its energy from then on."""
 		disk = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "disk.lua")
 		for degrees in "3", "5", "10":
-			words = [disk, "-D", "radius=.1", "-D", f"degrees={degrees}"]
-			first, second = (program.report(*words, "--duration", d) for d in ("1", "2"))
+			first, second = (program.report(disk, "-D", f"degrees={degrees}", "--duration", d) for d in ("1", "2"))
 			self.assertIn(second["substeps_max"], (32, 64), degrees)
 			self.assertLess(abs(second["energy_end"] / first["energy_end"] - 1), 1e-4, degrees)
+			self.assertEqual((first["bounded_share"], second["bounded_share"]), (0, .5), degrees)
 
 	def test_tolerance_by_size(self):
 		"""A share is one of the thinnest object's thickness; a length that is coarse for it is warned of."""
