@@ -42,9 +42,8 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 						OB_OPTION_REPLAY_SCHEDULE };
 	// what a free run has not
 	static const ob_option_id of_lockstep[] = {
-		OB_OPTION_ARCH,       OB_OPTION_HARDEN,  OB_OPTION_TOLERANCE, OB_OPTION_STRICT,
-		OB_OPTION_LAG,        OB_OPTION_EXPLAIN, OB_OPTION_TRACE,     OB_OPTION_CHECK,
-		OB_OPTION_CHECKPOINT, OB_OPTION_RESUME,  OB_OPTION_ON_DEATH,
+		OB_OPTION_ARCH,    OB_OPTION_HARDEN, OB_OPTION_TOLERANCE,  OB_OPTION_STRICT, OB_OPTION_LAG,
+		OB_OPTION_EXPLAIN, OB_OPTION_CHECK,  OB_OPTION_CHECKPOINT, OB_OPTION_RESUME, OB_OPTION_ON_DEATH,
 	};
 	const char *sync = a->value[OB_OPTION_SYNC], *coupling = a->value[OB_OPTION_COUPLING];
 	r->free = (ob_free_settings){ .update_rate = NAN, .max_lag = NAN, .coupling = UINT32_MAX };

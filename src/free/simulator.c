@@ -9,6 +9,7 @@
 #include "free/neighbours.h"
 #include "free/view.h"
 #include "motion/flight.h"
+#include "table/trace.h"
 
 // Sleeps until the host ends the sleep.
 static void sleep_in_flight(const ob_universe *u, uint32_t id)
@@ -197,6 +198,8 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 		s->failed = true;
 		return false;
 	}
+	if (ob_universe_traced(x->u))
+		ob_trace_moves(x->u, x->worker, s->id, s->motion.flags, m.flags);
 	s->motion = m;
 	s->flies = m.flags & OB_MOTION_FREE && x->near == 0;
 	const ob_ledger *ledger = x->free->coupling == OB_COUPLING_LEDGER ? &s->ledger : NULL;

@@ -79,6 +79,7 @@ typedef struct ob_free_sim {
 // Memory that a worker's simulators share: the solver and its scratch memory.
 typedef struct ob_free_scratch {
 	ob_universe *u;
+	uint32_t worker;
 	const ob_free_settings *free;
 	ob_free_schedule *schedule; // NULL: none
 	ob_run_settings run; // the island solver's: its step is the running simulator's

@@ -9,6 +9,7 @@
 #include "free/lag.h"
 #include "free/view.h"
 #include "step/fault.h"
+#include "table/trace.h"
 
 typedef struct worker {
 	ob_universe *u;
@@ -18,6 +19,7 @@ typedef struct worker {
 	ob_free_scratch scratch;
 	uint32_t until; // as of the last look
 	uint64_t fault_chances;
+	ob_trace_event span; // of the trace, as it goes on; kind NONE: none
 } worker;
 
 uint32_t ob_free_worker_of(const ob_universe *u, uint32_t id)
@@ -58,6 +60,7 @@ static bool begin(worker *w, ob_universe *u, uint32_t number)
 	for (uint32_t id = 0, n = 0; w->id && id < capacity; id++)
 		if (ob_free_worker_of(u, id) == number)
 			w->id[n++] = id;
+	w->scratch.worker = number;
 	return w->sim && w->id && ob_free_scratch_begin(&w->scratch, u);
 }
 
@@ -94,13 +97,27 @@ static ob_free_sim *earliest(worker *w, ob_free_sim **blocked)
 	return first;
 }
 
+// Ends the span of the trace that goes on, and begins another. Steps that follow each other are one span.
+static void turn_to(worker *w, ob_trace_kind kind, uint32_t a, uint32_t b)
+{
+	const bool same = kind == w->span.kind && (kind != OB_TRACE_LAG || (a == w->span.a && b == w->span.b));
+	if (!ob_universe_traced(w->u) || same)
+		return;
+	const uint64_t now = w->span.kind == OB_TRACE_NONE ? ob_clock_ns()
+							   : ob_trace_span(w->u, w->worker, w->span.kind, w->span.begin,
+									   w->span.a, w->span.b);
+	w->span = (ob_trace_event){ .begin = now, .kind = kind, .a = a, .b = b };
+	ob_trace_doing(w->u, w->worker, kind, now);
+}
+
 // Sleeps until a simulator is due by the clock. false: it is due.
-static bool wait_for_clock(const worker *w, const ob_free_sim *s)
+static bool wait_for_clock(worker *w, const ob_free_sim *s)
 {
 	const double most = .02;
 	const uint64_t due = ob_free_due_ns(w->u, s->time), now = ob_clock_ns();
 	if (now >= due)
 		return false;
+	turn_to(w, OB_TRACE_CLOCK, 0, 0);
 	const double left = ob_min(most, 1e-9 * (double)(due - now));
 	nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * left) }, NULL);
 	return true;
@@ -110,16 +127,20 @@ static void work(worker *w)
 {
 	ob_free_sim *blocked, *s = earliest(w, &blocked);
 	if (!s && blocked) {
+		turn_to(w, OB_TRACE_LAG, blocked->id, blocked->blocker);
 		blocked->counts.waits++;
 		blocked->counts.wait_ns += ob_free_wait_for(w->u, blocked->id, blocked->blocker, blocked->needed);
 		ob_free_put_counts(w->u, blocked->id, &blocked->counts);
 	} else if (!s) {
+		turn_to(w, OB_TRACE_WAIT, 0, 0);
 		if (w->sims == 1 && w->sim->present)
 			ob_free_sim_sleep(w->sim, &w->scratch, w->until * w->scratch.boundary);
 		ob_free_wait_for_host(w->u, w->until);
 	} else if (!wait_for_clock(w, s) && ob_free_lag_allows(s, &w->scratch)) {
 		ob_worker_set_object(w->u, w->worker, s->id);
+		turn_to(w, OB_TRACE_STEPS, 0, 0);
 		ob_free_sim_step(s, &w->scratch);
+		w->span.a++;
 		ob_fault_chance_of(w->u, w->worker, &w->fault_chances);
 	}
 }
@@ -129,12 +150,15 @@ static void replay(worker *w)
 {
 	ob_free_planned_step step;
 	if (!ob_free_schedule_next(w->scratch.schedule, &step) || step.end > w->until * w->scratch.boundary) {
+		turn_to(w, OB_TRACE_WAIT, 0, 0);
 		ob_free_wait_for_host(w->u, w->until);
 		return;
 	}
+	turn_to(w, OB_TRACE_STEPS, 0, 0);
 	ob_free_sim *s = &w->sim[step.id]; // there is one worker
 	if (!step.anew || ob_free_sim_begin(s, w->u, step.id))
 		ob_free_sim_step(s, &w->scratch);
+	w->span.a++;
 	ob_free_schedule_take(w->scratch.schedule);
 }
 
@@ -158,6 +182,7 @@ bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
 			work(&w);
 		fine = fine && ob_free_schedule_is_fine(w.scratch.schedule, e);
 	}
+	turn_to(&w, OB_TRACE_NONE, 0, 0);
 	ob_counters_copy(ob_worker_counters(u, number), &w.scratch.solver.counters);
 	finish(&w);
 	return fine;

@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/utf8.h"
+#include "table/free.h"
 #include "table/table.h"
 
 enum {
@@ -28,7 +29,7 @@ struct ob_trace_file {
 	bool streamed; // a pipe: written text cannot be overwritten
 	off_t end; // end of the events in the file
 	uint32_t workers;
-	bool monolith;
+	bool monolith, free_run;
 	uint64_t zero; // ns
 	size_t used;
 	char text[BUFFER];
@@ -212,11 +213,14 @@ static const char *name_of(const ob_trace_file *f, const ob_trace_event *e)
 	static const char *const names[OB_TRACE_KINDS] = {
 		[OB_TRACE_WAIT] = "gate",         [OB_TRACE_SOLVE] = "solve",     [OB_TRACE_OBJECTS] = "objects",
 		[OB_TRACE_SCHEDULE] = "schedule", [OB_TRACE_CHUNK] = "chunk",     [OB_TRACE_ISLAND] = "island",
+		[OB_TRACE_STEPS] = "steps",       [OB_TRACE_CLOCK] = "clock",     [OB_TRACE_LAG] = "lag",
 		[OB_TRACE_SNAPSHOT] = "snapshot", [OB_TRACE_MEASURE] = "measure", [OB_TRACE_RECORD] = "record",
 		[OB_TRACE_DRAW] = "draw",         [OB_TRACE_ENCODE] = "encode",
 	};
 	if (e->kind == OB_TRACE_PROFILE)
 		return ob_profile_name(e->a);
+	if (e->kind == OB_TRACE_WAIT && f->free_run)
+		return "host"; // there is no gate
 	return e->kind == OB_TRACE_SOLVE && f->monolith ? "world" : names[e->kind];
 }
 
@@ -237,6 +241,12 @@ static void add_arguments(ob_trace_file *f, const ob_trace_event *e, bool unfini
 	if (e->kind == OB_TRACE_ISLAND) {
 		add_member(f, "\"first\":", e->a);
 		add_member(f, ",\"bodies\":", e->b);
+	}
+	if (e->kind == OB_TRACE_STEPS)
+		add_member(f, "\"steps\":", e->a);
+	if (e->kind == OB_TRACE_LAG) {
+		add_member(f, "\"object\":", e->a);
+		add_member(f, ",\"waits_for\":", e->b);
 	}
 	if (e->kind == OB_TRACE_DRAW || e->kind == OB_TRACE_ENCODE)
 		add_member(f, "\"frame\":", e->a);
@@ -336,6 +346,7 @@ ob_trace_file *ob_trace_file_open(const char *path, const ob_universe *u, ob_err
 	f->path = path;
 	f->workers = ob_universe_workers(u);
 	f->monolith = ob_universe_settings(u)->monolith;
+	f->free_run = ob_free_settings_of(u);
 	f->zero = ob_clock_ns();
 	f->fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 	if (f->fd < 0) {

@@ -1,5 +1,6 @@
 #include "serve/facts.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -359,6 +360,18 @@ static void put_readings(ob_message *m, const ob_universe *u, uint32_t id)
 	ob_message_print(m, "]");
 }
 
+// Own time of an object of a free run, ahead of the common time, and the object that its simulator waits for.
+static void put_own_time(ob_message *m, const ob_universe *u, uint32_t id, double common)
+{
+	double own;
+	uint32_t blocker;
+	if (!ob_universe_get_own_time(u, id, &own))
+		return;
+	ob_message_print(m, ",\"ahead_s\":%.6f", own - common);
+	if (ob_free_blocker(u, id, &blocker))
+		ob_message_print(m, ",\"waits_for\":%" PRIu32, blocker);
+}
+
 ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t id)
 {
 	const ob_universe *u = ob_host_universe(h);
@@ -398,6 +411,7 @@ ob_message *ob_facts_details(const ob_scene *scene, const ob_host *h, uint32_t i
 		ob_message_print(m, ",\"worker\":%u,\"tid\":%d,\"cpu\":%d", entry.id, worker.tid, worker.cpu);
 	put_home(m, u, id);
 	put_readings(m, u, id);
+	put_own_time(m, u, id, info.time);
 	ob_message_print(m, "}}");
 	return m;
 }

@@ -27,6 +27,9 @@ typedef enum ob_trace_kind {
 	OB_TRACE_CHUNK, // islands claimed at once; a, b as above
 	OB_TRACE_ISLAND, // a = lowest id, b = bodies
 	OB_TRACE_PROFILE, // a = ob_profile_section
+	OB_TRACE_STEPS, // of a free run's simulators; a = their number
+	OB_TRACE_CLOCK, // a free run's worker waits until a step is due
+	OB_TRACE_LAG, // the bound of the lag: the simulator of object a waits for that of object b
 	OB_TRACE_STATE, // object a has been in a state until now; b = ob_trace_state before | state after << 8
 	OB_TRACE_BIRTH, // of object a
 	OB_TRACE_DEATH, // of object a

@@ -138,7 +138,7 @@ sphere { radius = .1, at = {19, 0, 20} }
 			(["--tolerance", "1mm"], "tolerance"), (["--harden", "--isolation", "process"], "harden"),
 			(["--arch", "monolith"], "arch"), (["--lag", "1", "--solver", "lagged"], "lag"),
 			(["--checkpoint", self.path("c")], "checkpoint"), (["--sleeping", "on"], "sleeping"),
-			(["--explain"], "explain"), (["--check"], "check"), (["--trace", self.path("t")], "trace"),
+			(["--explain"], "explain"), (["--check"], "check"),
 			(["--on-death", "freeze"], "on-death"), (["--solver", "jacobi"], "solver"),
 			(["--measure", "profile"], "profile"),
 		]:

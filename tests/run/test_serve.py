@@ -74,6 +74,22 @@ class Serve(Case):
 		self.assertEqual(set(late.objects), set(one.objects))
 		self.end()
 
+	def test_free_run(self):
+		"""While a simulator of a free run stands, a viewer sees that its neighbour waits for it, at the bound of the lag."""
+		self.serve("--sync", "free", "--max-lag", ".02", "--isolation", "process", "--workers", "objects", "-D", "n=3",
+			"--coupling", "ledger", scene="stack")
+		v = self.viewer()
+		v.send(do="inspect", id=2)
+		v.until(lambda: v.told.get("details", {}).get("pid"))
+		pid = v.told["details"]["pid"]
+		v.send(do="inspect", id=3)
+		v.until(lambda: v.told["details"]["id"] == 3 and "ahead_s" in v.told["details"])
+		os.kill(pid, signal.SIGSTOP)
+		v.until(lambda: v.told["details"].get("waits_for") == 2)
+		os.kill(pid, signal.SIGCONT)
+		v.until(lambda: "waits_for" not in v.told["details"])
+		self.end()
+
 	def test_frozen(self):
 		"""An object whose simulator has died stays in place, and all viewers are notified, later ones, too."""
 		self.serve("-D", "n=8", "--isolation", "process", "--workers", "objects", "--on-death", "freeze", "--room", "0",

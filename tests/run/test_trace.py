@@ -14,6 +14,7 @@ WAYS = [["--isolation", i, "--workers", w] for i in ("thread", "process") for w 
 HOST, WORKERS, OBJECTS = 1, 2, 3  # "processes" of the file
 PHASES = {"gate", "solve", "objects", "schedule", "world"}
 STATES = {"flies", "touches", "asleep", "awake"}
+FREE = {"steps", "lag", "clock", "host"}  # phases of a free run
 PARTS = {"ballistic", "load", "narrowphase", "impacts", "solve", "move", "project", "publish"}
 
 
@@ -64,11 +65,11 @@ class Trace(program.Case):
 			if e["ph"] == "X":
 				around.append(e)
 
-	def check_worker(self, events, deaths):
+	def check_worker(self, events, deaths, known=PHASES):
 		spans = sorted((e for e in events if e["ph"] == "X"), key=lambda e: (e["ts"], e["depth"]))
 		phases = [e for e in spans if e["depth"] == 0]
-		self.assertLessEqual({e["name"] for e in phases}, PHASES)
-		self.assertIn("gate", {e["name"] for e in phases})
+		self.assertLessEqual({e["name"] for e in phases}, known)
+		self.assertTrue({e["name"] for e in phases} & {"gate", "host"})
 		gaps = [after["ts"] for before, after in zip(phases, phases[1:]) if before["ts"] + before["dur"] != after["ts"]]
 		self.assertLessEqual(len(gaps), len(deaths), "a gap between phases, and all were alive")
 		for end, death in zip(gaps, deaths):
@@ -159,6 +160,29 @@ class Trace(program.Case):
 				self.assertLess(span("on it")[1], span("first")[1])
 				self.assertGreater(span("late")[0], span("first")[0])
 				self.assertLess(span("late")[0], span("on it")[1])
+
+	def test_free_run(self):
+		"""Steps, and who waits for whom: for one that it may touch."""
+		words = [program.scene("stack"), "-D", "n=4", "--duration", ".5", "--sync", "free", "--coupling", "ledger", "--update-rate",
+			"240"]
+		for way in WAYS:
+			with self.subTest(way=way):
+				r = program.report(*words, *way, "--trace", self.path("t.json"))
+				tracks, steps, waits = self.read(self.path("t.json")), 0, 0
+				for (pid, _), events in tracks.items():
+					self.check_nesting(events)
+					if pid == WORKERS:
+						self.check_worker(events, [], FREE)
+					if pid == OBJECTS:
+						self.check_object(events)
+					for e in events:
+						steps += e["args"]["steps"] if e["name"] == "steps" else 0
+						waits += e["name"] == "lag"
+						if e["name"] == "lag":
+							self.assertEqual(abs(e["args"]["object"] - e["args"]["waits_for"]), 1, "neighbours in the stack")
+				self.assertEqual(steps, r["updates"])
+				self.assertTrue(waits <= r["waits"] and (waits > 0) == (r["waits"] > 0), (waits, r["waits"]))
+				self.assertEqual(self.other["lost"], 0)
 
 	def test_monolith(self):
 		r = program.report(program.scene("falling_boxes"), "-D", "n=20", "--duration", "2", "--arch", "monolith", "--trace",

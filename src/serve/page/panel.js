@@ -232,6 +232,8 @@ export class Panel extends EventTarget {
 			facts.push(['simulator', this.pool]);
 		else if (d.reads && d.mass > 0) // of a recording
 			facts.push(['reads', `${d.reads.length} others`]);
+		if (d.ahead_s !== undefined && d.mass > 0)
+			facts.push(['own time', `${number(1000 * d.ahead_s)} ms ahead`], ['waits for', d.waits_for === undefined ? 'none' : `object ${d.waits_for}`]);
 		this.mass = d.mass;
 		this.offerKill(d);
 		this.fillEdit(d);
