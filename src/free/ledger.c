@@ -111,28 +111,27 @@ static double extrapolated(const ob_free_scratch *x, double from, double to, dou
 	return ob_max(-most, ob_min(most, to - from));
 }
 
-bool ob_ledger_receive(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n, double h)
+bool ob_ledger_receive(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n, double h, ob_motion *m)
 {
 	ob_account *own = find(s, n->id), in;
-	ob_motion m;
 	ob_ledger_head head;
 	bool found;
-	if (!ob_free_schedule_read_account(x->schedule, x->u, n->id, newest_seen(s, x), s->id, &m, &in, &head, &found))
+	if (!ob_free_schedule_read_account(x->schedule, x->u, n->id, newest_seen(s, x), s->id, m, &in, &head, &found))
 		return false;
 	if (!found || in.generation != s->generation) {
 		if (own && own->closed)
 			drop(s, own);
 		else if (own)
 			memset(own->rate, 0, sizeof own->rate);
-		return false;
+		return true;
 	}
 	if (own && own->epoch != in.epoch) {
 		drop(s, own);
 		own = NULL;
 	}
 	if (!own && !(own = open(s, n, in.epoch)))
-		return false;
-	const double on = extrapolated(x, m.t0, s->time + h, h);
+		return true;
+	const double on = extrapolated(x, m->t0, s->time + h, h);
 	for (int i = 0; i < 12; i++) {
 		const double due = in.sum[i] + (i < SHIFT && !in.closed ? in.rate[i] * on : 0);
 		s->mailed[i] += due - own->sum[i];

@@ -36,8 +36,8 @@
 ob_vec3 ob_ledger_rate(const ob_passport *p, ob_quat q, ob_vec3 spin);
 // Begins a step: sums of mail are 0.
 void ob_ledger_begin(ob_free_sim *s);
-// Consumes the mail of a neighbour with a lower id. false: there was none.
-bool ob_ledger_receive(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n, double h);
+// Consumes the mail of a neighbour with a lower id, if there is any, and copies its motion. false: it cannot be read.
+bool ob_ledger_receive(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n, double h, ob_motion *m);
 // Reads a neighbour with a higher id, with all deposits. false: it cannot be read.
 bool ob_ledger_look(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n, ob_free_seen *seen);
 // Moves the object by its mail's displacements.

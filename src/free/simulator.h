@@ -96,6 +96,7 @@ typedef struct ob_free_scratch {
 	ob_motion end; // result of the solver for the running simulator's object
 	ob_motion *partner_end; // [object]: results for the others
 	bool flew; // it touched nothing
+	double closing; // s: longest that the next step should be, by those that it may touch soon
 	bool failed;
 } ob_free_scratch;
 

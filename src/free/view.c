@@ -178,6 +178,57 @@ static bool may_touch(const ob_free_sim *s, const ob_free_scratch *x, const ob_f
 	return near;
 }
 
+static double thickness_of(const ob_passport *p)
+{
+	return ob_shape_thickness((ob_shape)p->shape, p->size);
+}
+
+static const double way = .002; // of the thickness: relative motion in a step
+
+// Overlap, m, that the last step left.
+static double overlap_of(const ob_free_neighbour *n)
+{
+	double gap = 0;
+	for (uint32_t i = 0; n->contact.kept && i < n->contact.state.points; i++)
+		gap = ob_min(gap, n->contact.state.gap[i]);
+	return -gap;
+}
+
+// Longest step, s, in which two bodies move by little relative to each other, at a speed (m/s). What they overlap counts.
+static double little_way(const ob_free_sim *s, const ob_free_neighbour *n, double speed)
+{
+	const double most = way * ob_min(thickness_of(&s->passport), thickness_of(&n->passport));
+	return ob_max(0, most - overlap_of(n)) / speed;
+}
+
+// The state of a motion with the attitude of its begin: cheap.
+static ob_state unturned_at(const ob_motion *m, double t)
+{
+	const double h = t - m->t0;
+	return (ob_state){ { ob_madd(ob_madd(m->p, h, m->v), h * h / 2, m->a), m->q }, ob_madd(m->v, h, m->a), m->w };
+}
+
+// s, the longest that a step may be
+static double usual(const ob_free_sim *s, const ob_free_scratch *x)
+{
+	return (1 + x->free->jitter) / s->rate;
+}
+
+// True if bounding balls may touch in two such steps.
+static bool approaches(const ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n)
+{
+	return n->apart < s->time + 2 * usual(s, x);
+}
+
+// Shortens the next step if the two may touch in a step of the usual length, so that those that a body touches have short
+// steps, too, when it is hit.
+static void approach(const ob_free_sim *s, ob_free_scratch *x, const ob_free_neighbour *n, const ob_state *own,
+		     const ob_state *other)
+{
+	if (may_touch(s, x, n, own, other, usual(s, x)))
+		x->closing = ob_min(x->closing, little_way(s, n, ob_norm(ob_sub(own->v, other->v))));
+}
+
 // ---- the island
 
 // Puts an object at a place of the island. Its motion begins at time 0 there.
@@ -294,11 +345,9 @@ static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double
 		ob_free_neighbour *n = &s->neighbour[i];
 		ob_free_seen *seen = &x->seen[x->near];
 		seen->neighbour = i;
-		n->bound = 0;
-		n->apart = INFINITY;
 		if (has_ledger(x) && n->kind == OB_FREE_SIMULATED && n->id < s->id)
 			continue; // it solves their contact
-		n->apart = 0;
+		n->bound = n->apart = 0;
 		const bool seen_now = read_neighbour(s, x, n, seen);
 		n->version = seen_now ? seen->version : 0;
 		if (seen_now && may_touch(s, x, n, own, &seen->now, h)) {
@@ -309,18 +358,32 @@ static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double
 		n->bound = ob_free_lag_apart(s, n, &seen->now);
 		if (seen_now && (n->kind == OB_FREE_SIMULATED || n->passport.flags & OB_OBJECT_STATIC))
 			n->apart = ob_free_apart(s, n, &seen->now, ob_norm(ob_sub(outer, seen->motion.a)));
+		if (seen_now && n->kind == OB_FREE_SIMULATED && approaches(s, x, n))
+			approach(s, x, n, own, &seen->now);
 	}
 }
 
 // Receives the mail of all neighbours with lower ids, and moves the object by its displacements.
-static void receive(ob_free_sim *s, const ob_free_scratch *x, double h, ob_state *own)
+static void receive(ob_free_sim *s, ob_free_scratch *x, double h, ob_state *own)
 {
+	const ob_vec3 outer = ob_external_acceleration(&x->run, &s->passport);
 	ob_ledger_begin(s);
-	for (uint32_t i = 0; i < s->neighbours && s->neighbour[i].id < s->id; i++)
-		if (s->neighbour[i].kind == OB_FREE_SIMULATED) {
-			s->neighbour[i].version = ob_free_version(x->u, s->neighbour[i].id);
-			ob_ledger_receive(s, x, &s->neighbour[i], h);
+	for (uint32_t i = 0; i < s->neighbours && s->neighbour[i].id < s->id; i++) {
+		ob_free_neighbour *n = &s->neighbour[i];
+		ob_motion m;
+		if (n->kind != OB_FREE_SIMULATED)
+			continue;
+		n->version = ob_free_version(x->u, n->id);
+		n->bound = n->apart = 0;
+		if (!ob_ledger_receive(s, x, n, h, &m))
+			continue;
+		ob_state other = unturned_at(&m, s->time);
+		n->apart = ob_free_apart(s, n, &other, ob_norm(ob_sub(outer, m.a)));
+		if (approaches(s, x, n)) {
+			other = ob_motion_at(&m, n->passport.inertia, s->time);
+			approach(s, x, n, own, &other);
 		}
+	}
 	ob_ledger_shift(s, own);
 }
 
@@ -341,27 +404,19 @@ static void deposit(ob_free_sim *s, ob_free_scratch *x, double h)
 	}
 }
 
-static double thickness_of(const ob_passport *p)
-{
-	return ob_shape_thickness((ob_shape)p->shape, p->size);
-}
-
-// Longest that the next step should be, s. Bodies that hit each other learn of it a step late, and a light one between
-// two heavy ones passes on little in each step: shorter steps keep them apart. own: state at the step's begin; out: at
-// its end.
+// Longest that the next step should be, s. Bodies that hit each other learn of it a step late, a light one between two
+// heavy ones passes on little in each step, and a load goes through a pile at one body a step: shorter steps keep them
+// apart, the shorter the more they overlap. own: state at the step's begin; out: at its end.
 static double step_for(const ob_free_sim *s, const ob_free_scratch *x, const ob_state *own, double h,
 		       const ob_motion *out)
 {
-	static const double way = .002; // of the thickness: relative motion in a step
 	const ob_vec3 outer = ob_external_acceleration(&x->run, &s->passport);
-	const double thickness = thickness_of(&s->passport);
-	double step = way * thickness / ob_norm(ob_sub(out->v, ob_madd(own->v, h, outer)));
+	double step = way * thickness_of(&s->passport) / ob_norm(ob_sub(out->v, ob_madd(own->v, h, outer)));
 	for (uint32_t i = 0; i < x->near; i++) {
 		const ob_free_seen *seen = &x->seen[i];
 		const ob_free_neighbour *n = &s->neighbour[seen->neighbour];
 		if (n->kind == OB_FREE_SIMULATED)
-			step = ob_min(step, way * ob_min(thickness, thickness_of(&n->passport)) /
-						    ob_norm(ob_sub(out->v, seen->now.v)));
+			step = ob_min(step, little_way(s, n, ob_norm(ob_sub(out->v, seen->now.v))));
 	}
 	return step;
 }
@@ -370,7 +425,7 @@ void ob_free_view_step(ob_free_sim *s, ob_free_scratch *x, double h, ob_motion *
 {
 	ob_state own = { { s->motion.p, s->motion.q }, s->motion.v, s->motion.w };
 	reserve(x, s->neighbours + 2);
-	s->step = INFINITY;
+	s->step = x->closing = INFINITY;
 	if (has_ledger(x))
 		receive(s, x, h, &own);
 	look(s, x, &own, h);
@@ -385,7 +440,7 @@ void ob_free_view_step(ob_free_sim *s, ob_free_scratch *x, double h, ob_motion *
 	else
 		*out = x->end;
 	const double touching = s->step;
-	s->step = step_for(s, x, &own, h, out);
+	s->step = ob_min(x->closing, step_for(s, x, &own, h, out));
 	s->ledger.head.step = s->step;
 	for (uint32_t i = 0; has_ledger(x) && i < x->near; i++)
 		if (s->neighbour[x->seen[i].neighbour].kind == OB_FREE_SIMULATED)

@@ -193,6 +193,36 @@ static void test_stack_of_late_mail(void)
 	hand_destroy(h);
 }
 
+// A column that lands: its load goes up at one box a step, and what presses on a box goes on meanwhile. Steps get shorter
+// while boxes overlap, so that they overlap by little, however late each steps.
+static void test_column_lands(void)
+{
+	enum { BOXES = 8 };
+	static const double edge = .5, gap = .02, speed = 4; // m, m, m/s
+	double worst_overlap = 0;
+	for (uint64_t random = 1; random <= 4; random++) {
+		ob_free_settings f = settings(1000, .002);
+		f.jitter = .3;
+		hand *h = hand_create(f, ob_v3(0, 0, -9.81));
+		hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+		for (int i = 0; i < BOXES; i++)
+			hand_add(h, OB_SHAPE_BOX, ob_v3(edge / 2, edge / 2, edge / 2), 125,
+				 ob_v3(0, 0, edge / 2 + gap + i * (edge + gap)), ob_v3(0, 0, -speed), 0);
+		uint64_t order = random;
+		for (uint64_t step = 1; step <= 20; step++) {
+			hand_until(h, step);
+			CHECK(hand_run(h, &order, 0));
+			for (uint32_t id = 1; id <= BOXES; id++) {
+				const double below = id > 1 ? h->sim[id - 1].motion.p.z : -edge / 2;
+				worst_overlap = ob_max(worst_overlap, below + edge - h->sim[id].motion.p.z);
+			}
+		}
+		hand_destroy(h);
+	}
+	CHECK(worst_overlap < .015 * edge);
+	printf("deepest overlap in a column that lands: %.2g mm\n", 1e3 * worst_overlap);
+}
+
 // Work of mail is the same on both sides if nothing else has changed the partner's motion.
 static void test_work_of_mail(void)
 {
@@ -214,6 +244,7 @@ int main(void)
 	test_hit_once();
 	test_stack();
 	test_stack_of_late_mail();
+	test_column_lands();
 	test_work_of_mail();
 	return check_end();
 }
