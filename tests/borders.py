@@ -50,7 +50,7 @@ ARROWS = {
     'experiment': 'plot reference ranks base',
     'compare': 'experiment plot reference settings base',
     'world': 'terrain hull shape motion elementary base',
-    'engine': 'world step ode table settings measure shape motion base',
+    'engine': 'host scene world step ode table settings measure shape motion base',
     'lab': 'reference engine world plot experiment settings measure shape motion base',
     'render': 'measure mesh scene shape motion base',
     'record': 'measure mesh scene table settings shape motion base',

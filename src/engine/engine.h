@@ -3,7 +3,7 @@
 // max(e_a, e_b) in all.
 //
 // An engine steps in the caller's thread, frame by frame. To measure cost, read the thread's CPU clock around
-// ob_engine_step. Thread-safety: one thread per process at a time (ODE shuffles rows by a seed of the whole process).
+// ob_engine_step, and add what it says of its own threads. Thread-safety: one thread per process at a time (ODE shuffles rows by a seed of the whole process).
 #ifndef OB_ENGINE_ENGINE_H
 #define OB_ENGINE_ENGINE_H
 
@@ -26,11 +26,13 @@ typedef struct ob_engine_kind {
 	void (*get)(const ob_engine *p, ob_state *state); // [objects], at the end of the last frame
 	// J since the start: potential energy added by pushing penetrations apart. NULL = not provided
 	double (*recovered)(const ob_engine *p);
+	double (*cpu)(const ob_engine *p); // s, of its own threads and processes so far; NULL = it has none
 	void (*destroy)(ob_engine *p); // NULL is allowed
 	bool (*check)(ob_error *e); // true if its library can be loaded; NULL = it is part of the program
 	ob_world_drive drives; // most general motion that it supports
 	bool hulls; // supports convex hulls
 	bool joints; // supports joints
+	bool free; // simulators at times of their own: no two runs end in the same bits
 } ob_engine_kind;
 
 // All engines built in, in the order of legends; ends with NULL.

@@ -5,7 +5,7 @@
 
 bool ob_lab_analysis_is_obsim(const ob_engine_kind *k)
 {
-	return !strncmp(k->name, "obsim", 5);
+	return k->free || !strncmp(k->name, "obsim", 5);
 }
 
 size_t ob_lab_analysis_count_others(const ob_lab_analysis *d)

@@ -35,9 +35,10 @@ static void add_configuration(ob_chart *c, const ob_lab_analysis *d, const ob_ca
 	char *to = c->subtitle;
 	size_t room = sizeof c->subtitle;
 	append(to, room, "%sframes of 1/60 s", *to ? " \u00b7 " : "");
-	bool obsim = false; // its variants count alike here
+	bool obsim = false, free = false; // its variants count alike here
 	for (size_t i = 0; i < d->engines; i++) {
 		const ob_engine_kind *k = d->engine[i];
+		free |= k->free && takes_part(c, d, of, k);
 		if (!takes_part(c, d, of, k) || !k->usual.iterations || (obsim && ob_lab_analysis_is_obsim(k)))
 			continue;
 		if (ob_lab_analysis_is_obsim(k))
@@ -46,7 +47,8 @@ static void add_configuration(ob_chart *c, const ob_lab_analysis *d, const ob_ca
 			append(to, room, " \u00b7 %s: %u iterations", k->title, k->usual.iterations);
 		obsim |= ob_lab_analysis_is_obsim(k);
 	}
-	append(to, room, " \u00b7 one worker, a thread \u00b7 sleeping off \u00b7 commit %s", d->results->commit);
+	append(to, room, " \u00b7 one worker, a thread%s \u00b7 sleeping off \u00b7 commit %s",
+	       free ? "; free: two" : "", d->results->commit);
 }
 
 void ob_lab_chart_setting(const ob_result *r, char *to, size_t room)
@@ -56,7 +58,7 @@ void ob_lab_chart_setting(const ob_result *r, char *to, size_t room)
 		snprintf(to, room, "usual");
 	else if (s->tolerance > 0)
 		ob_page_print_quantity(to, room, s->tolerance * 1e3, "mm");
-	else if (ob_lab_analysis_is_obsim(r->engine))
+	else if (ob_lab_analysis_is_obsim(r->engine) && !r->engine->free)
 		snprintf(to, room, "%u", s->substeps);
 	else
 		snprintf(to, room, "%.0f Hz", s->substeps / s->step_length);
@@ -119,7 +121,8 @@ static void add_result(ob_chart *chart, const ob_result *r, double x)
 	ob_page_print_quantity(error, sizeof error, r->outcome.figure[0], def->unit);
 	const char *failed = r->outcome.failed[0] ? r->outcome.failed : "not a number";
 	snprintf(hint, sizeof hint, "%s, %s%s, %u iterations: %.3g \u00b5s, %s", r->engine->title, label,
-		 ob_lab_analysis_is_obsim(r->engine) && !(r->settings.tolerance > 0) ? " substeps" : "",
+		 ob_lab_analysis_is_obsim(r->engine) && !r->engine->free && !(r->settings.tolerance > 0) ? " substeps"
+													 : "",
 		 r->settings.iterations, ob_result_cost(r) * 1e6, is_failed(r) ? failed : error);
 	ob_plot_point *p = ob_chart_add(chart, x, is_failed(r) ? NAN : r->outcome.figure[0], label, hint);
 	p->failed = is_failed(r);

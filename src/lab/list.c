@@ -64,14 +64,14 @@ static bool is_in(const char *names, const char *name)
 
 bool ob_list_engines(ob_engine_list *l, const char *names, char word[64])
 {
-	bool all = strcmp(names, "all") == 0;
+	const bool all = strcmp(names, "all") == 0, free = is_in(names, "free");
 	*l = (ob_engine_list){ 0 };
 	for (const ob_engine_kind *const *k = ob_engine_kinds; *k && l->count < OB_LIST_ENGINES; k++)
-		if (all || is_in(names, (*k)->name))
+		if ((*k)->free ? free || is_in(names, (*k)->name) : all || is_in(names, (*k)->name))
 			l->of[l->count++] = *k;
 	for (const char *at = names; !all && at; at = strchr(at, ','), at = at ? at + 1 : NULL) {
 		snprintf(word, 64, "%.*s", (int)strcspn(at, ","), at);
-		if (!ob_engine_find(word))
+		if (strcmp(word, "free") != 0 && !ob_engine_find(word))
 			return false;
 	}
 	return true;

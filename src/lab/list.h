@@ -23,7 +23,7 @@ typedef struct ob_engine_list {
 	const ob_engine_kind *of[OB_LIST_ENGINES]; // in the order of ob_engine_kinds, without duplicates
 } ob_engine_list;
 
-// Reads "all", or names with commas. Returns false and *unknown (a copy in "word") for an unknown engine.
+// Reads "all" (but free simulators, for two runs of them differ), or names with commas; "free": all free simulators. Returns false and *unknown (a copy in "word") for an unknown engine.
 bool ob_list_engines(ob_engine_list *l, const char *names, char word[64]);
 
 // Prints row, name, title, targets; * marks the quick subset.

@@ -160,6 +160,11 @@ size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_ki
 	}
 	add(&all, usual);
 	add_products(&all, sweep, &usual);
+	for (size_t i = 0; i < sweep->lags && k->free; i++) {
+		ob_run_settings one = usual;
+		one.lag = sweep->lag_list[i];
+		add(&all, one);
+	}
 	for (size_t i = 0; i < sweep->tolerances && strcmp(k->name, "obsim") == 0; i++) {
 		ob_run_settings one = usual;
 		one.substeps = 0;

@@ -8,6 +8,11 @@
 // m/s and rad/s: faster than any motion in any case, including endless falls within its time.
 static const double absurd = 1e5;
 
+static double cpu_of(const ob_engine_kind *kind, const ob_engine *engine)
+{
+	return ob_clock_thread_cpu() + (kind->cpu ? kind->cpu(engine) : 0);
+}
+
 static const char *insane(const ob_case_run_state *t)
 {
 	for (uint32_t id = 0; id < t->world->objects; id++) {
@@ -58,9 +63,9 @@ static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind 
 	if (c->observe && !broken)
 		c->observe(t);
 	while (!t->failed && t->frame < frames) {
-		double cpu = ob_clock_thread_cpu(), wall = ob_clock_wall();
+		double cpu = cpu_of(kind, engine), wall = ob_clock_wall();
 		bool on = kind->step(engine, e);
-		out->cpu_s += ob_clock_thread_cpu() - cpu;
+		out->cpu_s += cpu_of(kind, engine) - cpu;
 		out->wall_s += ob_clock_wall() - wall;
 		t->frame++;
 		t->time = t->frame * t->settings.step_length;

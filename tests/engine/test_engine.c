@@ -221,14 +221,14 @@ static void again(void)
 	ob_state first[LITTLE_MOST];
 	memcpy(first, l->now, sizeof first);
 	little_run(kind, l, 0, 2);
-	CHECK(memcmp(first, l->now, sizeof first) == 0);
+	CHECK(kind->free || memcmp(first, l->now, sizeof first) == 0);
 	little_world_free(l);
 }
 
 // A body at rest with sleeping enabled: the same state to the last bit, frame after frame.
 static void sleep_on(void)
 {
-	if (is("mujoco")) // has no sleeping
+	if (is("mujoco") || kind->free) // has no sleeping
 		return;
 	little_world *l = little_world_new();
 	little_ground(l);
