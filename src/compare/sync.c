@@ -11,26 +11,35 @@
 #include "experiment/json.h"
 #include "experiment/process.h"
 
-#define LAGS(COUPLING, KEY, TITLE) \
-	{ KEY "_lag_1ms", TITLE ", lag 1 ms", COUPLING, false, false, .001 }, \
-		{ KEY "_lag_3ms", TITLE ", lag 3 ms", COUPLING, false, false, .003 }, \
-		{ KEY "_lag_10ms", TITLE ", lag 10 ms", COUPLING, false, false, .01 }, \
-		{ KEY "_lag_30ms", TITLE ", lag 30 ms", COUPLING, false, false, .03 }, \
+#define RATE(HZ) \
 	{ \
-		KEY "_lag_100ms", TITLE ", lag 100 ms", COUPLING, false, false, .1 \
+		"ledger_" #HZ "_hz", "ledger, " #HZ " Hz", OB_SYNC_LEDGER, false, false, 0, HZ \
+	}
+#define LAGS(COUPLING, KEY, TITLE) \
+	{ KEY "_lag_1ms", TITLE ", lag 1 ms", COUPLING, false, false, .001, 0 }, \
+		{ KEY "_lag_3ms", TITLE ", lag 3 ms", COUPLING, false, false, .003, 0 }, \
+		{ KEY "_lag_10ms", TITLE ", lag 10 ms", COUPLING, false, false, .01, 0 }, \
+		{ KEY "_lag_30ms", TITLE ", lag 30 ms", COUPLING, false, false, .03, 0 }, \
+	{ \
+		KEY "_lag_100ms", TITLE ", lag 100 ms", COUPLING, false, false, .1, 0 \
 	}
 const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS] = {
-	{ "lockstep_threads", "lockstep, 2 threads", OB_SYNC_LOCKSTEP, false, false, 0 },
-	{ "lockstep_processes", "lockstep, 2 processes", OB_SYNC_LOCKSTEP, true, false, 0 },
-	{ "lockstep_threads_each", "lockstep, thread each", OB_SYNC_LOCKSTEP, false, true, 0 },
-	{ "ledger_threads", "ledger, 2 threads", OB_SYNC_LEDGER, false, false, 0 },
-	{ "ledger_processes", "ledger, 2 processes", OB_SYNC_LEDGER, true, false, 0 },
-	{ "ledger_threads_each", "ledger, thread each", OB_SYNC_LEDGER, false, true, 0 },
-	{ "ledger_processes_each", "ledger, process each", OB_SYNC_LEDGER, true, true, 0 },
-	{ "own_threads", "own, 2 threads", OB_SYNC_OWN, false, false, 0 },
-	{ "own_processes", "own, 2 processes", OB_SYNC_OWN, true, false, 0 },
-	{ "own_processes_each", "own, process each", OB_SYNC_OWN, true, true, 0 },
-	{ "heavy_threads", "own, heavy, 2 threads", OB_SYNC_HEAVY, false, false, 0 },
+	{ "lockstep_threads", "lockstep, 2 threads", OB_SYNC_LOCKSTEP, false, false, 0, 0 },
+	{ "lockstep_processes", "lockstep, 2 processes", OB_SYNC_LOCKSTEP, true, false, 0, 0 },
+	{ "lockstep_threads_each", "lockstep, thread each", OB_SYNC_LOCKSTEP, false, true, 0, 0 },
+	{ "ledger_threads", "ledger, 2 threads", OB_SYNC_LEDGER, false, false, 0, 0 },
+	{ "ledger_processes", "ledger, 2 processes", OB_SYNC_LEDGER, true, false, 0, 0 },
+	{ "ledger_threads_each", "ledger, thread each", OB_SYNC_LEDGER, false, true, 0, 0 },
+	{ "ledger_processes_each", "ledger, process each", OB_SYNC_LEDGER, true, true, 0, 0 },
+	{ "own_threads", "own, 2 threads", OB_SYNC_OWN, false, false, 0, 0 },
+	{ "own_processes", "own, 2 processes", OB_SYNC_OWN, true, false, 0, 0 },
+	{ "own_processes_each", "own, process each", OB_SYNC_OWN, true, true, 0, 0 },
+	{ "heavy_threads", "own, heavy, 2 threads", OB_SYNC_HEAVY, false, false, 0, 0 },
+	{ "ode_threads", "own, ODE, 2 threads", OB_SYNC_ODE, false, false, 0, 0 },
+	RATE(125),
+	RATE(250),
+	RATE(500),
+	RATE(2000),
 	LAGS(OB_SYNC_LEDGER, "ledger", "ledger"),
 	LAGS(OB_SYNC_OWN, "own", "own"),
 };
@@ -73,10 +82,15 @@ typedef struct job {
 
 // ---- one run
 
+static double rate_of(const ob_sync_comparison *c, const ob_sync_configuration *of)
+{
+	return of->rate > 0 ? of->rate : c->rate;
+}
+
 static char **arguments(const job *j, uint64_t seed)
 {
 	enum { OWN = 24 };
-	static const char *const coupling[] = { "", "ledger", "own", "own" };
+	static const char *const coupling[] = { "", "ledger", "own", "own", "own" };
 	const ob_sync_comparison *c = j->comparison;
 	const ob_sync_configuration *of = j->of;
 	char **argv = calloc(OWN + OB_SYNC_DEFINES, sizeof *argv);
@@ -94,10 +108,11 @@ static char **arguments(const job *j, uint64_t seed)
 	ADD("--sync=%s", of->coupling == OB_SYNC_LOCKSTEP ? "lockstep" : "free");
 	if (of->coupling != OB_SYNC_LOCKSTEP) {
 		ADD("--coupling=%s", coupling[of->coupling]);
-		ADD("--update-rate=%.17g", c->rate);
+		ADD("--update-rate=%.17g", rate_of(c, of));
 		ADD("--jitter=%.17g", c->jitter);
 		ADD("--delay=%.17g", of->delay);
 		ADD("--solver=%s", of->coupling == OB_SYNC_HEAVY ? "ghost" : "coloured");
+		ADD("--integrator=%s", of->coupling == OB_SYNC_ODE ? "ode" : "exact");
 	}
 	for (uint32_t i = 0; i < c->defines; i++)
 		ADD("-D%s", c->define[i]);
@@ -150,7 +165,7 @@ static bool schedule(const ob_sync_comparison *c, uint32_t seeds, job *all, ob_t
 			const ob_sync_configuration *of = &ob_sync_table[w];
 			job *j = &all[i * OB_SYNC_CONFIGURATIONS + w];
 			*j = (job){ c, &c->point[i], of };
-			const double rate = of->coupling == OB_SYNC_LOCKSTEP ? LOCKSTEP_STEPS : c->rate;
+			const double rate = of->coupling == OB_SYNC_LOCKSTEP ? LOCKSTEP_STEPS : rate_of(c, of);
 			ob_trial t = { .seed = c->point[i].seed,
 				       .guess_s = .1 + step_s * rate * c->duration * c->point[i].objects,
 				       .what = j };
@@ -252,6 +267,24 @@ ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sy
 	return ob_reference_line(n, x, y);
 }
 
+bool ob_sync_is_of_rates(int w)
+{
+	const ob_sync_configuration *of = &ob_sync_table[w];
+	return of->coupling == OB_SYNC_LEDGER && !of->processes && !of->each && of->delay == 0;
+}
+
+ob_line ob_sync_order_of_step(const ob_sync_comparison *c, const ob_sync_point *p)
+{
+	double x[OB_SYNC_CONFIGURATIONS], y[OB_SYNC_CONFIGURATIONS];
+	size_t n = 0;
+	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+		const double error = ob_sync_summarise(c, p, w, OB_SYNC_SIZES).median;
+		if (ob_sync_is_of_rates(w) && error > 0)
+			x[n] = -log(rate_of(c, &ob_sync_table[w])), y[n++] = log(error);
+	}
+	return ob_reference_line(n, x, y);
+}
+
 static double median(const ob_sync_comparison *c, const ob_sync_point *p, int w, ob_sync_metric m)
 {
 	return ob_sync_summarise(c, p, w, m).median;
@@ -265,7 +298,7 @@ static int best_free(const ob_sync_comparison *c, const ob_sync_point *p, ob_syn
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 		const ob_sync_configuration *of = &ob_sync_table[w];
 		const double error = median(c, p, w, OB_SYNC_WORST);
-		if (of->coupling == OB_SYNC_LOCKSTEP || of->delay > 0 || isnan(error) ||
+		if (of->coupling == OB_SYNC_LOCKSTEP || of->delay > 0 || of->rate > 0 || isnan(error) ||
 		    (coupling != OB_SYNC_COUPLINGS && of->coupling != coupling))
 			continue;
 		if (best < 0 || error < median(c, p, best, OB_SYNC_WORST))
@@ -282,7 +315,7 @@ static double tolerable_lag(const ob_sync_comparison *c, const ob_sync_point *p,
 	double most = -1;
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 		const ob_sync_configuration *of = &ob_sync_table[w];
-		if (of->coupling != coupling || of->processes || of->each)
+		if (of->coupling != coupling || of->processes || of->each || of->rate > 0)
 			continue;
 		if (!(median(c, p, w, OB_SYNC_SIZES) <= share))
 			break; // rows of a coupling stand in the order of lags
@@ -296,9 +329,83 @@ static double gains_from(const ob_sync_comparison *c, const ob_sync_point *p, ob
 {
 	static const double noticeable = 1e-6;
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++)
-		if (ob_sync_table[w].coupling == coupling && median(c, p, w, OB_SYNC_ENERGY) > noticeable)
+		if (ob_sync_table[w].coupling == coupling && ob_sync_table[w].rate == 0 &&
+		    median(c, p, w, OB_SYNC_ENERGY) > noticeable)
 			return ob_sync_table[w].delay;
 	return NAN;
+}
+
+// Appends the order of an error with its interval.
+static size_t print_order(char *to, size_t room, const char *of, ob_line order)
+{
+	if (isnan(order.slope))
+		return 0;
+	if (isnan(order.slope_low))
+		return (size_t)snprintf(to, room, " %s: %.2f.", of, order.slope);
+	return (size_t)snprintf(to, room, " %s: %.2f (%.2f to %.2f).", of, order.slope, order.slope_low,
+				order.slope_high);
+}
+
+static void judge_power(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room)
+{
+	const ob_line ledger = ob_sync_order(c, p, OB_SYNC_LEDGER), own = ob_sync_order(c, p, OB_SYNC_OWN);
+	size_t n = (size_t)snprintf(to, room, "Powers of the lag, each over %zu lags.", ledger.n);
+	n += print_order(to + n, n < room ? room - n : 0, "Ledger", ledger);
+	n += print_order(to + n, n < room ? room - n : 0, "Own", own);
+	n += print_order(to + n, n < room ? room - n : 0, "Length of a step, ledger, no injected lag",
+			 ob_sync_order_of_step(c, p));
+	const double width = fmax(ledger.slope_high - ledger.slope_low, own.slope_high - own.slope_low);
+	if (n < room && !isnan(width))
+		snprintf(to + n, room - n, " %s",
+			 width < .5 ? "One power describes each."
+				    : "One power does not describe them: the intervals are wide, so the curves bend.");
+}
+
+static void judge_momentum(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room)
+{
+	const double ledger = median(c, p, best_free(c, p, OB_SYNC_LEDGER), OB_SYNC_MOMENTUM),
+		     own = median(c, p, best_free(c, p, OB_SYNC_OWN), OB_SYNC_MOMENTUM);
+	if (isnan(ledger) || isnan(own))
+		snprintf(to, room,
+			 "Not tested by this scene: something is fixed in it, and takes up momentum. A test of the "
+			 "program holds the ledger to 1e-12 with the mail under way, for random lags, jitter, orders "
+			 "and kills.");
+	else
+		snprintf(to, room,
+			 "Change of momentum, without the mail under way: %.2g by the ledger, %.2g by own responses.",
+			 ledger, own);
+}
+
+static void judge_energy(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room)
+{
+	double gained = 0, by_mail = -INFINITY, mildest = INFINITY;
+	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+		if (ob_sync_table[w].coupling != OB_SYNC_LEDGER || isnan(median(c, p, w, OB_SYNC_BY_LAG)))
+			continue;
+		gained = fmax(gained, median(c, p, w, OB_SYNC_ENERGY));
+		by_mail = fmax(by_mail, median(c, p, w, OB_SYNC_BY_LAG));
+		if (ob_sync_table[w].delay > 0 && median(c, p, w, OB_SYNC_BY_LAG) > 0)
+			mildest = fmin(mildest, ob_sync_table[w].delay);
+	}
+	size_t n = (size_t)snprintf(
+		to, room,
+		"Of the energy at the start, late mail added up to %.2g, and the bodies had at most %.2g more than "
+		"at the start: what hits lose is not counted against it.",
+		by_mail, gained);
+	if (n < room && isfinite(mildest))
+		snprintf(to + n, room - n,
+			 " Late mail added energy from an injected lag of %.3g ms on, and took some below.",
+			 1e3 * mildest);
+}
+
+void ob_sync_judge(const ob_sync_comparison *c, const ob_sync_point *p, int hypothesis, char *to, size_t room)
+{
+	static void (*const judge[])(const ob_sync_comparison *, const ob_sync_point *, char *,
+				     size_t) = { judge_power, judge_momentum, judge_energy };
+	if (best_free(c, p, OB_SYNC_LEDGER) < 0 || best_free(c, p, OB_SYNC_OWN) < 0)
+		snprintf(to, room, "Too little was measured.");
+	else
+		judge[hypothesis](c, p, to, room);
 }
 
 void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room)

@@ -14,6 +14,7 @@ typedef enum ob_sync_coupling {
 	OB_SYNC_LEDGER,
 	OB_SYNC_OWN, // neighbours with their mass
 	OB_SYNC_HEAVY, // neighbours infinitely heavy
+	OB_SYNC_ODE, // as OWN, with ODE's bodies and contact joints
 	OB_SYNC_COUPLINGS
 } ob_sync_coupling;
 
@@ -22,9 +23,10 @@ typedef struct ob_sync_configuration {
 	ob_sync_coupling coupling;
 	bool processes, each; // each: a worker for each object; else two workers
 	double delay; // s after which a publication is seen
+	double rate; // Hz, of steps; 0: the comparison's
 } ob_sync_configuration;
 
-enum { OB_SYNC_CONFIGURATIONS = 21, OB_SYNC_POINTS = 16, OB_SYNC_DEFINES = 64 };
+enum { OB_SYNC_CONFIGURATIONS = 26, OB_SYNC_POINTS = 16, OB_SYNC_DEFINES = 64 };
 extern const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS];
 
 typedef enum ob_sync_metric {
@@ -76,6 +78,12 @@ ob_statistics ob_sync_summarise(const ob_sync_comparison *c, const ob_sync_point
 // Order of a coupling's error in the lag, with its interval of 95 %: slope of the worst penetration over the lag, both
 // logarithmic. slope NaN: fewer than two lags were run.
 ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling);
+// True for configurations that differ in the rate alone.
+bool ob_sync_is_of_rates(int configuration);
+// Order of the ledger's error in the length of a step, without an injected lag.
+ob_line ob_sync_order_of_step(const ob_sync_comparison *c, const ob_sync_point *p);
+// What the figures say of each hypothesis of the page, 0 to 2.
+void ob_sync_judge(const ob_sync_comparison *c, const ob_sync_point *p, int hypothesis, char *to, size_t room);
 // Recommendation by rules, from the figures alone.
 void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room);
 

@@ -12,7 +12,7 @@
 
 #define BY_LAG_TITLE "Energy by late mail / energy at the start"
 
-static const char *const coupling_title[OB_SYNC_COUPLINGS] = { "lockstep", "ledger", "own", "own, heavy" };
+static const char *const coupling_title[OB_SYNC_COUPLINGS] = { "lockstep", "ledger", "own", "own, heavy", "own, ODE" };
 
 static bool was_run(const ob_sync_comparison *c, const ob_sync_point *p, int w)
 {
@@ -138,9 +138,44 @@ static ob_chart *chart_lags(const ob_sync_comparison *c, const ob_sync_point *p,
 		ob_chart_begin(d, k - 1, false, name);
 		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 			const ob_sync_configuration *of = &ob_sync_table[w];
-			if ((int)of->coupling == k && !of->processes && !of->each)
+			if ((int)of->coupling == k && !of->processes && !of->each && of->rate == 0)
 				add_point(d, c, p, w, OB_SYNC_LAG, up);
 		}
+	}
+	return d;
+}
+
+// Worst penetration over the rate of steps, with the ledger on two threads and no injected lag; lockstep beside it.
+static ob_chart *chart_rates(const ob_sync_comparison *c, const ob_sync_point *p)
+{
+	ob_chart *d = begin_chart(c, p);
+	if (!d)
+		return NULL;
+	const ob_line order = ob_sync_order_of_step(c, p);
+	const double exact = 1e3 * ob_sync_summarise(c, p, 0, OB_SYNC_WORST).median;
+	char name[128];
+	snprintf(d->title, sizeof d->title, "Worst penetration over the rate of steps");
+	snprintf(d->x_label, sizeof d->x_label, "steps of a simulator in a second (Hz)");
+	snprintf(d->y_label, sizeof d->y_label, "worst penetration (mm)");
+	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
+	snprintf(name, sizeof name, isnan(order.slope) ? "ledger" : "ledger: order %.2f", order.slope);
+	ob_chart_begin(d, OB_SYNC_LEDGER - 1, false, name);
+	for (int pass = 0; pass < 2; pass++) // the usual rate's row stands before the others
+		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+			const double rate = ob_sync_table[w].rate > 0 ? ob_sync_table[w].rate : c->rate;
+			const ob_statistics y = ob_sync_summarise(c, p, w, OB_SYNC_WORST);
+			char hint[160];
+			if (!ob_sync_is_of_rates(w) || isnan(y.median) || (rate >= c->rate) != pass)
+				continue;
+			snprintf(hint, sizeof hint, "%s: %.3g mm", ob_sync_table[w].title, 1e3 * y.median);
+			ob_plot_point *at = ob_chart_add(d, rate, 1e3 * y.median, "", hint);
+			at->low = 1e3 * (isnan(y.median_low) ? y.least : y.median_low);
+			at->high = 1e3 * (isnan(y.median_high) ? y.most : y.median_high);
+		}
+	if (exact > 0) {
+		snprintf(d->mark_label, sizeof d->mark_label, "lockstep %.2g mm", exact);
+		d->mark[0] = (ob_plot_mark){ .at = exact, .label = d->mark_label };
+		d->plot.marks = 1;
 	}
 	return d;
 }
@@ -158,7 +193,8 @@ static ob_chart *chart_cost(const ob_sync_comparison *c, const ob_sync_point *p)
 	for (int k = 0; k < OB_SYNC_COUPLINGS; k++) {
 		ob_chart_begin(d, k, false, coupling_title[k])->line = false;
 		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++)
-			if ((int)ob_sync_table[w].coupling == k && ob_sync_table[w].delay == 0)
+			if ((int)ob_sync_table[w].coupling == k && ob_sync_table[w].delay == 0 &&
+			    ob_sync_table[w].rate == 0)
 				add_point(d, c, p, w, OB_SYNC_WORST, OB_SYNC_CPU);
 	}
 	return d;
@@ -184,6 +220,17 @@ static void write_recommendation(ob_page *p, const void *with)
 	char text[2048];
 	ob_sync_recommend(c, &c->point[c->points - 1], text, sizeof text);
 	write_paragraph(p, "lead", text);
+}
+
+static void write_hypotheses(ob_page *p, const void *with)
+{
+	const ob_sync_comparison *c = with;
+	for (int i = 0; i < 3; i++) {
+		char name[8], text[1024];
+		snprintf(name, sizeof name, "H%d", i + 1);
+		ob_sync_judge(c, &c->point[c->points - 1], i, text, sizeof text);
+		ob_page_term(p, name, text);
+	}
 }
 
 static void write_setting(ob_page *p, const void *with)
@@ -244,6 +291,7 @@ static void write_points(ob_page *p, const void *with)
 		ob_table_free(t);
 		write_figure(p, chart_lags(c, at, OB_SYNC_SIZES, "Worst penetration / size", true));
 		write_slopes(p, c, at);
+		write_figure(p, chart_rates(c, at));
 		write_figure(p, chart_lags(c, at, OB_SYNC_ENERGY, "Energy gained / energy at the start", false));
 		write_figure(p, chart_lags(c, at, OB_SYNC_BY_LAG, BY_LAG_TITLE, false));
 		write_figure(p, chart_cost(c, at));
@@ -299,10 +347,13 @@ static void write_meanings(ob_page *p, const void *with)
 
 static void write_page(FILE *f, const void *with)
 {
-	static const ob_page_slot slots[] = { { "style", write_style },     { "recommendation", write_recommendation },
-					      { "setting", write_setting }, { "points", write_points },
-					      { "rate", write_rate },       { "jitter", write_jitter },
-					      { "threats", write_threats }, { "meanings", write_meanings } };
+	static const ob_page_slot slots[] = {
+		{ "style", write_style },           { "recommendation", write_recommendation },
+		{ "hypotheses", write_hypotheses }, { "setting", write_setting },
+		{ "points", write_points },         { "rate", write_rate },
+		{ "jitter", write_jitter },         { "threats", write_threats },
+		{ "meanings", write_meanings }
+	};
 	ob_page page = { f };
 	ob_page_fill(&page, text_sync_html, slots, sizeof slots / sizeof *slots, with);
 }
@@ -319,6 +370,7 @@ bool ob_sync_write_folder(const ob_sync_comparison *c, const char *folder, ob_er
 			       "energy", p->define, e) &&
 		       ob_chart_write_point(chart_lags(c, p, OB_SYNC_BY_LAG, BY_LAG_TITLE, false), folder, "by_lag",
 					    p->define, e) &&
+		       ob_chart_write_point(chart_rates(c, p), folder, "rate", p->define, e) &&
 		       ob_chart_write_point(chart_cost(c, p), folder, "cost", p->define, e);
 	}
 	return fine;
