@@ -385,6 +385,52 @@ ob_chart *ob_lab_chart_ghost(const ob_lab_analysis *d)
 	return end_rows(chart, d, ghost);
 }
 
+// Adds the results of a free engine with a delay, as a series with its order.
+static void add_delays(ob_chart *chart, const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k)
+{
+	enum { MOST = 16 };
+	const ob_result *list[MOST];
+	double lag[MOST] = { 0 }, error[MOST] = { 0 };
+	char title[128];
+	size_t n = 0;
+	for (size_t i = 0; i < d->results->count && n < MOST; i++) {
+		const ob_result *r = &d->results->result[i];
+		if (r->of != c || r->engine != k || r->settings.lag == 0)
+			continue;
+		lag[n] = r->settings.lag;
+		error[n] = is_failed(r) ? NAN : r->outcome.figure[0];
+		list[n++] = r;
+	}
+	const double order = ob_reference_order(n, lag, error, 0);
+	snprintf(title, sizeof title, isfinite(order) ? "%s: order %.2f" : "%s", k->title, order);
+	ob_chart_begin(chart, ob_lab_analysis_style(d, k), false, title);
+	for (size_t i = 0; i < n; i++)
+		add_result(chart, list[i], lag[i]);
+}
+
+ob_chart *ob_lab_chart_delay(const ob_lab_analysis *d, const ob_case *c)
+{
+	ob_chart *chart = ob_chart_new();
+	for (size_t i = 0; chart && i < d->engines; i++)
+		if (d->engine[i]->free)
+			add_delays(chart, d, c, d->engine[i]);
+	if (!chart || !chart->points) {
+		ob_chart_free(chart);
+		return NULL;
+	}
+	for (size_t i = 0; i < chart->points; i++)
+		chart->point[i].label = NULL; // the axis has this information
+	snprintf(chart->title, sizeof chart->title, "%s: error of free simulators over the delay", c->title);
+	add_configuration(chart, d, c);
+	snprintf(chart->x_label, sizeof chart->x_label, "ms until a publication is seen");
+	name_axis(&c->figure[0], chart->y_label, sizeof chart->y_label);
+	chart->plot.x.scale = chart->plot.y.scale = OB_SCALE_LOG;
+	mark_target(chart, c);
+	chart->plot.width = 860;
+	chart->plot.height = 440;
+	return chart;
+}
+
 ob_chart *ob_lab_chart_lag(const ob_lab_analysis *d)
 {
 	const ob_engine_kind *late = engine_named(d, "obsim-lag");

@@ -11,6 +11,8 @@ ob_chart *ob_lab_chart_convergence(const ob_lab_analysis *d,
 				   const ob_case *c); // error over substeps, with the observed order
 ob_chart *ob_lab_chart_promises(const ob_lab_analysis *d); // all cases: error over target, obsim beside other engines
 ob_chart *ob_lab_chart_ghost(const ob_lab_analysis *d); // all cases: neighbours of infinite mass
+// Error of free simulators over the delay of what they publish, with its order. NULL: none was run.
+ob_chart *ob_lab_chart_delay(const ob_lab_analysis *d, const ob_case *c);
 ob_chart *ob_lab_chart_lag(const ob_lab_analysis *d); // error over the delay of reading partners
 
 // Prints a setting as the label of its point: "8", "240 Hz", "0.5 mm".

@@ -208,6 +208,25 @@ static void write_lag(ob_page *p, const void *with)
 	ob_page_markup(p, "</figure>\n");
 }
 
+static void write_free(ob_page *p, const void *with)
+{
+	bool begun = false;
+	for (const ob_case *const *c = ob_cases; *c; c++) {
+		ob_chart *chart = ob_lab_chart_delay(with, *c);
+		begun = begun ||
+			begin_section(p, chart, "free", "Simulators that wait for nobody",
+				      "Free simulators have times of their own. Their error over the delay "
+				      "after which a neighbour sees what they publish; the error over the rate "
+				      "of their steps stands above and with each case, lockstep beside it. A "
+				      "ledger computes a pair's impulse once; own: each side computes its own.");
+		if (chart)
+			ob_page_markup(p, "<figure>\n");
+		ob_chart_html(chart, p);
+		if (chart)
+			ob_page_markup(p, "</figure>\n");
+	}
+}
+
 static void write_index(ob_page *p, const void *with)
 {
 	for (const ob_case *const *c = ob_cases; *c; c++) {
@@ -349,11 +368,11 @@ static bool write_charts(const ob_lab_analysis *d, const char *dir, ob_error *e)
 static void write_page(FILE *f, const void *with)
 {
 	static const ob_page_slot slots[] = {
-		{ "style", write_style },         { "cards", write_cards },    { "verdict", write_verdict },
-		{ "promises", write_promises },   { "equal", write_equal },    { "rows", write_rows },
-		{ "conserved", write_conserved }, { "audit", write_audit },    { "convergence", write_convergence },
-		{ "ghost", write_ghost },         { "lag", write_lag },        { "index", write_index },
-		{ "cases", write_all_cases },     { "setting", write_setting }
+		{ "style", write_style },         { "cards", write_cards },     { "verdict", write_verdict },
+		{ "promises", write_promises },   { "equal", write_equal },     { "rows", write_rows },
+		{ "conserved", write_conserved }, { "audit", write_audit },     { "convergence", write_convergence },
+		{ "ghost", write_ghost },         { "lag", write_lag },         { "free", write_free },
+		{ "index", write_index },         { "cases", write_all_cases }, { "setting", write_setting }
 	};
 	ob_page page = { .out = f };
 	ob_page_fill(&page, text_page_html, slots, sizeof slots / sizeof *slots, with);

@@ -36,7 +36,7 @@ class CompareSync(program.Case):
 		self.assertNotIn("{{", page)
 		with open(os.path.join(out, "results.csv")) as f:
 			rows = list(csv.DictReader(f))
-		self.assertEqual(len(rows), 21)
+		self.assertEqual(len(rows), 26)
 		lags = {r["configuration"]: r["latency_mean_s"] for r in rows}
 		self.assertGreater(float(lags["ledger_lag_30ms"]), float(lags["ledger_lag_3ms"]))
 		again = program.call(*words)
