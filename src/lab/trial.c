@@ -119,7 +119,9 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	ob_case_run_state t = { .of = c, .run = number, .world = &w, .settings = *s };
 	t.settings.step_length = s->step_length > 0 ? s->step_length : ob_case_step;
 	t.settings.sleeping |= c->sleeps;
-	t.now = (ob_snapshot){ .count = w.objects, .passport = w.passport, .hulls = w.hulls };
+	t.now = (ob_snapshot){
+		.count = w.objects, .passport = w.passport, .hulls = w.hulls, .joint = w.joint, .joints = w.joints
+	};
 	t.now.motion = calloc(w.objects, sizeof *t.now.motion);
 	t.now.hull = calloc(w.hulls + 1, sizeof(ob_hull *));
 	for (uint32_t i = 0; i < w.hulls && t.now.hull; i++)
