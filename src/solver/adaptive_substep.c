@@ -30,8 +30,8 @@ static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows
 	const double share = ob_max(fast_share, ob_min(1, thin / distance)), allowed = w->tolerance / thin;
 	// Error of a turn: half the thickness times the square of the angle, by which the surface leaves its tangent.
 	// Error of a slide: at most the slide itself.
-	const double max_turn = ob_coarser(w, max_motion, sqrt(2 * unnoticed * allowed)),
-		     max_slide = ob_coarser(w, max_motion, allowed);
+	const double max_turn = w->stretch * ob_coarser(w, max_motion, sqrt(2 * unnoticed * allowed)),
+		     max_slide = w->stretch * ob_coarser(w, max_motion, allowed);
 	return ob_min(max_turn * share / turn, max_slide * share * thin / slide);
 }
 
@@ -39,7 +39,8 @@ static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows
 static bool may_outrun_geometry(const ob_island_work *w, const ob_contact *contact, double h)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
-	return ob_contact_speed(w, contact) * h > max_motion * ob_min(a->thickness, b->thickness);
+	return ob_contact_speed(w, contact) * h >
+	       ob_min(1, w->stretch) * max_motion * ob_min(a->thickness, b->thickness);
 }
 
 // True if the contact touches now. A lane alone does not show it: without contact, it depends on when the narrow phase

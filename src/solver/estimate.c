@@ -4,9 +4,9 @@
 #include "solver/probe.h"
 #include "solver/refinement.h"
 
-// PERIOD: steps from one estimate to the next; SOON: of a lone body, after one above the tolerance. WATCHED_BODIES:
-// islands of up to so many have one at each change, too; FEW_BODIES: of up to so many, where a body lands.
-enum { PERIOD = 16, SOON = 4, WATCHED_BODIES = 2, FEW_BODIES = 8 };
+// PERIOD: steps from one estimate to the next; SOON: of a lone body, after one above the tolerance. FEW_BODIES: islands of up
+// to so many have one where a body lands, too; of up to OB_WATCHED_BODIES at each change.
+enum { PERIOD = 16, SOON = 4, FEW_BODIES = 8 };
 
 bool ob_estimate_create(ob_solver *s)
 {
@@ -51,16 +51,34 @@ static bool lands(const ob_solver *s)
 	return false;
 }
 
+// True if the forces on one of few bodies change within the step, as where a block comes over an edge: a substep of the change
+// may take a second beyond the tolerance.
+static bool is_jolted(const ob_solver *s)
+{
+	const ob_island_work *w = &s->island;
+	return w->jolt * ob_coarse_time(w) > .5 * w->substeps * s->settings->tolerance;
+}
+
+// True if an estimate has no use: the second of each body exceeds the tolerance already, and refinement does not ask.
+static bool is_useless(const ob_solver *s)
+{
+	const ob_island_work *w = &s->island;
+	for (uint32_t row = 1; row <= w->bodies; row++)
+		if (w->body[row].deviation <= s->estimate.bound)
+			return false;
+	return w->bodies > 1 || ob_contacts_changed(w) || is_jolted(s);
+}
+
 // Returns the number of steps for which an estimate of this step stands; 0: none is due.
 static uint32_t weight_of(const ob_solver *s)
 {
 	const ob_island_work *w = &s->island;
 	// Estimates of lone bodies choose substeps, so they do not depend on ids: a scene in another order ends alike.
 	const uint64_t phase = s->in->step + (w->bodies > 1 ? w->body[1].id : 0);
-	if (!s->estimate.probe || w->balanced || is_free(w))
+	if (!s->estimate.probe || w->balanced || is_free(w) || is_useless(s))
 		return 0;
 	const bool changed = ob_contacts_changed(w) || hit_each_other(w);
-	if (w->bodies <= WATCHED_BODIES && changed)
+	if (w->bodies <= OB_WATCHED_BODIES && (changed || is_jolted(s)))
 		return 1; // it stands for no other step
 	if (phase % PERIOD == 0)
 		return PERIOD;
@@ -122,6 +140,13 @@ static void hand_over(ob_solver *s)
 	}
 }
 
+// Returns the number of substeps of a coarser solution. No instant within the step is the end of a substep in both, or a
+// contact that ends within a substep of either may end at the same instant in both. Among several bodies it matters less.
+static uint32_t coarser_than(uint32_t n, uint32_t bodies)
+{
+	return bodies <= OB_WATCHED_BODIES && n > 2 ? n / 2 + 1 : n / 2;
+}
+
 // Solution beside which the step's own stands: its distance times the factor bounds the step's error.
 typedef struct ruler {
 	const ob_probe *probe;
@@ -177,23 +202,24 @@ void ob_estimate_update(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	const bool refined = w->bodies == 1 && ob_is_refined(&s->in->object[0]);
+	hand_over(s);
 	const uint32_t weight = weight_of(s), n = w->substeps;
 	const bool may_double = 2 * n <= OB_MAX_SUBSTEPS, finer = (refined || n < 2 || w->joints.count) && may_double;
-	ruler r[2] = { { s->estimate.probe, refined ? 2 : 1 } };
+	const uint32_t other = finer ? 2 * n : coarser_than(n, w->bodies);
+	ruler r[2] = { { s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) } };
 	int rulers = 1;
 	double error = 0;
-	hand_over(s);
 	if (weight) {
 		ob_solver_enter(s, OB_PROFILE_ESTIMATE);
-		ob_probe_solve(s->estimate.probe, s->in, finer ? 2 * n : n / 2);
+		ob_probe_solve(s->estimate.probe, s->in, other, n);
 		s->counters.estimates += w->bodies;
 		if (!finer && may_double && w->bodies <= FEW_BODIES && exceeds(s, r, weight)) {
-			ob_probe_solve(s->estimate.finer, s->in, 2 * n);
-			r[rulers++] = (ruler){ s->estimate.finer, 2 };
+			ob_probe_solve(s->estimate.finer, s->in, 2 * n + 1, n);
+			r[rulers++] = (ruler){ s->estimate.finer, (2 * n + 1.) / (n + 1) };
 		}
 	}
 	for (uint32_t row = 1; row <= w->bodies; row++)
 		error = ob_max(error, update_deviation(s, r, rulers, row, weight));
 	if (s->estimate.probe && !w->balanced)
-		ob_refinement_update(s, weight, error);
+		ob_refinement_update(s, weight && !is_jolted(s), error);
 }

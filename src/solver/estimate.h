@@ -1,11 +1,11 @@
-// Estimate of a step's error that knows no law: the island is solved again with half as many substeps (solver/probe.h),
-// and the distance of surfaces between both solutions counts. It bounds the error of the finer solution, as that of
-// either falls with the substeps. Where substeps were refined (solver/refinement.h), twice the distance from a solution
-// with twice as many counts, as half as many may be of another order. Where an estimate takes a second of few bodies beyond
-// the tolerance, both are made, and the smaller one counts.
+// Estimate of a step's error that knows no law: the island is solved again with fewer substeps (solver/probe.h), and longer
+// partial ones, and the distance of surfaces between both solutions counts. It bounds the error of the finer solution, as
+// that of either falls with the substeps: at first order it is that error. Where substeps were refined (solver/refinement.h), twice the distance from a solution
+// with twice as many counts, as fewer may be of another order. Where an estimate takes a second of few bodies beyond the
+// tolerance, it is made with more substeps, too, and the smaller one counts. Once the seconds of all bodies exceed it, none is.
 //
 // It is made in one of 16 steps of an island, where it stands for them all. A step in which contacts of one or two bodies
-// change has one of its own, which stands for no other; so has one in which a body lands among a few. Each body's motion
+// change, or the forces on one, has one of its own, which stands for no other; so has one in which a body lands among a few. Each body's motion
 // carries the sum since the second began (motion/deviation.h). A hit hands the larger sum of both bodies on, and lets it grow.
 // Ids and steps decide, so it is the same for any worker, rank, kill and resume.
 #ifndef OB_SOLVER_ESTIMATE_H

@@ -20,7 +20,7 @@
 static_assert((int)OB_POINTS == (int)OB_PAIR_POINTS && (int)OB_ROWS == (int)OB_PAIR_ROWS,
 	      "a pair is stored as it is solved");
 
-enum { OB_COLOURS = 64, OB_NO_LANE = UINT32_MAX };
+enum { OB_COLOURS = 64, OB_NO_LANE = UINT32_MAX, OB_WATCHED_BODIES = 2 };
 
 typedef struct ob_body {
 	uint32_t id;
@@ -271,6 +271,8 @@ typedef struct ob_island_work {
 	ob_units unit; // the run's units, for thresholds
 	double tolerance, run_coarseness; // m, of the run, or the default; ob_run_settings_coarseness()
 	double coarseness; // for the island's step: less with more substeps, else its error would not fall
+	double stretch; // factor on limits of motion within a partial substep: more than 1 in a coarser solution to compare with
+	double jolt; // m/s: largest difference between the changes of a body's velocity in both halves of the step; 0: unknown
 	uint32_t rows, rows_max; // bodies + fixed bodies + row 0
 	uint32_t bodies; // rows 1 .. bodies
 	uint32_t first_ghost; // first row of the ghosts

@@ -101,16 +101,41 @@ static void solve_partial_substep(ob_solver *s, double left, bool first_of_step)
 	ob_joint_loads_keep(&s->island.joints);
 }
 
+// Returns the largest difference (m/s) between the changes of a body's velocity in both halves of a step.
+static double jolt_of(const ob_island_work *w, const ob_vec3 *start, const ob_vec3 *middle)
+{
+	double most = 0;
+	for (uint32_t row = 1; row <= w->bodies; row++) {
+		const ob_vec3 mean = ob_scale(ob_add(start[row], ob_row_linear(w->v[row])), .5);
+		most = ob_max(most, 2 * ob_norm(ob_sub(middle[row], mean)));
+	}
+	return most;
+}
+
+static void note_velocities(const ob_island_work *w, ob_vec3 *v)
+{
+	for (uint32_t row = 1; row <= w->bodies; row++)
+		v[row] = ob_row_linear(w->v[row]);
+}
+
 // Solves the substeps in turn.
 static void solve_substeps(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
+	const bool watched = w->bodies <= OB_WATCHED_BODIES && w->substeps % 2 == 0;
+	ob_vec3 start[OB_WATCHED_BODIES + 1], middle[OB_WATCHED_BODIES + 1];
+	if (watched)
+		note_velocities(w, start);
 	for (uint32_t k = 0; k < w->substeps; k++) {
 		bool first = k == 0;
 		for (double left = w->substep; left > 0 && !ob_budget_spent(s); left -= w->h, first = false)
 			solve_partial_substep(s, left, first);
 		ob_joints_end(s);
+		if (watched && 2 * (k + 1) == w->substeps)
+			note_velocities(w, middle);
 	}
+	if (watched)
+		w->jolt = jolt_of(w, start, middle);
 }
 
 // Flies with the joints where nothing may touch. false: they need more substeps, which are set.
@@ -138,6 +163,7 @@ static bool solve_step(ob_solver *s, const ob_island_input *in)
 	ob_frame_enter(s, in);
 	ob_contacts_load(s, in);
 	ob_direct_begin(&w->direct);
+	w->jolt = 0;
 	s->counters.body_substeps += (uint64_t)in->members * w->substeps;
 	if (in->joints && !in->pairs) {
 		if (!fly(s) && !ob_budget_spent(s))
@@ -206,8 +232,9 @@ void ob_island_report(ob_solver *s)
 	ob_bodies_report(s, rest);
 }
 
-void ob_island_probe(ob_solver *s, const ob_island_input *in, uint32_t substeps)
+void ob_island_probe(ob_solver *s, const ob_island_input *in, uint32_t substeps, double stretch)
 {
+	s->island.stretch = stretch;
 	s->in = in;
 	s->island.in_field = in->joints > 0; // joints are solved in no other frame than the world's
 	s->island.substeps = substeps;
@@ -224,6 +251,7 @@ bool ob_solver_create(ob_solver *s, const ob_run_settings *settings, const ob_is
 	s->methods = ob_methods_of(settings);
 	s->island.unit = ob_run_settings_units(settings);
 	s->island.tolerance = OB_DEFAULT_TOLERANCE * s->island.unit.length;
+	s->island.stretch = 1;
 	s->island.run_coarseness = s->island.coarseness = ob_run_settings_coarseness(settings);
 	return ob_ode_bodies_create(&s->ode_bodies, objects);
 }

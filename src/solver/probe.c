@@ -48,14 +48,19 @@ void ob_probe_destroy(ob_probe *p)
 	free(p);
 }
 
-bool ob_probe_try(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most)
+static bool solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, double stretch, uint64_t most)
 {
 	p->work = 0;
 	p->most = most;
 	memset(&p->solver.budget, 0, sizeof p->solver.budget);
 	p->solver.counters.pair_solves = 0;
-	ob_island_probe(&p->solver, in, substeps);
+	ob_island_probe(&p->solver, in, substeps, stretch);
 	return !p->solver.budget.spent;
+}
+
+bool ob_probe_try(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most)
+{
+	return solve(p, in, substeps, 1, most);
 }
 
 // Largest distance by which a turn from a to b moves the surface of a body: one that is the same however it is turned about
@@ -77,9 +82,9 @@ static double turned_by(const ob_body *body, ob_quat a, ob_quat b)
 	return 2 * body->radius * sqrt(ob_min(square[0], square[1]));
 }
 
-void ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps)
+void ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint32_t beside)
 {
-	(void)ob_probe_try(p, in, substeps, UINT64_MAX);
+	(void)solve(p, in, substeps, (double)beside / substeps, UINT64_MAX);
 }
 
 const ob_island_work *ob_probe_island(const ob_probe *p)

@@ -18,7 +18,7 @@ typedef enum ob_profile_section {
 	OB_PROFILE_PROJECT, // position correction of penetrations
 	OB_PROFILE_PUBLISH, // rest timers, boxes, motions into their slots
 	OB_PROFILE_SCRIPTS, // objects' scripts
-	OB_PROFILE_ESTIMATE, // solving islands again with half as many substeps, to estimate their errors
+	OB_PROFILE_ESTIMATE, // solving islands again with other substeps, to estimate their errors
 	OB_PROFILE_VERIFY, // solving islands again with many substeps, to know their errors
 	OB_PROFILE_SECTIONS
 } ob_profile_section;
