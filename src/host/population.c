@@ -10,6 +10,7 @@
 #include "free/free.h"
 #include "host/journal.h"
 #include "host/joining.h"
+#include "host/script_request.h"
 #include "scene/object_limits.h"
 #include "scene/random.h"
 #include "shape/shape.h"
@@ -242,20 +243,6 @@ static uint32_t add_on_request(ob_population *p, const ob_object_def *def, const
 
 // ---- requests of scripts
 
-// Stops a script after an invalid request, with an error that explains it.
-static void stop_script(ob_population *p, uint32_t cell, uint32_t line, const char *why)
-{
-	ob_step_data *data = ob_universe_step_data(p->u);
-	ob_script_turn *turn = &data->script_turn[cell];
-	ob_script_cell *c = &data->script_cell[cell];
-	const uint32_t script = turn->script - 1;
-	turn->flags |= OB_SCRIPT_STOPPED;
-	c->failed_step = (uint32_t)ob_step_count(p->u);
-	snprintf(c->error, sizeof c->error, "%.47s:%u: %.130s",
-		 script < data->script_text->scripts ? data->script_text->text[script].name : "?", line, why);
-	data->script_counts->failed++;
-}
-
 // Builds the hull, if any. The rest of the post is its corners.
 static bool take_hull(ob_population *p, ob_object_def *def, const ob_script_post *post, ob_error *e)
 {
@@ -282,7 +269,7 @@ static void create_for_script(ob_population *p, uint32_t cell, const ob_script_p
 	if (post->used - sizeof def < def.state_bytes || def.script > data->script_text->scripts)
 		return;
 	if (!ob_population_find_look(p, &def, &e) || !take_hull(p, &def, post, &e) || !ob_object_check(&def, &e)) {
-		stop_script(p, cell, post->line, e.text);
+		ob_script_request_refuse(p->u, cell, post->line, e.text);
 		return;
 	}
 	if (p->created >= p->scene->room) {
@@ -291,7 +278,7 @@ static void create_for_script(ob_population *p, uint32_t cell, const ob_script_p
 			 "%u objects that scripts have created exist, and the scene has no room for more: "
 			 "remove some, or give it more with scene { room = ... }",
 			 p->created);
-		stop_script(p, cell, post->line, why);
+		ob_script_request_refuse(p->u, cell, post->line, why);
 		return;
 	}
 	const uint32_t id = add_on_request(p, &def, (const unsigned char *)(post + 1) + sizeof def);
@@ -307,56 +294,7 @@ static void join_for_script(ob_population *p, uint32_t cell, const ob_script_pos
 	ob_error e;
 	if (!(ob_universe_step_data(p->u)->script_turn[cell].flags & OB_SCRIPT_STOPPED) &&
 	    !ob_joint_post_carry_out(p->u, post, &e))
-		stop_script(p, cell, post->line, e.text);
-}
-
-static void carry_out_scripts(ob_population *p)
-{
-	const ob_step_data *data = ob_universe_step_data(p->u);
-	ob_script_counts *count = data->script_counts;
-	const uint32_t capacity = ob_universe_capacity(p->u);
-	if (!count || !count->requests)
-		return;
-	count->requests = 0;
-	for (uint32_t i = 0; i < count->due && i < data->script_cells; i++) {
-		const uint32_t cell = data->script_due[i];
-		if (cell >= data->script_cells || !data->script_turn[cell].script)
-			continue;
-		const ob_script_cell *c = &data->script_cell[cell];
-		for (uint32_t at = 0; at + sizeof(ob_script_post) <= c->outbox_bytes;) {
-			const ob_script_post *post = (const ob_script_post *)(const void *)(c->outbox + at);
-			at += (uint32_t)sizeof *post + post->bytes;
-			if (at > OB_SCRIPT_OUTBOX_BYTES || post->used > post->bytes)
-				break;
-			if (post->kind == OB_SCRIPT_CREATE)
-				create_for_script(p, cell, post);
-			else if (post->kind == OB_SCRIPT_JOIN || post->kind == OB_SCRIPT_UNJOIN)
-				join_for_script(p, cell, post);
-			else if (post->kind == OB_SCRIPT_REMOVE && post->object < capacity &&
-				 p->slots[post->object].generation == post->generation)
-				remove_object(p, post->object);
-		}
-	}
-}
-
-static bool is_pull(const ob_request *r)
-{
-	return r->kind == OB_REQUEST_TORQUE || r->kind == OB_REQUEST_PUSH || r->kind == OB_REQUEST_DRAG;
-}
-
-static ob_pull pull_of(const ob_request *r)
-{
-	ob_pull pull = { .id = r->id, .generation = r->generation, .origin = r->origin };
-	if (r->kind == OB_REQUEST_TORQUE) {
-		pull.kind = OB_PULL_TORQUE;
-		pull.value = r->twist;
-		return pull;
-	}
-	pull.kind = r->kind == OB_REQUEST_PUSH ? OB_PULL_PUSH : OB_PULL_DRAG;
-	pull.point = r->point;
-	pull.value = r->kind == OB_REQUEST_PUSH ? r->force : r->target;
-	pull.frequency = r->kind == OB_REQUEST_DRAG ? r->frequency : 0;
-	return pull;
+		ob_script_request_refuse(p->u, cell, post->line, e.text);
 }
 
 // The requested state; "now" where a part is not set.
@@ -385,15 +323,15 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 {
 	static const ob_state legal = { .pose.q.w = 1 };
 	const ob_passport *pass = ob_passport_of(p->u, r->id);
-	const ob_pull pull = pull_of(r);
+	const ob_pull pull = ob_pull_of_request(r);
 	const ob_state state = complete_state(&legal, &r->state);
 	const bool pushes = r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_KICK;
-	if (!pushes && !is_pull(r) && r->kind != OB_REQUEST_STATE && r->kind != OB_REQUEST_FRICTION &&
+	if (!pushes && !ob_is_pull_request(r) && r->kind != OB_REQUEST_STATE && r->kind != OB_REQUEST_FRICTION &&
 	    r->kind != OB_REQUEST_SURFACE && r->kind != OB_REQUEST_PATH && !ob_is_joint_request(r))
 		return true;
 	if (r->kind != OB_REQUEST_FORCE && ob_universe_settings(p->u)->monolith)
 		return ob_fail(e, "the one ODE world keeps its bodies to itself: take object simulators");
-	if (is_pull(r))
+	if (ob_is_pull_request(r))
 		return ob_free_settings_of(p->u)
 			       ? ob_fail(e, "in a free run nothing is pulled in each step: use --sync lockstep")
 			       : ob_pull_check(&pull, pass, e);
@@ -431,10 +369,10 @@ static void set_motion(ob_population *p, const ob_request *r)
 		ob_log_warn("a request was left out: %s", e.text); // valid when it came
 		return;
 	}
-	const ob_pull pull = pull_of(r);
+	const ob_pull pull = ob_pull_of_request(r);
 	const ob_state now = ob_state_now(p->u, r->id, ob_newest_motion(p->u, r->id), ob_step_count(p->u)),
 		       state = complete_state(&now, &r->state);
-	if (is_pull(r)) {
+	if (ob_is_pull_request(r)) {
 		if (!ob_pulls_set(&p->pulls, &pull))
 			ob_log_warn("object %u is not pulled: too many pulls act, or there is no memory", r->id);
 		return;
@@ -473,6 +411,69 @@ static void change_on_request(ob_population *p, const ob_request *r)
 		ob_joint_request_carry_out(p->u, r);
 	} else {
 		set_motion(p, r);
+	}
+}
+
+// True if the object moves, or its surface runs, as requested: its contacts go on.
+static bool is_as_requested(const ob_population *p, const ob_request *r)
+{
+	const ob_state now = ob_state_now(p->u, r->id, ob_newest_motion(p->u, r->id), ob_step_count(p->u)),
+		       state = complete_state(&now, &r->state);
+	ob_path path;
+	uint32_t born;
+	if (r->kind == OB_REQUEST_SURFACE)
+		return ob_equal(ob_passport_of(p->u, r->id)->surface_velocity, r->surface_velocity);
+	return r->kind == OB_REQUEST_STATE && !find_path(p, r->id, &path, &born) && ob_equal(state.v, now.v) &&
+	       ob_equal(state.w, now.w);
+}
+
+// Steers an object for its script, as a request from outside does. An invalid request stops the script.
+static void steer_for_script(ob_population *p, uint32_t cell, const ob_script_post *post)
+{
+	const uint32_t id = post->object;
+	ob_request r = { 0 };
+	ob_error e;
+	if (ob_universe_step_data(p->u)->script_turn[cell].flags & OB_SCRIPT_STOPPED ||
+	    id >= ob_universe_capacity(p->u) || p->slots[id].generation != post->generation ||
+	    p->slots[id].use != SLOT_PRESENT)
+		return;
+	bool valid = ob_script_request_read(post, &r) || ob_fail(&e, "the request makes no sense");
+	valid = valid &&
+		(r.kind != OB_REQUEST_STATE || p->slots[id].kinematic || ob_fail(&e, "expected a kinematic object"));
+	if (!valid || !ob_population_check_change(p, &r, &e))
+		ob_script_request_refuse(p->u, cell, post->line, e.text);
+	else if (!is_as_requested(p, &r))
+		set_motion(p, &r);
+}
+
+static void carry_out_scripts(ob_population *p)
+{
+	const ob_step_data *data = ob_universe_step_data(p->u);
+	ob_script_counts *count = data->script_counts;
+	const uint32_t capacity = ob_universe_capacity(p->u);
+	if (!count || !count->requests)
+		return;
+	count->requests = 0;
+	for (uint32_t i = 0; i < count->due && i < data->script_cells; i++) {
+		const uint32_t cell = data->script_due[i];
+		if (cell >= data->script_cells || !data->script_turn[cell].script)
+			continue;
+		const ob_script_cell *c = &data->script_cell[cell];
+		for (uint32_t at = 0; at + sizeof(ob_script_post) <= c->outbox_bytes;) {
+			const ob_script_post *post = (const ob_script_post *)(const void *)(c->outbox + at);
+			at += (uint32_t)sizeof *post + post->bytes;
+			if (at > OB_SCRIPT_OUTBOX_BYTES || post->used > post->bytes)
+				break;
+			if (post->kind == OB_SCRIPT_CREATE)
+				create_for_script(p, cell, post);
+			else if (post->kind == OB_SCRIPT_JOIN || post->kind == OB_SCRIPT_UNJOIN)
+				join_for_script(p, cell, post);
+			else if (post->kind >= OB_SCRIPT_STATE && post->kind < OB_SCRIPT_POST_KINDS)
+				steer_for_script(p, cell, post);
+			else if (post->kind == OB_SCRIPT_REMOVE && post->object < capacity &&
+				 p->slots[post->object].generation == post->generation)
+				remove_object(p, post->object);
+		}
 	}
 }
 

@@ -14,6 +14,26 @@ static const double hand_speed = 100; // m/s: the most at which a drag moves a b
 static const double spin_decay = 2; // 1/s, of a dragged body
 static const double frequency_least = .1, frequency_most = 50; // Hz
 
+bool ob_is_pull_request(const ob_request *r)
+{
+	return r->kind == OB_REQUEST_TORQUE || r->kind == OB_REQUEST_PUSH || r->kind == OB_REQUEST_DRAG;
+}
+
+ob_pull ob_pull_of_request(const ob_request *r)
+{
+	ob_pull pull = { .id = r->id, .generation = r->generation, .origin = r->origin };
+	if (r->kind == OB_REQUEST_TORQUE) {
+		pull.kind = OB_PULL_TORQUE;
+		pull.value = r->twist;
+		return pull;
+	}
+	pull.kind = r->kind == OB_REQUEST_PUSH ? OB_PULL_PUSH : OB_PULL_DRAG;
+	pull.point = r->point;
+	pull.value = r->kind == OB_REQUEST_PUSH ? r->force : r->target;
+	pull.frequency = r->kind == OB_REQUEST_DRAG ? r->frequency : 0;
+	return pull;
+}
+
 static bool check_point(const ob_pull *pull, const ob_passport *p, ob_error *e)
 {
 	const double most = 1.01 * ob_shape_radius((ob_shape)p->shape, p->size);

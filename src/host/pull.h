@@ -14,6 +14,7 @@
 #ifndef OB_HOST_PULL_H
 #define OB_HOST_PULL_H
 
+#include "host/request.h"
 #include "table/table.h"
 
 typedef enum ob_pull_kind { OB_PULL_TORQUE, OB_PULL_PUSH, OB_PULL_DRAG } ob_pull_kind;
@@ -37,6 +38,9 @@ typedef struct ob_pulls {
 	uint32_t count, room;
 } ob_pulls;
 
+// True for a request that begins a pull; that pull.
+bool ob_is_pull_request(const ob_request *r);
+ob_pull ob_pull_of_request(const ob_request *r);
 // Returns false and e if an object cannot be pulled so: it does not move by forces, or numbers are out of range.
 bool ob_pull_check(const ob_pull *pull, const ob_passport *p, ob_error *e);
 // Begins a pull, or changes it; a torque or force of 0 ends it. false: no room.

@@ -73,7 +73,10 @@ ob_object_def *ob_builder_add(lua_State *L, ob_builder *b, const char *kind, con
 // Sets the object's path from the table at the top of the stack, and its first state. kind: name of the call, for
 // messages.
 void ob_builder_read_path(lua_State *L, const char *kind, ob_object_def *o);
-// The same for a force that changes in time.
+// Reads the points of a path from the field "points" of the table at the top of the stack; returns their number. They lie in a
+// value of Lua's, which is pushed. begins: the first has the time 0; else points that follow another one. where: for messages.
+uint32_t ob_builder_read_points(lua_State *L, const char *where, bool begins, ob_path_point **out, bool *turns);
+// The same as ob_builder_read_path for a force that changes in time.
 void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o);
 // NULL if no material has this name.
 const ob_material *ob_builder_material(const ob_builder *b, const char *name);

@@ -111,16 +111,17 @@ static bool read_point(lua_State *L, double most, int numbers, ob_path_point *ou
 	return good;
 }
 
-// Reads the points of the table at the top of the stack; returns their number. They lie in a value of Lua's, which is
-// pushed. turns: set if they have attitudes; NULL: attitudes are errors.
-static uint32_t read_points(lua_State *L, const char *where, double most, ob_path_point **out, bool *turns)
+// Reads points as ob_builder_read_points does, each number of a place up to "most". turns: set if they have attitudes; NULL:
+// attitudes are errors.
+static uint32_t read_points(lua_State *L, const char *where, bool begins, double most, ob_path_point **out, bool *turns)
 {
+	const size_t least = begins ? 2 : 1;
 	int numbers = PLACED;
 	lua_getfield(L, -1, "points");
 	const size_t n = lua_rawlen(L, -1);
-	if (n < 2 || n > OB_PATH_POINTS_MAX)
-		ob_sandbox_fail(L, "%s.points: expected 2 to %d points {t, x, y, z}, got %d", where, OB_PATH_POINTS_MAX,
-				(int)n);
+	if (n < least || n > OB_PATH_POINTS_MAX)
+		ob_sandbox_fail(L, "%s.points: expected %d to %d points {t, x, y, z}, got %d", where, (int)least,
+				OB_PATH_POINTS_MAX, (int)n);
 	ob_path_point *point = *out = lua_newuserdatauv(L, n * sizeof *point, 0);
 	lua_insert(L, -2);
 	for (size_t i = 0; i < n; i++) {
@@ -133,16 +134,20 @@ static uint32_t read_points(lua_State *L, const char *where, double most, ob_pat
 						? "four numbers {t, x, y, z}"
 						: "eight numbers {t, x, y, z, qw, qx, qy, qz}, as point 1 has,",
 					(int)i + 1);
-		if (i == 0 ? point[0].t != 0 : !(point[i].t > point[i - 1].t))
-			ob_sandbox_fail(L,
-					"%s.points: expected times that begin with 0 and grow, got %.10g at point %d",
-					where, point[i].t, (int)i + 1);
+		if (i == 0 && begins ? point[0].t != 0 : !(point[i].t > (i ? point[i - 1].t : 0)))
+			ob_sandbox_fail(L, "%s.points: expected times that %s and grow, got %.10g at point %d", where,
+					begins ? "begin with 0" : "are after 0", point[i].t, (int)i + 1);
 		lua_pop(L, 1);
 	}
 	lua_pop(L, 1);
 	if (turns)
 		*turns = numbers == TURNED;
 	return (uint32_t)n;
+}
+
+uint32_t ob_builder_read_points(lua_State *L, const char *where, bool begins, ob_path_point **out, bool *turns)
+{
+	return read_points(L, where, begins, OB_PLACE_MOST, out, turns);
 }
 
 // Makes rotations from the object's initial attitude, at which it must be at rest.
@@ -159,7 +164,7 @@ static void make_spline(lua_State *L, const char *where, const draft *d, ob_obje
 {
 	ob_path path = { .loop = d->loop };
 	ob_error e;
-	path.points = read_points(L, where, OB_PLACE_MOST, &path.point, &path.turns);
+	path.points = ob_builder_read_points(L, where, true, &path.point, &path.turns);
 	if (!ob_path_check_turns(&path, &e))
 		ob_sandbox_fail(L, "%s.%s", where, e.text);
 	for (uint32_t i = 0; i < path.points; i++)
@@ -233,7 +238,8 @@ void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o)
 	luaL_checkstack(L, 8, "nested too deep");
 	ob_fields_read(L, -1, where, force_fields, sizeof force_fields / sizeof *force_fields, &d);
 	check_force(L, where, &d);
-	const uint32_t points = d.kind == OB_FORCE_LINEAR ? read_points(L, where, OB_FORCE_MOST, &point, NULL) : 0;
+	const uint32_t points =
+		d.kind == OB_FORCE_LINEAR ? read_points(L, where, true, OB_FORCE_MOST, &point, NULL) : 0;
 	const ob_force f = { .kind = (ob_force_kind)d.kind,
 			     .force = points ? ob_v3(0, 0, 0) : d.force,
 			     .frequency = isnan(d.frequency) ? 0 : 2 * M_PI * d.frequency,

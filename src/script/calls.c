@@ -181,7 +181,7 @@ static int call_position(lua_State *L)
 
 static int call_velocity(lua_State *L)
 {
-	warn_arguments(L, "velocity", ": self:push changes it");
+	warn_arguments(L, "velocity", ": self:push changes it, or self:set_velocity");
 	const ob_script_runner *r = runner_of(L);
 	const ob_flat_object *o = object_at(L, 1, "velocity");
 	const ob_passport *p = passport_of(r, o);
@@ -205,7 +205,7 @@ static bool state_of(lua_State *L, const char *call, ob_state *out)
 
 static int call_spin(lua_State *L)
 {
-	warn_arguments(L, "spin", ": self:twist changes it");
+	warn_arguments(L, "spin", ": self:twist changes it, or self:set_spin");
 	ob_state s;
 	return state_of(L, "spin", &s) ? push_vector(L, s.w) : 0;
 }
@@ -405,6 +405,19 @@ static void end_post(const ob_script_runner *r, ob_script_post *post, const ob_f
 	r->cell->asks |= OB_SCRIPT_ASKS_POST;
 }
 
+// Appends the contents of a post to the outbox.
+static void post(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, uint32_t id, uint32_t generation,
+		 const void *contents, size_t size)
+{
+	ob_script_post *p = begin_post(L, r, kind, id, generation);
+	ob_flat f = rest_of(r->cell);
+	if (f.room < size)
+		ob_sandbox_fail(L, "expected at most %d bytes of requests in a step", OB_SCRIPT_OUTBOX_BYTES);
+	memcpy(f.bytes, contents, size);
+	f.size = (uint32_t)size;
+	end_post(r, p, &f);
+}
+
 static int call_send(lua_State *L)
 {
 	const ob_script_runner *r = runner_of(L);
@@ -488,6 +501,84 @@ static int call_create(lua_State *L)
 		memcpy(f.bytes + f.size, corners->at, corners_bytes);
 	f.size += (uint32_t)corners_bytes;
 	end_post(r, post, &f);
+	return 0;
+}
+
+// ---- steering the own kinematic object
+
+// Checks that the own object is one to steer: kinematic, or static where that will do.
+static ob_script_runner *steered(lua_State *L, const char *call, bool or_static)
+{
+	ob_script_runner *r = own(L, call);
+	const uint32_t flags = ob_passport_of(r->u, r->turn->object)->flags;
+	if (!(flags & OB_OBJECT_PRESCRIBED) || (flags & OB_OBJECT_STATIC && !or_static))
+		ob_sandbox_fail(L, "%s: expected a %skinematic object, got a %s one", call,
+				or_static ? "static or " : "", flags & OB_OBJECT_STATIC ? "static" : "dynamic");
+	ob_sandbox_spend(L, 500); // the host looks through all pairs
+	return r;
+}
+
+static void post_own(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, const void *contents,
+		     size_t size)
+{
+	post(L, r, kind, r->turn->object, r->turn->generation, contents, size);
+}
+
+// Velocity and spin; the rest of the state stays as it is.
+static int post_state(lua_State *L, const ob_script_runner *r, ob_vec3 v, ob_vec3 w)
+{
+	const ob_state s = { { { NAN, NAN, NAN }, { NAN, NAN, NAN, NAN } }, v, w };
+	post_own(L, r, OB_SCRIPT_STATE, &s, sizeof s);
+	return 0;
+}
+
+static int call_set_velocity(lua_State *L)
+{
+	const ob_script_runner *r = steered(L, "set_velocity", false);
+	ob_vec3 v;
+	vector_at(L, 2, "set_velocity", OB_SPEED_MOST, &v);
+	return post_state(L, r, v, ob_v3(NAN, NAN, NAN));
+}
+
+static int call_set_spin(lua_State *L)
+{
+	const ob_script_runner *r = steered(L, "set_spin", false);
+	ob_vec3 w;
+	vector_at(L, 2, "set_spin", OB_SPIN_MOST, &w);
+	return post_state(L, r, ob_v3(NAN, NAN, NAN), w);
+}
+
+static int call_set_surface_velocity(lua_State *L)
+{
+	const ob_script_runner *r = steered(L, "set_surface_velocity", true);
+	ob_vec3 v;
+	vector_at(L, 2, "set_surface_velocity", OB_SPEED_MOST, &v);
+	post_own(L, r, OB_SCRIPT_SURFACE, &v, sizeof v);
+	return 0;
+}
+
+static int call_set_path(lua_State *L)
+{
+	typedef struct said {
+		bool points, loop;
+	} said;
+	static const ob_field fields[] = {
+		OB_FIELD(said, points, .name = "points", .kind = OB_FIELD_TABLE, .required = true),
+		OB_FIELD(said, loop, .name = "loop", .kind = OB_FIELD_BOOLEAN),
+	};
+	const ob_script_runner *r = steered(L, "set_path", false);
+	said path = { 0 };
+	ob_path_point *point;
+	bool turns;
+	lua_settop(L, 2);
+	ob_script_thaw(L, 2);
+	ob_fields_read(L, 2, "set_path", fields, sizeof fields / sizeof *fields, &path);
+	const size_t points = ob_builder_read_points(L, "set_path", false, &point, &turns),
+		     bytes = points * sizeof *point;
+	ob_script_path *p = lua_newuserdatauv(L, sizeof *p + bytes, 0);
+	p->loop = path.loop, p->turns = turns;
+	memcpy(p->point, point, bytes);
+	post_own(L, r, OB_SCRIPT_PATH, p, sizeof *p + bytes);
 	return 0;
 }
 
@@ -577,17 +668,10 @@ static int call_joint_load(lua_State *L)
 	return 6;
 }
 
-// Appends the contents of a post to the outbox.
-static void post(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, const ob_joint_passport *j,
-		 const void *contents, uint32_t size)
+static void post_joint(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, const ob_joint_passport *j,
+		       const void *contents, size_t size)
 {
-	ob_script_post *p = begin_post(L, r, kind, j->object[0], j->generation[0]);
-	ob_flat f = rest_of(r->cell);
-	if (f.room < size)
-		ob_sandbox_fail(L, "expected at most %d bytes of requests in a step", OB_SCRIPT_OUTBOX_BYTES);
-	memcpy(f.bytes, contents, size);
-	f.size = size;
-	end_post(r, p, &f);
+	post(L, r, kind, j->object[0], j->generation[0], contents, size);
 }
 
 static int call_motor(lua_State *L)
@@ -600,7 +684,7 @@ static int call_motor(lua_State *L)
 	const ob_joint_passport *j = &r->data->joint[m.joint];
 	if (j->axis.motor == OB_MOTOR_NONE)
 		ob_sandbox_fail(L, "motor: joint \"%s\" has none", j->name);
-	post(L, r, OB_SCRIPT_MOTOR, j, &m, sizeof m);
+	post_joint(L, r, OB_SCRIPT_MOTOR, j, &m, sizeof m);
 	return 0;
 }
 
@@ -628,7 +712,7 @@ static int call_join(lua_State *L)
 	r->scene.joints = 0;
 	ob_sandbox_spend(L, 500 + ob_universe_ids(r->u) / NAMES_PER_INSTRUCTION);
 	ob_scene_call_joint(L);
-	post(L, r, OB_SCRIPT_JOIN, &r->scene.joint[0], &r->scene.joint[0], sizeof r->scene.joint[0]);
+	post_joint(L, r, OB_SCRIPT_JOIN, &r->scene.joint[0], &r->scene.joint[0], sizeof r->scene.joint[0]);
 	return 0;
 }
 
@@ -638,7 +722,7 @@ static int call_unjoin(lua_State *L)
 	const uint32_t joint = find_joint(L, r, "unjoin", true);
 	const ob_joint_passport *j = joint == UINT32_MAX ? NULL : &r->data->joint[joint];
 	if (j)
-		post(L, r, OB_SCRIPT_UNJOIN, j, j, sizeof *j);
+		post_joint(L, r, OB_SCRIPT_UNJOIN, j, j, sizeof *j);
 	return 0;
 }
 
@@ -802,15 +886,28 @@ static int object_text(lua_State *L)
 }
 
 static const luaL_Reg methods[] = {
-	{ "exists", call_exists },     { "id", call_id },
-	{ "name", call_name },         { "mass", call_mass },
-	{ "position", call_position }, { "velocity", call_velocity },
-	{ "spin", call_spin },         { "attitude", call_attitude },
-	{ "turned", call_turned },     { "inside", call_inside },
-	{ "force", call_force },       { "torque", call_torque },
-	{ "push", call_push },         { "twist", call_twist },
-	{ "colour", call_colour },     { "wake", call_wake },
-	{ "remove", call_remove },     { NULL, NULL },
+	{ "exists", call_exists },
+	{ "id", call_id },
+	{ "name", call_name },
+	{ "mass", call_mass },
+	{ "position", call_position },
+	{ "velocity", call_velocity },
+	{ "spin", call_spin },
+	{ "attitude", call_attitude },
+	{ "turned", call_turned },
+	{ "inside", call_inside },
+	{ "force", call_force },
+	{ "torque", call_torque },
+	{ "push", call_push },
+	{ "twist", call_twist },
+	{ "colour", call_colour },
+	{ "wake", call_wake },
+	{ "remove", call_remove },
+	{ "set_velocity", call_set_velocity },
+	{ "set_spin", call_set_spin },
+	{ "set_path", call_set_path },
+	{ "set_surface_velocity", call_set_surface_velocity },
+	{ NULL, NULL },
 };
 
 static void open_objects(lua_State *L)

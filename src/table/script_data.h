@@ -18,7 +18,8 @@ enum {
 	OB_SCRIPTS_MAX = 64, // texts of a universe
 	OB_SCRIPT_STATE_BYTES = 1024, // maximum of an object's state
 	OB_SCRIPT_INBOX_BYTES = 1536, // maximum of pending messages of an object
-	OB_SCRIPT_OUTBOX_BYTES = 4096, // maximum of an object's requests in a step: messages, creations, removals
+	OB_SCRIPT_OUTBOX_BYTES =
+		4096, // maximum of an object's requests in a step: messages, creations, paths and others
 	OB_SCRIPT_TOUCHES = 16, // contacts of an object that begin in a step and are reported to it
 	OB_SCRIPT_ERROR_BYTES = 192,
 };
@@ -72,14 +73,19 @@ typedef struct ob_script_cell {
 
 // Record of an outbox, one after the other; in an inbox, the same with the sender in place of the addressee. Contents:
 // the values of a message; nothing; an ob_object_def, the state of its script, and the corners of a hull; an
-// ob_script_motor; an ob_joint_passport; the same, of the joint that is to go.
+// ob_script_motor; an ob_joint_passport; the same, of the joint that is to go; an ob_state, with NaN in parts that stay as
+// they are; an ob_script_path; an ob_vec3, m/s, body frame.
 typedef enum ob_script_post_kind {
 	OB_SCRIPT_MESSAGE,
 	OB_SCRIPT_REMOVE,
 	OB_SCRIPT_CREATE,
 	OB_SCRIPT_MOTOR,
 	OB_SCRIPT_JOIN,
-	OB_SCRIPT_UNJOIN
+	OB_SCRIPT_UNJOIN,
+	OB_SCRIPT_STATE, // of the script's own object, which is kinematic; likewise:
+	OB_SCRIPT_PATH,
+	OB_SCRIPT_SURFACE, // or static
+	OB_SCRIPT_POST_KINDS
 } ob_script_post_kind;
 
 typedef struct ob_script_post {
@@ -94,6 +100,12 @@ typedef struct ob_script_motor {
 	uint32_t joint, zero;
 	double target; // m/s, rad/s, or m, rad
 } ob_script_motor;
+
+// Request of a script: a path from where its object is, through these points.
+typedef struct ob_script_path {
+	uint32_t loop, turns; // 0 or 1
+	ob_path_point point[]; // to the end of the post
+} ob_script_path;
 
 // At the start of the area of texts.
 typedef struct ob_script_directory {
@@ -118,7 +130,7 @@ typedef struct ob_script_counts {
 	uint32_t cells; // one past the highest that was ever used
 	uint32_t due; // length of the list of cells that run in this step
 	uint32_t ran_for; // 1 + the step (from 0) before which scripts have run
-	uint32_t requests; // creations and removals in the outboxes of that list, which the host carries out now
+	uint32_t requests; // in the outboxes of that list, which the host carries out now
 	uint32_t failed; // objects whose script was stopped by an error, and those whose script is warned of
 	uint32_t lost; // messages that found their addressee's inbox full
 	uint64_t calls; // of objects' scripts
