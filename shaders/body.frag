@@ -2,6 +2,9 @@
 #include "frame.glsl"
 #include "light.glsl"
 #include "surface.glsl"
+#ifdef OB_PATTERNED
+#include "pattern.glsl"
+#endif
 in vec3 v_local, v_to_eye, v_shadow;
 in vec2 v_open_fog;
 flat in vec4 v_half;
@@ -16,6 +19,18 @@ Surface shown_surface()
 	vec3 colour = v_paint.rgb * mix(vec3(1.), texture(colour_image, v_place).rgb, v_by_mesh.x);
 	vec2 share = mix(vec2(1.), texture(surface_image, v_place).gb, v_by_mesh.y);
 	return surface_of(colour, floor(v_paint.w) / 15. * share.y, fract(v_paint.w) * share.x);
+}
+#elif defined(OB_PATTERNED)
+flat in vec4 v_paint;
+flat in vec3 v_face;
+Surface shown_surface()
+{
+	vec3 at = v_local + v_half.xyz, wide = fwidth(v_local), face = abs(v_face);
+	vec2 on = face.x > .5 ? at.yz : face.y > .5 ? at.xz : at.xy;
+	vec2 footprint = face.x > .5 ? wide.yz : face.y > .5 ? wide.xz : wide.xy;
+	float paint = mod(v_paint.w, 16.);
+	vec3 colour = patterned(v_paint.rgb, int(v_paint.w) / 16, on, footprint);
+	return surface_of(colour, floor(paint) / 15., fract(paint));
 }
 #else
 flat in vec3 v_matt, v_shine, v_edge;

@@ -14,6 +14,9 @@ flat out vec3 v_sun, v_up;
 out vec2 v_place;         // texture coordinates
 flat out vec4 v_paint;    // factors of the images: colour; metal and roughness, as shown_paint()
 flat out vec2 v_by_mesh;  // 1 if the mesh's images provide colour and surface, else 0
+#elif defined(OB_PATTERNED)
+flat out vec4 v_paint;
+flat out vec3 v_face;     // the normal of the box's face
 #else
 flat out vec3 v_matt, v_shine, v_edge; // members of Surface
 flat out vec4 v_gloss;
@@ -36,6 +39,9 @@ void main()
 	v_place = texture_place;
 	v_paint = look;
 	v_by_mesh = vec2(by_mesh());
+#elif defined(OB_PATTERNED)
+	v_paint = colour;
+	v_face = normal;
 #else
 	Surface s = surface_of(look.rgb, floor(look.w) / 15., fract(look.w));
 	v_matt = s.matt;

@@ -6,7 +6,8 @@ layout(location = 3) in vec4 attitude;        // quaternion x y z w, body to wor
 // m, half size; w: width of a box's rounded edges, m; 0 = not a box; negative for a mesh: -1 if it has the colour, -2
 // if the surface
 layout(location = 4) in vec4 core;
-layout(location = 5) in vec4 colour;          // linear; w: 15 times its metal, whole, plus its roughness, below 1
+// linear; w: 15 times its metal, whole, plus its roughness, below 1; of a patterned box plus 16 times its pattern
+layout(location = 5) in vec4 colour;
 layout(location = 6) in vec4 paint;           // paint of a mesh's vertex, like colour; below 0: the object's
 layout(location = 7) in vec2 texture_place;   // texture coordinates in its part's images
 

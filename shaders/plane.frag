@@ -1,9 +1,12 @@
 #version 330 core
 #include "frame.glsl"
 #include "light.glsl"
+#ifdef OB_PATTERNED
+#include "pattern.glsl"
+#endif
 uniform vec3 foot, normal, axis_x, axis_y;
-uniform vec2 grid_foot;         // m: the foot's place in the 10 m cell of the grid
-uniform vec4 colour;            // linear; w: 1 with grid
+uniform vec2 grid_foot;         // m: the foot's place in the 10 m cell of the grid, or in the pattern's period
+uniform vec4 colour;            // linear; w: 1 with grid, or the pattern
 uniform mat3 shadow_of;         // (along x, along y, 1) to the coordinates of the shadow map
 #ifdef OB_DRAFT
 uniform mat3 occlusion_of;
@@ -13,6 +16,9 @@ uniform sampler2D occlusion;
 in vec2 v_at;
 out vec4 pixel;
 
+#ifdef OB_PATTERNED
+vec3 ground(vec2 at) { return patterned(colour.rgb, int(colour.w), at, fwidth(at)); }
+#else
 // Share of the pixel covered by the nearest line, with a box filter over its footprint. Footprints wider than the
 // lines' distance give an even result, which fades: no flicker near, no moire far away.
 vec2 lines(vec2 at, vec2 sharp, float distance, float width)
@@ -29,9 +35,12 @@ float ink(vec2 at)
 	return colour.w * max(.3 * max(thin.x, thin.y), .5 * max(strong.x, strong.y));
 }
 
+vec3 ground(vec2 at) { return colour.rgb * (1. - ink(at)); }
+#endif
+
 void main()
 {
-	vec3 albedo = colour.rgb * (1. - ink(v_at + grid_foot));
+	vec3 albedo = ground(v_at + grid_foot);
 	vec3 at = vec3(v_at, 1.);
 #ifdef OB_FAR
 	float sunny = max(dot(normal, sun.xyz), 0.), open = 1.;

@@ -47,6 +47,21 @@ enum { // ob_passport.flags
 	OB_OBJECT_SENSOR = 1 << 6, // no obstacle: nothing touches it; ob_universe_get_inside lists the objects in it
 };
 
+// Pattern of a surface, in metres of the object's own frame; boxes and planes alone.
+typedef enum ob_pattern {
+	OB_PATTERN_PLAIN,
+	OB_PATTERN_TILES,
+	OB_PATTERN_SLABS,
+	OB_PATTERN_BRICKS,
+	OB_PATTERN_PLANKS,
+	OB_PATTERN_CHECKER,
+	OB_PATTERNS,
+} ob_pattern;
+enum { // in ob_passport.flags
+	OB_OBJECT_PATTERN = 8, // shift: ob_pattern
+	OB_OBJECT_PATTERN_BITS = 7,
+};
+
 enum { // collision groups, in the other half of ob_passport.flags
 	OB_GROUPS = 16, // from 0
 	OB_OBJECT_GROUP = 12, // shift: the object's group, four bits
@@ -57,7 +72,7 @@ enum { // collision groups, in the other half of ob_passport.flags
 typedef struct ob_passport {
 	uint32_t id; // index of the object in the table, from 0
 	uint32_t generation; // grows each time the slot is reused for another object
-	uint32_t flags; // OB_OBJECT_*; from bit OB_OBJECT_GROUP on: its collision group, and those that it passes
+	uint32_t flags; // OB_OBJECT_*; pattern, collision group, and those that it passes, from their bits on
 	uint8_t shape; // ob_shape: collision shape; also drawn unless it has a mesh
 	// 1 + the number of the scene's mesh that is drawn instead; 0 = none. Viewers load the meshes
 	uint8_t mesh;
@@ -76,6 +91,12 @@ typedef struct ob_passport {
 	float roughness; // 0..1, of its surface when drawn: 0 = polished, 1 = matt
 	float metal; // 0..1: 1 = reflects as metals do, in its own colour
 } ob_passport;
+
+static inline ob_pattern ob_passport_pattern(const ob_passport *p)
+{
+	const uint32_t pattern = p->flags >> OB_OBJECT_PATTERN & OB_OBJECT_PATTERN_BITS;
+	return pattern < OB_PATTERNS ? (ob_pattern)pattern : OB_PATTERN_PLAIN;
+}
 
 static inline uint32_t ob_passport_group(const ob_passport *p)
 {

@@ -369,13 +369,19 @@ void ob_draw_list_finish(ob_draw_list *b)
 	*b = (ob_draw_list){ 0 };
 }
 
+// Colours that show the architecture are shown without patterns.
+static ob_pattern shown_pattern(const ob_draw_list *b, const ob_passport *p)
+{
+	return b->colouring.key == OB_COLOUR_OWN ? ob_passport_pattern(p) : OB_PATTERN_PLAIN;
+}
+
 static uint32_t mesh_of(const ob_draw_list *b, const ob_passport *p, const ob_draw_item *body, const ob_view *v,
 			int height)
 {
 	if (look_of(b, p))
 		return OB_MESHES + b->now->hulls + p->mesh - 1;
 	if (ob_shape_is(p->shape, OB_SIDED))
-		return OB_MESH_BOX;
+		return shown_pattern(b, p) ? OB_MESH_PATTERNED_BOX : OB_MESH_BOX;
 	if (ob_shape_is(p->shape, OB_HULLED))
 		return OB_MESHES + p->hull;
 	double distance = ob_norm(ob_sub(body->pose.p, v->eye));
@@ -421,6 +427,8 @@ static ob_instance instance_of(const ob_draw_list *b, const ob_draw_item *body, 
 	set_vec4(i.core, o.half.x, o.half.y, o.half.z, rounding);
 	ob_colouring_of(&b->colouring, b->now, body->id, i.colour);
 	i.colour[3] = ob_surface_pack(p->roughness, p->metal);
+	if (!look && ob_shape_is(p->shape, OB_SIDED))
+		i.colour[3] += 16 * (float)shown_pattern(b, p);
 	return i;
 }
 

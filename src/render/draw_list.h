@@ -64,7 +64,8 @@ typedef struct ob_instance {
 	// m: half size; width of a box's rounded edges, 0 = not a box. Negative for a mesh: -1 = shown with its
 	// colours, -2 = with its surface
 	float core[4];
-	float colour[4]; // linear; last: 15 times its metal, whole, plus its roughness, below 1
+	// linear; last: 15 times its metal, whole, plus its roughness, below 1, plus 16 times its pattern
+	float colour[4];
 } ob_instance;
 
 // Instances grouped by mesh: those of mesh k are first[k] .. first[k + 1] - 1. Order of meshes: the shapes', the

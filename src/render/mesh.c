@@ -131,7 +131,9 @@ bool ob_mesh_set_build(ob_mesh_set *s)
 	if (!s->vertex || !s->index)
 		return false;
 	for (int kind = 0; kind < OB_MESHES; kind++)
-		build_one(s, kind);
+		if (kind != OB_MESH_PATTERNED_BOX)
+			build_one(s, kind);
+	s->mesh[OB_MESH_PATTERNED_BOX] = s->mesh[OB_MESH_BOX];
 	return true;
 }
 

@@ -16,6 +16,7 @@ typedef struct ob_vertex {
 enum { OB_MESH_LEVELS = 3 }; // levels of detail, coarse to fine
 typedef enum ob_mesh_kind {
 	OB_MESH_BOX,
+	OB_MESH_PATTERNED_BOX, // the same triangles, drawn with a pattern
 	OB_MESH_ROUND, // sphere, capsule
 	OB_MESH_CYLINDER = OB_MESH_ROUND + OB_MESH_LEVELS,
 	OB_MESHES = OB_MESH_CYLINDER + OB_MESH_LEVELS,

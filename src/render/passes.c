@@ -17,12 +17,17 @@ typedef struct source {
 static const source sources[OB_PROGRAMS] = {
 	[OB_PROGRAM_BODY] = { "body", shader_body_vert, shader_body_frag, NULL },
 	[OB_PROGRAM_TEXTURED] = { "textured body", shader_body_vert, shader_body_frag, "#define OB_TEXTURED\n" },
+	[OB_PROGRAM_PATTERNED] = { "patterned box", shader_body_vert, shader_body_frag, "#define OB_PATTERNED\n" },
 	[OB_PROGRAM_SHADOW] = { "shadow", shader_shadow_vert, shader_shadow_frag, NULL },
 	[OB_PROGRAM_SKY_SHADOW] = { "sky shadow", shader_sky_shadow_vert, shader_shadow_frag, NULL },
 	[OB_PROGRAM_OCCLUSION] = { "occlusion", shader_occlusion_vert, shader_occlusion_frag, NULL },
 	[OB_PROGRAM_BLUR] = { "blur", shader_sky_vert, shader_blur_frag, NULL },
 	[OB_PROGRAM_PLANE] = { "plane", shader_plane_vert, shader_plane_frag, NULL },
 	[OB_PROGRAM_FAR_PLANE] = { "far plane", shader_plane_vert, shader_plane_frag, "#define OB_FAR\n" },
+	[OB_PROGRAM_PATTERNED_PLANE] = { "patterned plane", shader_plane_vert, shader_plane_frag,
+					 "#define OB_PATTERNED\n" },
+	[OB_PROGRAM_FAR_PATTERNED_PLANE] = { "far patterned plane", shader_plane_vert, shader_plane_frag,
+					     "#define OB_FAR\n#define OB_PATTERNED\n" },
 	[OB_PROGRAM_SKY] = { "sky", shader_sky_vert, shader_sky_frag, NULL },
 	[OB_PROGRAM_SEGMENT] = { "segment", shader_segment_vert, shader_segment_frag, NULL },
 	[OB_PROGRAM_ADD] = { "add", shader_sky_vert, shader_add_frag, NULL },
@@ -550,7 +555,7 @@ static void draw_looks(const ob_passes *p, const ob_instances *i, bool in_colour
 	}
 }
 
-// Draws the instances uploaded by upload_instances. in_colour: the program is OB_PROGRAM_BODY.
+// Draws the instances uploaded by upload_instances. in_colour: with the programs for bodies, else with the present one.
 static void draw_instances(const ob_passes *p, const ob_instances *i, bool in_colour)
 {
 	for (uint32_t k = 0; k < OB_MESHES; k++) {
@@ -558,10 +563,14 @@ static void draw_instances(const ob_passes *p, const ob_instances *i, bool in_co
 		if (!count)
 			continue;
 		set_instances(first);
+		if (in_colour)
+			glUseProgram(p->program[k == OB_MESH_PATTERNED_BOX ? OB_PROGRAM_PATTERNED : OB_PROGRAM_BODY]);
 		glDrawElementsInstanced(GL_TRIANGLES, (GLsizei)p->mesh[k].index_count, GL_UNSIGNED_SHORT,
 					(const void *)(p->mesh[k].index_first * sizeof(uint16_t)), (GLsizei)count);
 	}
 	if (i->first[i->meshes] > i->first[OB_MESHES]) {
+		if (in_colour)
+			glUseProgram(p->program[OB_PROGRAM_BODY]);
 		draw_hulls(p, i);
 		draw_looks(p, i, in_colour);
 	}
@@ -676,8 +685,11 @@ static void find_patch(const ob_frame *f, ob_vec3 foot, ob_vec3 n, ob_vec3 x, ob
 		patch[i] = fmaxf(-reach, fminf(reach, patch[i]));
 }
 
+static const double grid_period = 10, pattern_period = 768; // m; as in shaders/pattern.glsl
+
+// ink: 1 with the grid, or the pattern.
 static void draw_plane(GLuint program, const ob_pose *pose, const ob_frame *f, const float colour[3], bool ground,
-		       bool grid, bool far)
+		       float ink, double period, bool far)
 {
 	ob_mat3 r = ob_quat_matrix(pose->q);
 	ob_vec3 n = ob_column(&r, 2), x = ob_column(&r, 0), y = ob_column(&r, 1), d = ob_sub(pose->p, f->view.eye);
@@ -696,9 +708,9 @@ static void draw_plane(GLuint program, const ob_pose *pose, const ob_frame *f, c
 	set_plane_to_map(program, "occlusion_of", f->block.occlusion_map, foot, x, y);
 	glUniform4fv(glGetUniformLocation(program, "patch_ends"), 1, patch);
 	glUniform1f(glGetUniformLocation(program, "reach"), (float)f->view.far_plane);
-	glUniform2f(glGetUniformLocation(program, "grid_foot"), (float)remainder(ob_dot(on_plane, x), 10),
-		    (float)remainder(ob_dot(on_plane, y), 10));
-	glUniform4f(glGetUniformLocation(program, "colour"), colour[0], colour[1], colour[2], grid);
+	glUniform2f(glGetUniformLocation(program, "grid_foot"), (float)remainder(ob_dot(on_plane, x), period),
+		    (float)remainder(ob_dot(on_plane, y), period));
+	glUniform4f(glGetUniformLocation(program, "colour"), colour[0], colour[1], colour[2], ink);
 	glUniform1f(glGetUniformLocation(program, "occlusion_share"), ground ? .75f : 0);
 	glDrawArrays(GL_TRIANGLE_STRIP, 0, far ? 10 : 4);
 }
@@ -742,16 +754,20 @@ void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instance
 	glActiveTexture(GL_TEXTURE0 + OB_UNIT_OCCLUSION);
 	glBindTexture(GL_TEXTURE_2D, t->occlusion_texture[0]);
 	upload_instances(p, seen);
-	glUseProgram(p->program[OB_PROGRAM_BODY]);
 	draw_instances(p, seen, true);
 	glDisable(GL_CULL_FACE);
 	glBindVertexArray(p->empty_array);
 	for (int i = 0; i < 2 * b->planes; i++) {
 		int plane = i / 2;
 		bool ground = plane == f->ground, far = i % 2;
-		draw_plane(p->program[far ? OB_PROGRAM_FAR_PLANE : OB_PROGRAM_PLANE], &b->plane[plane], f,
-			   ground ? look->ground_colour : b->now->passport[b->plane_id[plane]].colour, ground,
-			   ground && look->grid, far);
+		const ob_passport *pass = &b->now->passport[b->plane_id[plane]];
+		const ob_pattern pattern = ob_passport_pattern(pass);
+		const ob_program program = pattern ? far ? OB_PROGRAM_FAR_PATTERNED_PLANE : OB_PROGRAM_PATTERNED_PLANE
+					   : far   ? OB_PROGRAM_FAR_PLANE
+						   : OB_PROGRAM_PLANE;
+		draw_plane(p->program[program], &b->plane[plane], f, ground ? look->ground_colour : pass->colour,
+			   ground, pattern ? (float)pattern : ground && look->grid,
+			   pattern ? pattern_period : grid_period, far);
 	}
 	draw_sky(p, t, f, b);
 }

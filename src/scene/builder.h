@@ -25,6 +25,7 @@ typedef struct ob_material {
 	double density; // kg/m^3
 	double update_rate; // Hz
 	float colour[4];
+	uint32_t pattern; // ob_pattern; OB_PATTERNS: not set
 } ob_material;
 
 // A camera without an eye of its own has a direction, and is placed where it sees all objects.

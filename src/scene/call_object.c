@@ -15,6 +15,8 @@
 #include "scene/text.h"
 #include "shape/shape.h"
 
+#define PATTERN_NAMES "plain|tiles|slabs|bricks|planks|checker" // by ob_pattern
+
 // ---- material "wood" { friction = .5, density = 600 }
 
 static const ob_field material_fields[] = {
@@ -28,6 +30,7 @@ static const ob_field material_fields[] = {
 		 .high = OB_UPDATE_RATE_MOST),
 	OB_FIELD(ob_material, roughness, .name = "roughness", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
 	OB_FIELD(ob_material, metal, .name = "metal", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
+	OB_FIELD(ob_material, pattern, .name = "pattern", .kind = OB_FIELD_CHOICE, .choices = PATTERN_NAMES),
 };
 
 static const ob_material not_given = {
@@ -38,6 +41,7 @@ static const ob_material not_given = {
 	.colour = { NAN },
 	.roughness = NAN,
 	.metal = NAN,
+	.pattern = OB_PATTERNS,
 };
 
 // Default finish of a surface, by a word in the name of its material.
@@ -138,6 +142,7 @@ typedef struct body {
 	bool fixed, grid, path, varying_force, avatar, inputs, outputs, parameters, parts;
 	bool own_colour, own_surface; // set by the object or its material
 	uint32_t group, hits; // hits: bit g, group g
+	uint32_t pattern; // ob_pattern; OB_PATTERNS: not set
 	bool sensor;
 } body;
 
@@ -151,7 +156,8 @@ typedef struct body {
 		F(friction, .kind = OB_FIELD_NUMBER, .low = 0, .high = OB_FRICTION_MOST), \
 		WITHIN(surface_velocity, OB_SPEED_MOST), F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
 		F(colour, .kind = OB_FIELD_COLOUR), F(roughness, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
-		F(metal, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1)
+		F(metal, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
+		F(pattern, .kind = OB_FIELD_CHOICE, .choices = PATTERN_NAMES)
 #define PLACE \
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), WITHIN(at, OB_PLACE_MOST), \
 		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
@@ -224,6 +230,7 @@ static const body nothing = {
 	.colour = { NAN },
 	.grid = true,
 	.hits = UINT32_MAX,
+	.pattern = OB_PATTERNS,
 	.scale = 1,
 };
 
@@ -287,12 +294,23 @@ static _Noreturn void fail_material(lua_State *L, const ob_builder *b, const cha
 	ob_sandbox_fail(L, "%s.material: expected a material declared before, got \"%s\"", kind, name);
 }
 
+// Takes the object's own pattern, or its material's, if its shape shows any.
+static void apply_pattern(lua_State *L, const char *kind, ob_shape shape, const ob_material *m, body *d)
+{
+	const bool shows = (ob_shape_is(shape, OB_SIDED) || ob_shape_is(shape, OB_UNBOUNDED)) && !d->mesh;
+	if (d->pattern != OB_PATTERNS && !shows)
+		ob_sandbox_fail(L, "%s.pattern: expected with a box, a plane or the ground, and without a mesh", kind);
+	if (d->pattern == OB_PATTERNS)
+		d->pattern = shows && m->pattern != OB_PATTERNS ? m->pattern : OB_PATTERN_PLAIN;
+}
+
 // Applies the object's own values first, then its material's, then the default.
-static void apply_material(lua_State *L, const ob_builder *b, const char *kind, body *d)
+static void apply_material(lua_State *L, const ob_builder *b, const char *kind, ob_shape shape, body *d)
 {
 	const ob_material *m = d->material ? ob_builder_material(b, d->material) : &not_given;
 	if (!m)
 		fail_material(L, b, kind, d->material);
+	apply_pattern(L, kind, shape, m, d);
 	if (isnan(d->friction))
 		d->friction = isnan(m->friction) ? FRICTION : m->friction;
 	if (isnan(d->restitution))
@@ -416,7 +434,7 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	ob_error e;
 	find_kind(L, kind, d);
 	check_together(L, kind, d);
-	apply_material(L, b, kind, d);
+	apply_material(L, b, kind, shape, d);
 	double mass = d->kind != DYNAMIC ? 0
 		      : isnan(d->mass)   ? d->density * ob_shape_volume(shape, size, d->hull)
 					 : d->mass;
@@ -431,7 +449,7 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	p->flags |= (d->mesh || d->file) && !d->own_surface ? OB_OBJECT_MESH_SURFACE : 0;
 	p->flags |= d->kind == STATIC ? OB_OBJECT_STATIC : d->kind == KINEMATIC ? OB_OBJECT_KINEMATIC : 0;
 	p->flags |= d->sensor ? OB_OBJECT_SENSOR : 0;
-	p->flags |= d->group << OB_OBJECT_GROUP | ~d->hits << OB_OBJECT_PASSES;
+	p->flags |= d->group << OB_OBJECT_GROUP | ~d->hits << OB_OBJECT_PASSES | d->pattern << OB_OBJECT_PATTERN;
 	p->shape = (uint8_t)shape;
 	p->size = size;
 	p->mass = mass;
@@ -617,6 +635,6 @@ int ob_scene_call_ground(lua_State *L)
 	d.at.z = d.height;
 	const ob_object_def *o = add(L, "ground", OB_SHAPE_PLANE, ob_v3(0, 0, 0), &d);
 	memcpy(look->ground_colour, o->passport.colour, sizeof look->ground_colour);
-	look->grid = d.grid;
+	look->grid = d.grid && ob_passport_pattern(&o->passport) == OB_PATTERN_PLAIN;
 	return 0;
 }

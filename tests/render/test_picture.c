@@ -1,4 +1,5 @@
 // Contents of the picture: sky above, the body in the middle, its shadow, overlays; the same bytes again.
+#include <math.h>
 #include <string.h>
 
 #include "canvas.h"
@@ -82,6 +83,61 @@ static void no_acne(void)
 	canvas_close(&c);
 }
 
+enum { BYTES = 4 * CANVAS_WIDTH * CANVAS_HEIGHT };
+
+// Least ratio of two pictures' greens in a rectangle, relative to the greatest: 1 if they differ by a factor alone.
+static double evenness(const canvas *c, const uint8_t *plain, int from_x, int from_y, int to_x, int to_y)
+{
+	double low = INFINITY, high = 0;
+	for (int y = from_y; y < to_y; y++)
+		for (int x = from_x; x < to_x; x++) {
+			const int at = 4 * (y * CANVAS_WIDTH + x) + 1;
+			low = fmin(low, (double)c->rgba[at] / plain[at]);
+			high = fmax(high, (double)c->rgba[at] / plain[at]);
+		}
+	return low / high;
+}
+
+static void draw_patterned(canvas *c, ob_pattern ground, ob_pattern box, const ob_camera_def *camera)
+{
+	static const float grey[3] = { .5f, .5f, .5f };
+	ob_snapshot s;
+	test_scene_start(&s, 1);
+	test_scene_add(&s, OB_SHAPE_BOX, ob_v3(1, 1, 1), ob_v3(0, 0, 1), ob_quat_identity(), grey);
+	s.passport[0].flags |= (uint32_t)ground << OB_OBJECT_PATTERN;
+	s.passport[1].flags |= (uint32_t)box << OB_OBJECT_PATTERN;
+	canvas_draw(c, NULL, &s, 0, camera);
+	test_scene_finish(&s);
+}
+
+// A pattern shows within a face and on the ground, and there alone; from afar it is as even as a plain one.
+static void patterns_show(void)
+{
+	canvas c = canvas_open(false, false);
+	const ob_camera_def camera = south(), far = test_scene_camera(ob_v3(0, -900, 700), ob_v3(0, 0, 0));
+	uint8_t *plain = malloc(BYTES), *plain_far = malloc(BYTES), *first = malloc(BYTES);
+	draw_patterned(&c, OB_PATTERN_PLAIN, OB_PATTERN_PLAIN, &camera);
+	memcpy(plain, c.rgba, BYTES);
+	draw_patterned(&c, OB_PATTERN_PLAIN, OB_PATTERN_PLAIN, &far);
+	memcpy(plain_far, c.rgba, BYTES);
+	for (ob_pattern p = OB_PATTERN_TILES; p < OB_PATTERNS; p++) {
+		draw_patterned(&c, OB_PATTERN_PLAIN, p, &camera);
+		CHECK(evenness(&c, plain, 140, 85, 180, 105) < (p == OB_PATTERN_SLABS ? .97 : .9)); // larger than it
+		CHECK(memcmp(c.rgba, plain, BYTES / 4) == 0); // above the box
+		draw_patterned(&c, p, OB_PATTERN_PLAIN, &camera);
+		CHECK(evenness(&c, plain, 100, 150, 220, 175) < .9);
+		memcpy(first, c.rgba, BYTES);
+		draw_patterned(&c, p, OB_PATTERN_PLAIN, &camera);
+		CHECK(memcmp(c.rgba, first, BYTES) == 0);
+		draw_patterned(&c, p, OB_PATTERN_PLAIN, &far);
+		CHECK(evenness(&c, plain_far, 20, 140, 300, 175) > .97);
+	}
+	free(plain);
+	free(plain_far);
+	free(first);
+	canvas_close(&c);
+}
+
 static void overlays_show(void)
 {
 	canvas plain = canvas_open(false, false), boxes = canvas_open(true, false), points = canvas_open(false, true);
@@ -141,6 +197,7 @@ int main(void)
 	sky_body_and_shadow();
 	every_shape_is_drawn();
 	no_acne();
+	patterns_show();
 	overlays_show();
 	same_bytes();
 	errors_are_clear();

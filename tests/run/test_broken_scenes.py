@@ -8,6 +8,8 @@ import program
 SCENES = {
 	"syntax": ("scene { title = 'x' \nbox {", ":"),
 	"type": ("ground {}\nbox { size = 'large' }", ":2:"),
+	"unknown pattern": ("box { size = { 1, 1, 1 }, pattern = 'tile' }", "box.pattern: expected"),
+	"pattern of a sphere": ("sphere { radius = 1, pattern = 'tiles' }", "sphere.pattern: expected with a box"),
 	"unknown field": ("box { sizze = { 1, 1, 1 } }", "size"),
 	"negative size": ("box { size = { 1, -1, 1 }, at = { 0, 0, 1 }, mass = 1 }", ":1:"),
 	"nan": ("box { size = { 1, 1, 1 }, at = { 0, 0/0, 1 }, mass = 1 }", ":1:"),

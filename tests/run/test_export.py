@@ -8,6 +8,7 @@ import base64
 import gzip
 import json
 import os
+import re
 import struct
 import unittest
 
@@ -27,6 +28,16 @@ sphere { radius = .3, at = { 2.2, -1, 2 }, restitution = .7, colour = "#e4572e",
 capsule { radius = .15, length = .5, at = { -1.5, -1, 1 }, spin = { 0, 5, 1 }, dies = 1.2 }
 cylinder { radius = .25, length = .5, at = { 0, -1.4, 1.5 }, born = .5, spin = { 4, 0, 0 } }
 hull { points = { { 0, 0, 0 }, { .7, 0, 0 }, { 0, .6, 0 }, { .3, .1, .6 } }, at = { -2.6, -.5, 1 }, colour = "#7a5195", spin = { 0, 4, 2 } }
+"""
+PATTERNED = """scene { title = "Patterns", duration = 2, step = 1 / 60 }
+ground { pattern = "tiles" }
+camera "main" { eye = { -5, -6, 3.5 }, target = { 0, 0, .6 } }
+plane { normal = { 0, -1, 0 }, at = { 0, 6, 0 }, pattern = "slabs" }
+sphere { radius = .3, at = { 0, 0, 6 } }
+material "brick" { colour = "#a5523c", pattern = "bricks" }
+box { size = { 4, .2, 1.2 }, at = { 0, 3, .6 }, static = true, material = "brick" }
+box { size = { 1.2, .8, .3 }, at = { -3, .6, .15 }, static = true, colour = "#b58b58", pattern = "planks" }
+box { size = { .5, .5, .5 }, at = { 2.6, .9, .25 }, colour = "#8e9296", pattern = "checker" }
 """
 MESHED = 'sphere { radius = .25, at = { -1.2, -2.6, 1.5 }, velocity = { 0, 1, 0 }, spin = { 3, 1, 0 }, mesh = "cube.glb" }'
 TIMES = .4, 49 / 60 + .005, 1.75  # s: in the air, between two steps, at rest
@@ -243,21 +254,45 @@ class Pages(Case):
 		self.assertTrue(found.get("same"), found)
 		return found["mean"], found["off"]
 
+	def draw(self, b, scene, time):
+		"""The renderer's picture of a scene at a time, as large as the page's."""
+		size = "{}x{}".format(*b.run("const c = document.querySelector('#picture'); return [c.width, c.height]"))
+		folder = f"{scene}.{time}"
+		done = program.call("run", scene, "--frames", folder, "--fps", repr(1 / time), "--size", size, "--duration", "4", "--measure", "end")
+		self.assertEqual(done.returncode, 0, done.stderr)
+		with open(os.path.join(folder, "frame-000001.png"), "rb") as f: # the frame at 1 / fps
+			return f.read()
+
+	def test_patterns(self):
+		"""Patterns of ground, walls and boxes come with the record, and look as the renderer draws them."""
+		patterned, plain = self.path("patterned.lua"), self.path("plain.lua")
+		for scene, text in (patterned, PATTERNED), (plain, re.sub('pattern = "[a-z]+"', 'pattern = "plain"', PATTERNED)):
+			with open(scene, "w") as f:
+				f.write(text)
+		self.record = self.path("patterned.h5")
+		self.assertEqual(program.report(patterned, "--record", self.record)["state_hash"], program.report(plain)["state_hash"])
+		b = self.open("file://" + self.export())
+		self.seek(b, TIMES[0])
+		mean, off = self.compare(b, self.draw(b, plain, TIMES[0]))
+		self.assertTrue(mean > MEAN or off > FAR_SHARE, "the page shows no patterns")
+		drawn = self.draw(b, patterned, TIMES[0])
+		mean, off = self.compare(b, drawn)
+		self.keep("drawn-patterns.png", drawn)
+		self.keep("played-patterns.png", base64.b64decode(b.run("return document.querySelector('#picture').toDataURL()").split(",")[1]))
+		print(f"patterns: mean difference {mean:.3f} of 255, {100 * off:.3f} % of pixels off by more than {FAR}")
+		self.assertLess(mean, MEAN)
+		self.assertLess(off, FAR_SHARE)
+		self.assertEqual(b.console(), [])
+
 	def check_pictures(self, b):
 		"""At three times it shows the run's own picture of that time."""
-		size = "{}x{}".format(*b.run("const c = document.querySelector('#picture'); return [c.width, c.height]"))
 		drawn = None
 		for time in TIMES:
 			self.seek(b, time)
 			if time == TIMES[1]:
 				mean, off = self.compare(b, drawn)
 				self.assertTrue(mean > MEAN or off > FAR_SHARE, "pictures of two times are taken for one")
-			folder = self.path(f"f{time}")
-			done = program.call("run", self.scene, "--frames", folder, "--fps", repr(1 / time), "--size", size, "--duration", "4",
-				"--measure", "end")
-			self.assertEqual(done.returncode, 0, done.stderr)
-			with open(os.path.join(folder, "frame-000001.png"), "rb") as f: # the frame at 1 / fps
-				drawn = f.read()
+			drawn = self.draw(b, self.scene, time)
 			mean, off = self.compare(b, drawn)
 			self.keep(f"drawn-{time:.2f}.png", drawn)
 			self.keep(f"played-{time:.2f}.png", base64.b64decode(b.run("return document.querySelector('#picture').toDataURL()").split(",")[1]))

@@ -98,6 +98,22 @@ static void check_groups(void)
 	ob_scene_free(s);
 }
 
+static void check_patterns(void)
+{
+	static const ob_pattern expected[] = { OB_PATTERN_BRICKS, OB_PATTERN_PLAIN, OB_PATTERN_TILES,
+					       OB_PATTERN_PLAIN };
+	ob_scene *s = load_good("material 'brick' { pattern = 'bricks' }\n"
+				"box { size = { 1, 1, 1 }, material = 'brick' }\n"
+				"box { size = { 1, 1, 1 }, material = 'brick', pattern = 'plain' }\n"
+				"ground { pattern = 'tiles' }\n"
+				"sphere { radius = 1, material = 'brick', at = { 0, 0, 9 } }");
+	CHECK(s);
+	for (uint32_t i = 0; s && i < s->objects; i++)
+		CHECK(ob_passport_pattern(&s->object[i].passport) == expected[i]);
+	CHECK(s && !s->look.grid);
+	ob_scene_free(s);
+}
+
 // With moments of its own an object turns about the origin and the axes that it is given in; else about its shape's.
 static void check_inertia(void)
 {
@@ -363,6 +379,7 @@ int main(void)
 	check_settings();
 	check_joints();
 	check_groups();
+	check_patterns();
 	check_inertia();
 	check_compounds();
 	check_round_parts();

@@ -1,7 +1,7 @@
 // Draws a universe with WebGL 2, by the renderer's own shaders and passes (src/render/passes.c, frame.c): shadow map,
 // occlusion map, bodies, planes, sky, overlays.
 import { isEndless, isHulled, outlineOf } from './shapes.js';
-import { BOX_MESH, CYLINDER_MESH, MESHES, ROUND_MESH, buildMeshes, hullVertices } from './meshes.js';
+import { BOX_MESH, CYLINDER_MESH, MESHES, PATTERNED_BOX_MESH, ROUND_MESH, buildMeshes, hullVertices } from './meshes.js';
 import { turned } from './motion.js';
 
 const SAMPLES = 4, SHADOW_TEXELS = 1280, SKY_TEXELS = 512, OCCLUSION_TEXELS = 128, MARGIN = 4; // texels; MARGIN: border for the
@@ -12,16 +12,18 @@ const OCCLUSION_HEIGHT = 0.8; // m above the ground, up to which a body occludes
 const REACH_RANGES = 6, FOG_RANGES = 9, FOG_LEAST = 150; // camera ranges; m
 const SUNSHINE = [1.95, 1.82, 1.6], FROM_SKY = 0.52, FROM_GROUND = 0.45, SUN_RADIUS = 0.025, GOLDEN = 2.39996322972865332;
 const BEVEL_SHARE = 0.1, BEVEL_MOST = 0.05, MEDIUM_PX = 7, FINE_PX = 45;
+const GRID_PERIOD = 10, PATTERN_PERIOD = 768; // m; as in shaders/pattern.glsl
 const INSTANCE = 16, SEGMENT = 11, MESH_VERTEX = 12; // floats
 const EDGE = { awake: [1, 0.86, 0.25, 1], flying: [0.45, 0.95, 1, 1], standing: [0.62, 0.66, 0.74, 1], fixed: [0.35, 0.37, 0.42, 1], frozen: [0.6, 0.85, 1, 1] };
 const JOINT = { line: [0.35, 0.85, 1, 1], axis: [1, 0.45, 0.9, 1], rim: [0.08, 0.02, 0.05, 0.85] };
 const APART = 6, AXES = new Set([1, 2]); // kinds of joints (<ob/joint.h>): no joint to be seen; hinge, slider
 
 const PROGRAMS = {
-	body: ['body.vert', 'body.frag'], textured: ['body.vert', 'body.frag', '#define OB_TEXTURED\n'], shadow: ['shadow.vert', 'shadow.frag'],
+	body: ['body.vert', 'body.frag'], textured: ['body.vert', 'body.frag', '#define OB_TEXTURED\n'], patterned: ['body.vert', 'body.frag', '#define OB_PATTERNED\n'], shadow: ['shadow.vert', 'shadow.frag'],
 	skyShadow: ['sky_shadow.vert', 'shadow.frag'], occlusion: ['occlusion.vert', 'occlusion.frag'],
 	blur: ['sky.vert', 'blur.frag'], plane: ['plane.vert', 'plane.frag'],
-	farPlane: ['plane.vert', 'plane.frag', '#define OB_FAR\n'], sky: ['sky.vert', 'sky.frag'],
+	farPlane: ['plane.vert', 'plane.frag', '#define OB_FAR\n'], patternedPlane: ['plane.vert', 'plane.frag', '#define OB_PATTERNED\n'],
+	farPatternedPlane: ['plane.vert', 'plane.frag', '#define OB_FAR\n#define OB_PATTERNED\n'], sky: ['sky.vert', 'sky.frag'],
 	segment: ['segment.vert', 'segment.frag'],
 };
 
@@ -155,7 +157,7 @@ function projection(v) {
 function meshOf(body, v, height) {
 	const o = outlineOf(body.shape, body.size);
 	if (!o.rim && !o.ball)
-		return BOX_MESH;
+		return body.pattern ? PATTERNED_BOX_MESH : BOX_MESH;
 	const distance = Math.max(Math.hypot(...sub(body.p, v.eye)), v.near);
 	const px = 0.5 * height * body.size[0] / (v.tanY * distance), level = px < MEDIUM_PX ? 0 : px < FINE_PX ? 1 : 2;
 	return (o.rim ? CYLINDER_MESH : ROUND_MESH) + level;
@@ -172,7 +174,7 @@ function putInstance(out, at, body, eye) {
 		core = [o.rim - r, o.rim - r, core[2] - r];
 	} else if (o && !r)
 		rounding = bevel(Math.min(...core));
-	const q = body.q, c = body.shown, surface = Math.round(15 * body.metal) + Math.min(body.roughness, 0.99);
+	const q = body.q, c = body.shown, surface = Math.round(15 * body.metal) + Math.min(body.roughness, 0.99) + (rounding > 0 ? 16 * body.pattern : 0);
 	out.set([body.p[0] - eye[0], body.p[1] - eye[1], body.p[2] - eye[2], r, q[1], q[2], q[3], q[0], ...core, rounding, ...c, surface], at);
 }
 
@@ -469,7 +471,7 @@ export class Drawing {
 		gl.useProgram(this.program.body.id);
 	}
 
-	// inColour: with the program body, for the picture.
+	// inColour: with the programs for bodies, for the picture; else with the present one.
 	drawInstances(bodies, view, height, inColour = false) {
 		const gl = this.gl, groups = Array.from({ length: MESHES }, () => []), others = new Map(); // hulls and meshes
 		for (const b of bodies) {
@@ -499,6 +501,8 @@ export class Drawing {
 			}
 			for (let i = 0; i < 4; i++)
 				this.attribute(2 + i, 4, INSTANCE, INSTANCE * first + 4 * i, 1);
+			if (inColour)
+				gl.useProgram(k === PATTERNED_BOX_MESH ? this.program.patterned.id : this.program.body.id);
 			if (inColour && own?.parts?.length)
 				this.drawTextured(own, group.length);
 			else if (own?.buffers)
@@ -587,13 +591,12 @@ export class Drawing {
 			gl.activeTexture(gl.TEXTURE0 + UNIT_SKY);
 			gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.skyTexture);
 		}
-		gl.useProgram(this.program.body.id);
 		this.drawInstances(solid.filter((b) => inFrustum(f.view, b.p, b.radius)), f.view, height, true);
 		gl.disable(gl.CULL_FACE);
 		gl.bindVertexArray(this.emptyArray);
 		for (const b of planes) {
-			this.drawPlane(b, f, look, this.program.plane, 4);
-			this.drawPlane(b, f, look, this.program.farPlane, 10);
+			this.drawPlane(b, f, look, b.pattern ? this.program.patternedPlane : this.program.plane, 4);
+			this.drawPlane(b, f, look, b.pattern ? this.program.farPatternedPlane : this.program.farPlane, 10);
 		}
 		this.drawSky(f, width, height);
 		for (const [number, kind] of [[UNIT_SHADOW, gl.TEXTURE_2D], [UNIT_PLAIN, gl.TEXTURE_2D], [UNIT_SKY, gl.TEXTURE_2D_ARRAY]]) {
@@ -624,7 +627,7 @@ export class Drawing {
 		if (height <= 0)
 			return; // nothing is visible from below
 		const foot = scale(n, -height), onPlane = sub(foot, d), colour = isGround ? look.ground : b.shown;
-		const cell = (a) => a - 10 * Math.round(a / 10);
+		const period = b.pattern ? PATTERN_PERIOD : GRID_PERIOD, cell = (a) => a - period * Math.round(a / period);
 		const toMap = (m) => [x, y, foot].flatMap((v, column) => [0, 1, 2].map((row) =>
 			m[row] * v[0] + m[4 + row] * v[1] + m[8 + row] * v[2] + (column === 2 ? m[12 + row] : 0)));
 		gl.useProgram(id);
@@ -637,7 +640,7 @@ export class Drawing {
 		gl.uniformMatrix3fv(uniform('occlusion_of'), false, toMap(f.occlusionMap));
 		gl.uniform1f(uniform('reach'), f.view.far);
 		gl.uniform2f(uniform('grid_foot'), cell(dot(onPlane, x)), cell(dot(onPlane, y)));
-		gl.uniform4f(uniform('colour'), ...colour, isGround && look.grid ? 1 : 0);
+		gl.uniform4f(uniform('colour'), ...colour, b.pattern || (isGround && look.grid ? 1 : 0));
 		gl.uniform1f(uniform('occlusion_share'), isGround ? 0.75 : 0);
 		gl.drawArrays(gl.TRIANGLE_STRIP, 0, vertices);
 	}

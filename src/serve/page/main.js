@@ -37,7 +37,7 @@ function bodies() {
 		const mesh = drawing.looks.get(o.mesh);
 		if (pose)
 			out.push({ id: o.id, name: o.id === avatar?.id ? look.avatar : o.name, attention: universe.attention(o), shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour && !others, meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, rests: universe.rests(o), kind: o.motion.kind, shown: colourBy(key, o, universe.simulators.get(o.id), workers.list),
-				roughness: o.roughness, metal: o.metal, ...pose });
+				roughness: o.roughness, metal: o.metal, pattern: others && !isEndless(o.shape) ? 0 : o.pattern, ...pose });
 	}
 	return out;
 }

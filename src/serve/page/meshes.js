@@ -2,7 +2,7 @@
 // thickens it is added.
 const LEVELS = [12, 24, 48]; // segments round the axis
 
-export const BOX_MESH = 0, ROUND_MESH = 1, CYLINDER_MESH = 4, MESHES = 7;
+export const BOX_MESH = 0, PATTERNED_BOX_MESH = 1, ROUND_MESH = 2, CYLINDER_MESH = 5, MESHES = 8;
 
 class Builder {
 	constructor() {
@@ -82,6 +82,7 @@ export function buildMeshes() {
 		b.end();
 	};
 	one(() => b.box());
+	b.meshes.push(b.meshes[BOX_MESH]);
 	for (const n of LEVELS)
 		one(() => b.round(n));
 	for (const n of LEVELS)

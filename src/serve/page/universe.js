@@ -8,7 +8,7 @@ const PULL = 5; // 1/s: rate at which its clock approaches the universe's
 const LOST = 0.5, SETTLED = 1e-4; // s: from this difference on, the clock is set; below that, it stands
 const MOTIONS = 1, CONTACTS = 2, MESH = 3, SIMULATORS = 4, JOINTS = 5, VOID = 1, PAUSED = 2, FREE_RUN = 1; // of a message
 const MESH_HEAD = 12, MESH_VERTEX = 12; // bytes; floats
-const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16;
+const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16, PATTERN = 32;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
 const BLEND = 0.08; // s, simulated, to blend a prediction into a new motion
@@ -132,7 +132,7 @@ export class Universe extends EventTarget {
 		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), hull = isHulled(shape) ? hearHull(r) : null;
 		const mesh = flags & LOOKS ? r.u8() : 0, name = r.text(bytes);
 		const known = this.objects.get(id); // with another look and the same motion
-		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed: (flags & STATIC) !== 0, frozen: (flags & FROZEN) !== 0, size, inertia, colour, hull, mesh, meshColour: (flags & MESH_COLOUR) !== 0, meshSurface: (flags & MESH_SURFACE) !== 0, name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
+		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed: (flags & STATIC) !== 0, frozen: (flags & FROZEN) !== 0, size, inertia, colour, hull, mesh, meshColour: (flags & MESH_COLOUR) !== 0, meshSurface: (flags & MESH_SURFACE) !== 0, pattern: Math.floor(flags / PATTERN), name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
 	}
 
 	hearMesh(r, data) {
