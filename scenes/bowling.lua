@@ -10,7 +10,8 @@ material "maple" { friction = .25, restitution = .4 }
 material "resin" { friction = .1, restitution = .3 }
 material "gutter" { friction = .3, restitution = .1, colour = "#55585f", roughness = .35 }
 material "curtain" { friction = .8, restitution = 0, colour = "#8d8296", roughness = .9 }
-material "panel" { colour = "#b8463f", roughness = .5 }
+material "panel" { colour = "#b8463f", roughness = .5, pattern = "planks" }
+material "wall" { friction = .8, restitution = 0, colour = "#8d8296", roughness = .9, pattern = "bricks" }
 camera "main" { from = { -.9, -.55, .42 }, fov = 30 }
 camera "pins" { eye = { -.75, -1.25, .75 }, target = { 1.5, .02, .13 }, fov = 30 }
 camera "behind" { eye = { -4.4, 0, .9 }, target = { 1, 0, .1 }, fov = 26 }
@@ -31,7 +32,7 @@ end
 box { name = "curtain", size = { .1, 4 * apart, 1.1 }, at = { 3.75, 0, .55 }, static = true, material = "curtain" }
 box { name = "panel", size = { .1, 4 * apart, .65 }, at = { 3, 0, 1.475 }, static = true, material = "panel" }
 for k = -1.5, 1.5, 3 do
-	box { size = { 1.6, .06, .9 }, at = { 2.95, k * apart, .45 }, static = true, material = "curtain" }
+	box { size = { 1.6, .06, .9 }, at = { 2.95, k * apart, .45 }, static = true, material = "wall" }
 end
 
 -- Heights and diameters in inches at which a pin is a corner of its hull; the neck is hidden in it.

@@ -6,7 +6,7 @@ local every = param("every", 1.1, { min = .3, max = 60 })
 local speed = param("speed", 1.1, { min = .1, max = 4 })
 
 scene { title = "A warehouse", duration = 40, room = 200 }
-ground { colour = "#8e9296" }
+ground { colour = "#8e9296", pattern = "slabs" }
 sky { top = "#8fa3b5", horizon = "#e3e6e8" }
 sun { towards = { -.45, -.7, .8 } }
 material "belt" { friction = .9, colour = "#26292e" }
