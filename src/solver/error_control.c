@@ -1,5 +1,6 @@
 #include "solver/error_control.h"
 
+#include "shape/shape.h"
 #include "solver/contacts.h"
 #include "solver/joints.h"
 
@@ -162,13 +163,20 @@ static void set_next_substeps(ob_solver *s)
 	}
 }
 
+// True if corners of either body may be no contact points: those of a round one are all that there are.
+static bool may_have_more_corners(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_shape a = w->body[contact->a].shape, b = w->body[contact->b].shape;
+	return ob_shape_is(a, OB_CORNERED | OB_UNBOUNDED) && ob_shape_is(b, OB_CORNERED | OB_UNBOUNDED);
+}
+
 // Finds contacts anew that may be deeper than the tolerance: corners that were no contact points approach by the path at most.
 static void renew_deep(ob_solver *s)
 {
 	const ob_island_work *w = &s->island;
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		ob_contact *contact = &w->contact[i];
-		if (contact->lane == OB_NO_LANE || contact->since == 0 ||
+		if (contact->lane == OB_NO_LANE || contact->since == 0 || !may_have_more_corners(w, contact) ||
 		    !(contact->path - ob_contact_gap(w, contact) > s->settings->tolerance))
 			continue;
 		s->counters.narrowphase_tests++;
