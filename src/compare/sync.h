@@ -82,7 +82,7 @@ ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sy
 bool ob_sync_is_of_rates(int configuration);
 // Order of the ledger's error in the length of a step, without an injected lag.
 ob_line ob_sync_order_of_step(const ob_sync_comparison *c, const ob_sync_point *p);
-// What the figures say of each hypothesis of the page, 0 to 2.
+// Judges each hypothesis of the page, 0 to 2, by the figures.
 void ob_sync_judge(const ob_sync_comparison *c, const ob_sync_point *p, int hypothesis, char *to, size_t room);
 // Recommendation by rules, from the figures alone.
 void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room);

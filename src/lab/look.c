@@ -55,6 +55,35 @@ bool ob_look_fail_below(ob_case_run_state *t)
 	return fell;
 }
 
+void ob_look_fail_still(ob_case_run_state *t)
+{
+	if (ob_look_farthest(t) == 0)
+		t->failed = "nothing moved";
+}
+
+ob_state ob_look_end(const ob_case_run_state *t, const ob_joint_passport *j, int side)
+{
+	return j->object[side] == OB_JOINT_WORLD ? (ob_state){ .pose.q = ob_quat_identity() }
+						 : ob_look_at(t, j->object[side]);
+}
+
+double ob_look_parted(const ob_case_run_state *t)
+{
+	double most = 0;
+	for (uint32_t i = 0; i < t->world->joints; i++) {
+		const ob_joint_passport *j = &t->world->joint[i];
+		ob_vec3 at[2];
+		for (int side = 0; side < 2; side++) {
+			const ob_pose body = ob_look_end(t, j, side).pose;
+			const ob_mat3 r = ob_quat_matrix(body.q);
+			at[side] = ob_add(body.p, ob_rotate(&r, j->frame[side].p));
+		}
+		if (j->kind != OB_JOINT_SLIDER)
+			most = fmax(most, ob_norm(ob_sub(at[0], at[1])));
+	}
+	return most;
+}
+
 double ob_look_gravity(const ob_case_run_state *t)
 {
 	return ob_norm(t->world->gravity);

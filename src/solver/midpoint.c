@@ -15,7 +15,7 @@ static const double least_turning = 1e-6; // m/s^2: less change of a row by turn
 static const double least_face_turning = 5e-5; // the same with three held points, which leave no freedom to tilt
 static const double longest_way = .2; // share of the smaller thickness: longest path of halved bodies in a partial
 	// substep
-static const double loose_gap = 1e-5; // m: a point farther off is not held at the surface, unless turning opens more
+static const double loose_gap = 1e-5; // m: a point farther off is not held at the surface, but for kept_gap
 static const double still_share = 1e-3; // of the rate that turning adds: a slower point is at rest on the surface
 
 // Returns the least change of velocity, m/s, in the partial substep that is noticed.
@@ -78,6 +78,7 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 		ob_contact_speed(w, contact) * w->h < longest_way * ob_min(a->thickness, b->thickness));
 }
 
+// Marks the contact, and its bodies, if it takes part.
 static void mark(ob_solver *s, ob_contact *contact)
 {
 	ob_island_work *w = &s->island;
@@ -315,7 +316,7 @@ void ob_midpoint_begin(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	ob_solver_enter(s, OB_PROFILE_NARROWPHASE);
-	for (uint32_t i = 0; i < w->contacts; i++) {
+	for (uint32_t i = 0; i < w->contacts; i++) { // those that have touched only since all were marked
 		ob_contact *contact = &w->contact[i];
 		if (contact->began && !contact->turns && contact->since == 0 && !contact->as_of_instant)
 			mark(s, contact);

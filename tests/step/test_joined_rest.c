@@ -145,7 +145,7 @@ static void test_held(void)
 	finish(&l, s);
 }
 
-// What a moving object holds does not sleep.
+// A body does not sleep while a joint ties it to one that moves.
 static void test_carried(void)
 {
 	little_scene *s = sleepy_scene();

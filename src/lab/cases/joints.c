@@ -14,26 +14,6 @@ static ob_vec3 hanging(ob_vec3 from, double length, double angle)
 	return ob_madd(from, length, ob_v3(sin(angle), 0, -cos(angle)));
 }
 
-// Largest distance of the two places of a joint that must be one (m).
-static double parted(const ob_case_run_state *t)
-{
-	double most = 0;
-	for (uint32_t i = 0; i < t->world->joints; i++) {
-		const ob_joint_passport *j = &t->world->joint[i];
-		ob_vec3 at[2];
-		for (int side = 0; side < 2; side++) {
-			const bool world = j->object[side] == OB_JOINT_WORLD;
-			const ob_pose body =
-				world ? (ob_pose){ .q = ob_quat_identity() } : ob_look_at(t, j->object[side]).pose;
-			const ob_mat3 r = ob_quat_matrix(body.q);
-			at[side] = ob_add(body.p, ob_rotate(&r, j->frame[side].p));
-		}
-		if (j->kind != OB_JOINT_SLIDER)
-			most = fmax(most, ob_norm(ob_sub(at[0], at[1])));
-	}
-	return most;
-}
-
 // Lets the reference go on in t->memory up to now, from one frame to the next.
 static const double *follow(ob_case_run_state *t, const ob_reference_system *s, const double *start)
 {
@@ -44,12 +24,6 @@ static const double *follow(ob_case_run_state *t, const ob_reference_system *s, 
 		ob_reference_integrate(s, t->time - *time, y);
 	*time = t->time;
 	return y;
-}
-
-static void judge_motion(ob_case_run_state *t)
-{
-	if (ob_look_farthest(t) == 0)
-		t->failed = "nothing moved";
 }
 
 // ---- pendulum: a ball of 1 kg and .1 m, 1 m below a hinge
@@ -80,7 +54,7 @@ static void observe_pendulum(ob_case_run_state *t)
 	static const ob_reference_system system = { .states = 2, .rate = swing, .tolerance = 1e-13 };
 	const double *y = follow(t, &system, (double[]){ t->of->variant[0] * M_PI / 180, 0 });
 	ob_look_keep(&t->figure[0], ob_norm(ob_sub(ob_look_at(t, 0).pose.p, hanging(ob_v3(0, 0, 0), 1, y[0]))));
-	ob_look_keep(&t->figure[1], parted(t));
+	ob_look_keep(&t->figure[1], ob_look_parted(t));
 }
 
 #define PENDULUM(target) \
@@ -102,7 +76,7 @@ const ob_case ob_case_pendulum_90 = {
 	.figure = { PENDULUM(1e-5) },
 	.build = build_pendulum,
 	.observe = observe_pendulum,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 const ob_case ob_case_pendulum_179 = {
@@ -116,7 +90,7 @@ const ob_case ob_case_pendulum_179 = {
 	.figure = { PENDULUM(1e-3) },
 	.build = build_pendulum,
 	.observe = observe_pendulum,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 // ---- double pendulum: two such balls, each 1 m from the joint above; the lower hangs at the upper one's centre
@@ -146,7 +120,7 @@ static void observe_double(ob_case_run_state *t)
 	const double *y = follow(t, &system, (double[]){ M_PI / 2, M_PI / 2, 0, 0 });
 	const ob_vec3 end = hanging(hanging(ob_v3(0, 0, 0), 1, y[0]), 1, y[1]);
 	ob_look_keep(&t->figure[0], ob_norm(ob_sub(ob_look_at(t, 1).pose.p, end)));
-	ob_look_keep(&t->figure[1], parted(t));
+	ob_look_keep(&t->figure[1], ob_look_parted(t));
 }
 
 const ob_case ob_case_double_pendulum = {
@@ -161,7 +135,7 @@ const ob_case ob_case_double_pendulum = {
 		    { "gap of a joint", "m", 1e-9, "its two places are one" } },
 	.build = build_double,
 	.observe = observe_double,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 // ---- bodies that turn about a point: a spherical pendulum, and a heavy top
@@ -189,7 +163,7 @@ static void observe_turning(ob_case_run_state *t, const turning *b, double angle
 	const double *y = follow(t, &system, (double[]){ angle, 0, 0 });
 	const ob_vec3 at = ob_v3(length * sin(y[0]) * cos(y[2]), length * sin(y[0]) * sin(y[2]), length * cos(y[0]));
 	ob_look_keep(&t->figure[0], ob_norm(ob_sub(ob_look_at(t, 0).pose.p, at)));
-	ob_look_keep(&t->figure[1], parted(t));
+	ob_look_keep(&t->figure[1], ob_look_parted(t));
 }
 
 static const double cone = 2 * M_PI / 3, round_rate = 2; // rad from straight up; rad/s about the vertical
@@ -221,7 +195,7 @@ const ob_case ob_case_spherical_pendulum = {
 		    { "gap of a joint", "m", 1e-9, "its two places are one" } },
 	.build = build_spherical,
 	.observe = observe_spherical,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 // A disk of 1 kg, .1 m in radius, .2 m from its point along its axis, which leans by 30 degrees.
@@ -258,7 +232,7 @@ const ob_case ob_case_top = {
 		    { "gap of a joint", "m", 1e-9, "its two places are one" } },
 	.build = build_top,
 	.observe = observe_top,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 // ---- a chain of 100 links of .1 m and .01 kg with 10 kg at its end
@@ -282,7 +256,7 @@ static void build_chain(ob_world *w, uint32_t run, const double *variant)
 static void observe_gaps(ob_case_run_state *t)
 {
 	if (t->frame)
-		ob_look_keep(&t->figure[0], parted(t));
+		ob_look_keep(&t->figure[0], ob_look_parted(t));
 }
 
 const ob_case ob_case_chain_100 = {
@@ -296,7 +270,7 @@ const ob_case ob_case_chain_100 = {
 	.figure = { { "gap of a joint", "m", 1e-9, "its two places are one" } },
 	.build = build_chain,
 	.observe = observe_gaps,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 // ---- linkages
@@ -342,7 +316,7 @@ const ob_case ob_case_four_bar = {
 	.figure = { { "gap of a joint", "m", 1e-9, "its two places are one" } },
 	.build = build_four_bar,
 	.observe = observe_gaps,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 static void build_slider_crank(ob_world *w, uint32_t run, const double *variant)
@@ -364,7 +338,7 @@ static void observe_slider_crank(ob_case_run_state *t)
 {
 	const double angle = CRANK_RATE * t->time, z = crank * sin(angle);
 	ob_look_keep(&t->figure[0], fabs(ob_look_at(t, 2).pose.p.x - crank * cos(angle) - sqrt(rod * rod - z * z)));
-	ob_look_keep(&t->figure[1], parted(t));
+	ob_look_keep(&t->figure[1], ob_look_parted(t));
 }
 
 const ob_case ob_case_slider_crank = {
@@ -378,7 +352,7 @@ const ob_case ob_case_slider_crank = {
 		    { "gap of a joint", "m", 1e-9, "its two places are one" } },
 	.build = build_slider_crank,
 	.observe = observe_slider_crank,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 // ---- Furuta's pendulum: a motor turns an arm about the vertical, at whose end a pendulum swings across it
@@ -417,7 +391,7 @@ static void observe_furuta(ob_case_run_state *t)
 	const ob_vec3 out = ob_v3(cos(y[0]), sin(y[0]), 0), along = ob_v3(-sin(y[0]), cos(y[0]), 0);
 	const ob_vec3 at = ob_add(ob_madd(ob_scale(out, arm), sin(y[1]), along), ob_v3(0, 0, -cos(y[1])));
 	ob_look_keep(&t->figure[0], ob_norm(ob_sub(ob_look_at(t, 1).pose.p, at)));
-	ob_look_keep(&t->figure[1], parted(t));
+	ob_look_keep(&t->figure[1], ob_look_parted(t));
 }
 
 const ob_case ob_case_furuta = {
@@ -431,5 +405,5 @@ const ob_case ob_case_furuta = {
 		    { "gap of a joint", "m", 1e-9, "its two places are one" } },
 	.build = build_furuta,
 	.observe = observe_furuta,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };

@@ -10,41 +10,12 @@
 static const double g = OB_WORLD_GRAVITY;
 static const ob_quat y_axis = { M_SQRT1_2, -M_SQRT1_2, 0, 0 }; // a joint's z axis along y
 
-static void judge_motion(ob_case_run_state *t)
-{
-	if (ob_look_farthest(t) == 0)
-		t->failed = "nothing moved";
-}
-
-static ob_state end_of(const ob_case_run_state *t, const ob_joint_passport *j, int side)
-{
-	return j->object[side] == OB_JOINT_WORLD ? (ob_state){ .pose.q = ob_quat_identity() }
-						 : ob_look_at(t, j->object[side]);
-}
-
-// Largest distance of the two places of a joint that must be one (m).
-static double parted(const ob_case_run_state *t)
-{
-	double most = 0;
-	for (uint32_t i = 0; i < t->world->joints; i++) {
-		const ob_joint_passport *j = &t->world->joint[i];
-		ob_vec3 at[2];
-		for (int side = 0; side < 2; side++) {
-			const ob_pose body = end_of(t, j, side).pose;
-			const ob_mat3 r = ob_quat_matrix(body.q);
-			at[side] = ob_add(body.p, ob_rotate(&r, j->frame[side].p));
-		}
-		most = fmax(most, ob_norm(ob_sub(at[0], at[1])));
-	}
-	return most;
-}
-
 // Turn of a hinge (rad) since the start.
 static double turn_of(const ob_case_run_state *t, uint32_t joint)
 {
 	const ob_joint_passport *j = &t->world->joint[joint];
 	double value = NAN, rate;
-	ob_joint_value(j, (ob_state[]){ end_of(t, j, 0), end_of(t, j, 1) }, &value, &rate);
+	ob_joint_value(j, (ob_state[]){ ob_look_end(t, j, 0), ob_look_end(t, j, 1) }, &value, &rate);
 	return value;
 }
 
@@ -99,7 +70,7 @@ static void observe_bricard(ob_case_run_state *t)
 		const double sign = i + 1 < SIX ? 1 : -1, expected = i % 2 ? even : bricard_rate * t->time;
 		ob_look_keep(&t->figure[0], fabs(sign * turn_of(t, i) - expected));
 	}
-	ob_look_keep(&t->figure[1], parted(t));
+	ob_look_keep(&t->figure[1], ob_look_parted(t));
 }
 
 const ob_case ob_case_bricard = {
@@ -115,7 +86,7 @@ const ob_case ob_case_bricard = {
 		    { "gap of a joint", "m", 1e-9, "its two places are one" } },
 	.build = build_bricard,
 	.observe = observe_bricard,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 // ---- a door that a motor turns faster and faster until its hinge breaks
@@ -233,7 +204,7 @@ static void observe_bridge(ob_case_run_state *t)
 	for (uint32_t i = 0; i < PLANKS; i++)
 		off = fmax(off, ob_norm(ob_sub(ob_look_at(t, i).pose.p, plank_at(bridge_load, i, &slope))));
 	t->figure[0] = off; // at the end
-	ob_look_keep(&t->figure[1], parted(t));
+	ob_look_keep(&t->figure[1], ob_look_parted(t));
 	ob_look_penetration(t, &t->figure[2]);
 }
 
@@ -251,7 +222,7 @@ const ob_case ob_case_plank_bridge = {
 		    { "worst penetration", "mm", 1, "none" } },
 	.build = build_bridge,
 	.observe = observe_bridge,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 // ---- ragdolls that come to rest
@@ -271,7 +242,7 @@ static void observe_ragdoll(ob_case_run_state *t)
 		fastest = fmax(fastest, ob_norm(x.v));
 	}
 	t->figure[0] = fastest; // at the end
-	ob_look_keep(&t->figure[1], parted(t));
+	ob_look_keep(&t->figure[1], ob_look_parted(t));
 	ob_look_penetration(t, &t->figure[2]);
 }
 
@@ -289,7 +260,7 @@ const ob_case ob_case_ragdoll = {
 		    { "worst penetration", "mm", 1, "none" } },
 	.build = build_ragdoll,
 	.observe = observe_ragdoll,
-	.judge = judge_motion,
+	.judge = ob_look_fail_still,
 };
 
 // ---- a car over bars of unlike height, across its way
@@ -319,7 +290,7 @@ static void build_car(ob_world *w, uint32_t run, const double *variant)
 static void observe_car(ob_case_run_state *t)
 {
 	ob_look_keep(&t->figure[0], fabs(ob_look_at(t, 0).pose.p.y));
-	ob_look_keep(&t->figure[1], parted(t));
+	ob_look_keep(&t->figure[1], ob_look_parted(t));
 	ob_look_penetration(t, &t->figure[2]);
 }
 
