@@ -46,6 +46,14 @@ static ob_vec3 common(ob_vec3 a, ob_vec3 b)
 	return ob_norm2(a) < ob_norm2(b) ? a : b;
 }
 
+// The part of a load that is to last: the one in common with what has lasted, or with what holds the body against all
+// else that acts on it, whichever is larger. The latter is known in the first step of a contact.
+static ob_vec3 lasting_part(ob_vec3 load, ob_vec3 lasted, ob_vec3 holding)
+{
+	const ob_vec3 a = common(load, lasted), b = common(load, holding);
+	return ob_norm2(a) < ob_norm2(b) ? b : a;
+}
+
 // Takes a step of h (s) into the load that has lasted: its mean over twice the delay, there and back, or the step's load
 // alone.
 static ob_vec3 lasting(const ob_free_scratch *x, double h, ob_vec3 before, ob_vec3 load)
@@ -86,6 +94,7 @@ static void drop(ob_free_sim *s, ob_account *a)
 void ob_ledger_begin(ob_free_sim *s)
 {
 	memset(s->mailed, 0, sizeof s->mailed);
+	s->passed_on = ob_v3(0, 0, 0);
 	for (uint32_t i = s->ledger.head.accounts; i-- > 0;) { // partners that are gone
 		bool there = false;
 		for (uint32_t k = 0; k < s->neighbours; k++)
@@ -223,8 +232,9 @@ bool ob_ledger_deposit(ob_free_sim *s, const ob_free_scratch *x, ob_free_neighbo
 		      spun = ob_sub(spin_of(p, end->q, end->w), spin_of(p, begin->pose.q, begin->w)),
 		      twist = ob_madd(ob_scale(spun, seen->share), -h, seen->torque),
 		      way = ob_scale(ob_add(begin->v, end->v), h / 2), turn = ob_scale(ob_add(begin->w, end->w), h / 2);
-	const ob_vec3 load = ob_scale(impulse, 1 / h), torque = ob_scale(twist, 1 / h), rate = common(load, n->load),
-		      turning = common(torque, n->twist);
+	const ob_vec3 load = ob_scale(impulse, 1 / h), torque = ob_scale(twist, 1 / h),
+		      rate = lasting_part(load, n->load, ob_scale(outer, -1)), turning = common(torque, n->twist);
+	s->passed_on = ob_add(s->passed_on, load);
 	add(own->sum, IMPULSE, impulse);
 	add(own->sum, TWIST, twist);
 	add(own->sum, SHIFT, ob_sub(ob_sub(end->p, begin->pose.p), way));
@@ -240,20 +250,23 @@ void ob_ledger_end(ob_free_sim *s, const ob_free_scratch *x, const ob_state *own
 {
 	const ob_passport *p = &s->passport;
 	const ob_vec3 outer = ob_external_acceleration(&x->run, p);
-	// of the island: all but mail
+	// by the island: all but mail
 	const ob_vec3 change = ob_madd(ob_scale(ob_sub(end->v, own->v), p->mass), -h * p->mass, outer),
 		      load = ob_scale(ob_sub(change, part(s->mailed, IMPULSE)), 1 / h),
 		      turned_by = ob_sub(spin_of(p, end->q, end->w), spin_of(p, own->pose.q, own->w)),
-		      torque = ob_scale(ob_sub(turned_by, part(s->mailed, TWIST)), 1 / h);
-	ob_vec3 force = common(load, s->load), twist = common(torque, s->twist);
+		      torque = ob_scale(ob_sub(turned_by, part(s->mailed, TWIST)), 1 / h),
+		      fixed = ob_add(load, s->passed_on); // by fixed bodies
+	ob_vec3 force = ob_v3(0, 0, 0), twist = common(torque, s->twist);
 	s->ledger.head.solvers = x->near > 0 && !x->flew;
-	for (uint32_t i = 0; i < s->ledger.head.accounts; i++)
-		if (s->ledger.account[i].partner < s->id) {
-			force = ob_add(force, part(s->ledger.account[i].rate, IMPULSE));
-			twist = ob_add(twist, part(s->ledger.account[i].rate, TWIST));
-			s->ledger.head.solvers += !s->ledger.account[i].closed;
-		}
-	s->load = lasting(x, h, s->load, load), s->twist = lasting(x, h, s->twist, torque);
+	for (uint32_t i = 0; i < s->ledger.head.accounts; i++) {
+		const ob_account *a = &s->ledger.account[i];
+		const bool consumed = a->partner < s->id;
+		force = ob_madd(force, consumed ? 1 : -1, part(a->rate, IMPULSE));
+		twist = ob_madd(twist, consumed, part(a->rate, TWIST));
+		s->ledger.head.solvers += consumed && !a->closed;
+	}
+	force = ob_add(force, lasting_part(fixed, s->load, ob_scale(ob_madd(force, p->mass, outer), -1)));
+	s->load = lasting(x, h, s->load, fixed), s->twist = lasting(x, h, s->twist, torque);
 	s->counts.worked += work_of(part(s->mailed, IMPULSE), part(s->mailed, TWIST), own, end->v, end->w);
 	end->a = ob_madd(outer, 1 / p->mass, force);
 	memcpy(s->ledger.head.torque, (double[3]){ twist.x, twist.y, twist.z }, sizeof s->ledger.head.torque);

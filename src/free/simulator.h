@@ -73,7 +73,8 @@ typedef struct ob_free_sim {
 	ob_free_counts counts;
 	ob_ledger ledger; // as published
 	double mailed[12]; // consumed in this step, as ob_account.sum
-	ob_vec3 load, twist; // N, N m: the island's in the last step
+	ob_vec3 passed_on; // N: loads on partners in this step
+	ob_vec3 load, twist; // in the last step: N by fixed bodies, N m by the island
 } ob_free_sim;
 
 // Memory that a worker's simulators share: the solver and its scratch memory.

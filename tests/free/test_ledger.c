@@ -2,6 +2,8 @@
 // pair's hit is computed once, however late the other is.
 #include "hand.h"
 
+#include <math.h>
+
 #include "../check.h"
 
 #include "base/random.h"
@@ -166,6 +168,31 @@ static void test_stack(void)
 	hand_destroy(h);
 }
 
+// Load, over the weight, that is to last after the first step of contact of a box with one that comes down on it at a speed (m/s).
+static double first_load(double speed)
+{
+	static const double mass = 1000, gravity = 9.81;
+	hand *h = hand_create(settings(1000, .002), ob_v3(0, 0, -gravity));
+	hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+	const uint32_t lower = hand_add(h, OB_SHAPE_BOX, ob_v3(.5, .5, .5), mass, ob_v3(0, 0, .5), none, 0),
+		       upper = hand_add(h, OB_SHAPE_BOX, ob_v3(.5, .5, .5), mass, ob_v3(0, 0, 1.5), ob_v3(0, 0, -speed),
+					0);
+	hand_until(h, 1);
+	CHECK(hand_step(h, lower) && h->sim[lower].ledger.head.accounts == 1);
+	const ob_account *a = &h->sim[lower].ledger.account[0];
+	CHECK(a->partner == upper && a->sum[2] >= 1e-3 * mass * (gravity + speed) * .99);
+	const double load = a->rate[2] / (mass * gravity);
+	hand_destroy(h);
+	return load;
+}
+
+// The weight of the upper box lasts from the first step on, and a hit adds nothing to it.
+static void test_first_load(void)
+{
+	CHECK_NEAR(first_load(0), 1, 1e-5);
+	CHECK_NEAR(first_load(1), 1, 1e-5);
+}
+
 // A stack whose mail is late: loads go on no longer than they have lasted, or they would swing up until it explodes.
 static void test_stack_of_late_mail(void)
 {
@@ -243,6 +270,7 @@ int main(void)
 	test_momentum();
 	test_hit_once();
 	test_stack();
+	test_first_load();
 	test_stack_of_late_mail();
 	test_column_lands();
 	test_work_of_mail();
