@@ -1,9 +1,14 @@
-"""Random free runs: births, deaths, kills, simulators that sleep, every coupling and bound. Each comes to its end.
+"""Random free runs: births, deaths, kills, stops by a signal, simulators that sleep, every coupling and bound. Each comes to
+its end.
 
 Arguments: the number of runs, or the first seed and the number of runs."""
 
+import json
+import os
 import random
+import signal
 import sys
+import time
 import unittest
 
 import program
@@ -42,16 +47,37 @@ class Random(program.Case):
 		fault = draw.choice(faults)
 		return words + ["--isolation", isolation] + (["--fault", fault] if fault else [])
 
+	def stop_now_and_then(self, draw, run):
+		"""Stops simulators, or all that are threads, one at a time until the run's end. Returns the number of stops."""
+		stops = 0
+		while run.poll() is None:
+			pids = program.simulators(run.pid) or [run.pid]
+			pid = draw.choice(pids)
+			try:
+				os.kill(pid, signal.SIGSTOP)
+				time.sleep(draw.choice([.001, .01, .1]))
+				os.kill(pid, signal.SIGCONT)
+				stops += 1
+			except ProcessLookupError:
+				pass # it was killed, or has ended
+			time.sleep(draw.uniform(0, .02))
+		return stops
+
 	def test_each_ends(self):
-		deaths = 0
+		deaths = stops = 0
 		for seed in range(FIRST, FIRST + RUNS):
 			draw = random.Random(seed)
 			scene, words = self.scene(draw), self.options(draw, seed)
-			r = program.report(scene, *words)
+			run = program.start("run", scene, *words, "--json", self.path("r.json"))
+			stops += self.stop_now_and_then(draw, run) if draw.random() < .5 else 0
+			_, errors = run.communicate(timeout=program.PATIENCE)
+			self.assertEqual(run.returncode, 0, (seed, words, errors))
+			with open(self.path("r.json")) as f:
+				r = json.load(f)
 			self.assertEqual(r["outcome"], "finished", (seed, words))
 			self.assertAlmostEqual(r["simulated_s"], r["steps"] * STEP, delta=1e-9)
 			deaths += r["deaths"]
-		print(f"{RUNS} runs from seed {FIRST} on, {deaths} deaths", file=sys.stderr)
+		print(f"{RUNS} runs from seed {FIRST} on, {deaths} deaths, {stops} stops", file=sys.stderr)
 
 
 if __name__ == "__main__":
