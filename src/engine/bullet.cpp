@@ -36,6 +36,7 @@ struct ob_engine {
 	std::vector<std::unique_ptr<btCollisionShape>> shape;
 	std::vector<std::unique_ptr<btRigidBody>> body;
 	std::vector<btVector3> force; // N; acts in every step
+	std::vector<std::unique_ptr<btTypedConstraint>> joint;
 	ob_drive drive = {};
 	uint64_t steps = 0; // substeps, so far
 	double substep; // s
@@ -44,6 +45,8 @@ struct ob_engine {
 	ob_engine() : dispatcher(&configuration), world(&dispatcher, &broadphase, &solver, &configuration) {}
 	~ob_engine()
 	{
+		for (auto &j : joint)
+			world.removeConstraint(j.get());
 		for (auto &b : body)
 			world.removeRigidBody(b.get());
 		ob_drive_finish(&drive);
@@ -137,6 +140,64 @@ static void add(ob_engine *b, const ob_world *w, const ob_passport *p, const ob_
 	b->world.addRigidBody(body);
 }
 
+// ---- joints: constraints of six degrees of freedom, each of which is locked, limited or free
+
+// An axis of Bullet's: 0..2 shifts, 3..5 turns. Its shifts are those of the second object, its turns and all rates of the first.
+static void set_axis(btGeneric6DofSpring2Constraint *c, int i, const ob_joint_axis &a)
+{
+	const double far = 1e6, low = fmax(a.low, -far), high = fmin(a.high, far);
+	const btScalar sign = i < 3 ? btScalar(-1) : btScalar(1);
+	if (i < 3 && (isfinite(a.low) || isfinite(a.high)))
+		c->setLimit(i, btScalar(-high), btScalar(-low));
+	if (i >= 3 && (isfinite(a.low) || isfinite(a.high))) { // setLimit() takes turns away
+		c->getRotationalLimitMotor(i - 3)->m_loLimit = btScalar(low);
+		c->getRotationalLimitMotor(i - 3)->m_hiLimit = btScalar(high);
+	}
+	if (a.restitution > 0) { // with less than all of its error reduction a limit brakes what comes near it
+		c->setBounce(i, btScalar(a.restitution));
+		c->setParam(BT_CONSTRAINT_STOP_ERP, 1, i);
+	}
+	if (a.stiffness > 0 || a.damping > 0) {
+		c->enableSpring(i, true);
+		c->setStiffness(i, btScalar(a.stiffness), false);
+		c->setDamping(i, btScalar(a.damping), false);
+		c->setEquilibriumPoint(i, sign * btScalar(a.rest));
+	}
+	const bool holds = a.motor == OB_MOTOR_RATE;
+	if (holds || a.friction > 0) {
+		const double most = holds ? a.most : a.friction;
+		c->enableMotor(i, true);
+		c->setTargetVelocity(i, holds ? btScalar(a.target) : btScalar(0));
+		c->setMaxMotorForce(i, isfinite(most) ? btScalar(most) : SIMD_INFINITY);
+	}
+}
+
+static void join(ob_engine *p, const ob_joint_passport *j)
+{
+	const bool cross = j->kind == OB_JOINT_UNIVERSAL; // turns about x of the first object, y of the second
+	btRigidBody *end[2];
+	for (int side = 0; side < 2; side++)
+		end[side] = j->object[side] == OB_JOINT_WORLD ? &btTypedConstraint::getFixedBody()
+							      : p->body[j->object[side]].get();
+	if (j->kind == OB_JOINT_APART) {
+		end[0]->setIgnoreCollisionCheck(end[1], true);
+		return;
+	}
+	auto c = std::make_unique<btGeneric6DofSpring2Constraint>(*end[0], *end[1], transform(j->frame[0]),
+								  transform(j->frame[1]), cross ? RO_YZX : RO_XYZ);
+	for (int i = 0; i < 6; i++) {
+		const bool ball = j->kind == OB_JOINT_BALL && i >= 3, hinge = j->kind == OB_JOINT_HINGE && i == 5,
+			   slide = j->kind == OB_JOINT_SLIDER && i == 2, first = cross && i == 3,
+			   second = cross && i == 4;
+		const bool free = ball || hinge || slide || first || second;
+		c->setLimit(i, free ? 1 : 0, free ? -1 : 0);
+		if (free && j->flags & OB_JOINT_DRIVEN)
+			set_axis(c.get(), i, second ? j->second : j->axis);
+	}
+	p->world.addConstraint(c.get(), !(j->flags & OB_JOINT_COLLIDES));
+	p->joint.push_back(std::move(c));
+}
+
 static void allow_for_bounces(btContactSolverInfo *info, const ob_world *w)
 {
 	bool any = false, all = true;
@@ -190,10 +251,13 @@ static void set_up(ob_engine *b, const ob_world *w, const ob_run_settings *s)
 	b->world.setInternalTickCallback(give_velocities, b, true);
 	for (uint32_t i = 0; i < w->objects; i++)
 		add(b, w, &w->passport[i], &w->state[i], s->sleeping);
+	for (uint32_t i = 0; i < w->joints; i++)
+		join(b, &w->joint[i]);
 }
 
-static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_error *e)
+static ob_engine *create(const ob_world *w, const ob_run_settings *s, uint32_t variant, ob_error *e)
 {
+	(void)variant;
 	try {
 		auto b = std::make_unique<ob_engine>();
 		set_up(b.get(), w, s);

@@ -31,7 +31,8 @@ typedef struct ob_engine_kind {
 	bool (*check)(ob_error *e); // true if its library can be loaded; NULL = it is part of the program
 	ob_world_drive drives; // most general motion that it supports
 	bool hulls; // supports convex hulls
-	bool joints; // supports joints
+	// False and e, with the name of the first joint that it has not; NULL: it has no joints.
+	bool (*takes_joints)(const ob_world *w, ob_error *e);
 	bool free; // simulators at times of their own: no two runs end in the same bits
 } ob_engine_kind;
 

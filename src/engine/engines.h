@@ -2,6 +2,8 @@
 #ifndef OB_ENGINE_ENGINES_H
 #define OB_ENGINE_ENGINES_H
 
+#include <math.h>
+
 #include "engine/engine.h"
 
 extern const ob_engine_kind ob_engine_obsim; // obsim.c: one engine for each contact solver, and one with ODE's stepper
@@ -20,6 +22,13 @@ extern const ob_engine_kind ob_engine_ode_world;
 extern const ob_engine_kind ob_engine_ode_advised;
 extern const ob_engine_kind ob_engine_bullet; // parts.c
 extern const ob_engine_kind ob_engine_mujoco;
+extern const ob_engine_kind ob_engine_mujoco_rk4;
+
+// False and e: the joint may break, as no other engine's does here.
+static inline bool ob_engine_joint_lasts(const ob_joint_passport *j, ob_error *e)
+{
+	return (isinf(j->breaks_force) && isinf(j->breaks_torque)) || ob_fail(e, "joints do not break: %s", j->name);
+}
 
 // ODE's data of a thread lives as long as any engine of that thread needs it.
 void ob_engine_ode_enter(void);

@@ -22,6 +22,7 @@ const ob_engine_kind *const ob_engine_kinds[] = {
 #endif
 #ifdef OB_MUJOCO_VERSION
 	&ob_engine_mujoco,
+	&ob_engine_mujoco_rk4,
 #endif
 	NULL,
 };

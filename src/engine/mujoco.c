@@ -4,7 +4,8 @@
 //   them only if the other measures are not enough.
 // - Contacts are springs. Their solref is as stiff as it advises: a time constant of two time steps, critically damped;
 //   solimp is the default.
-// - Semi-implicit Euler at about 2 ms, the default of both: eight substeps of a frame at 60 Hz.
+// - Semi-implicit Euler at about 2 ms, the default of both: eight substeps of a frame at 60 Hz. "mujoco-rk4" has its
+//   integrator of Runge and Kutta, of order 4 where there are no contacts.
 // - Friction of a pair is the larger of the two bodies' in MuJoCo. Pairs with another sqrt(mu_a mu_b), or with
 // different
 //   restitutions, are declared one by one, which it allows for some ten thousand.
@@ -13,7 +14,7 @@
 //   bodies sink into each other for about six time steps.
 // - It has no sleeping, and rolling friction is not requested (condim 3).
 //
-// The model is made as MJCF text in memory. Each object is a body with the index id + 1, and a joint if it moves.
+// The model is made as MJCF text in memory (mjcf.h).
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,20 +22,19 @@
 
 #include <mujoco/mujoco.h>
 
+#include "engine/joint_tree.h"
+#include "engine/mjcf.h"
 #include "engine/part.h"
-#include "shape/shape.h"
-
-enum {
-	CONTACTS_PER_BODY = 12, // average limit: memory for their rows grows with the square of the bodies
-	CONTACTS_LEAST = 200,
-	DECLARED_MOST = 10000, // pairs
-};
 
 struct ob_engine {
 	mjModel *model;
 	mjData *data;
-	ob_state *start; // [objects], constant for static ones
-	ob_vec3 *force; // [objects], N
+	struct object {
+		int body; // in the model
+		ob_vec3 force; // N
+		ob_state now; // constant for static ones
+	} * object; // [objects]
+	uint32_t *tree; // [objects], ob_joint_tree
 	uint32_t substeps, objects;
 };
 
@@ -85,100 +85,7 @@ static bool try_step(ob_engine *p, ob_error *e)
 
 // ---- the model
 
-static bool moves(const ob_passport *o)
-{
-	return !(o->flags & OB_OBJECT_STATIC) && o->mass > 0;
-}
-
-// Writes the time constant and the damping ratio of a pair's spring, or -stiffness and -damping, the only form for a
-// spring without damping.
-static void write_solref(FILE *f, double e, double h)
-{
-	double frequency = 1 / (2 * h), ratio = 1;
-	if (e > 0)
-		ratio = -log(fmin(e, 1)) / hypot(M_PI, log(fmin(e, 1)));
-	if (e > 0)
-		fprintf(f, " solref=\"%.17g %.17g\"", -frequency * frequency, -2 * ratio * frequency);
-	else
-		fprintf(f, " solref=\"%.17g 1\"", 1 / frequency);
-}
-
-static void write_geom(FILE *f, const ob_passport *o, double h)
-{
-	static const char *const type[OB_SHAPE_KINDS] = {
-		[OB_SHAPE_SPHERE] = "sphere",   [OB_SHAPE_BOX] = "box",           [OB_SHAPE_PLANE] = "plane",
-		[OB_SHAPE_CAPSULE] = "capsule", [OB_SHAPE_CYLINDER] = "cylinder",
-	};
-	ob_vec3 size = o->shape == OB_SHAPE_PLANE ? ob_v3(0, 0, 1) : o->size;
-	if (!type[o->shape])
-		return;
-	fprintf(f, "<geom name=\"%u\" type=\"%s\" size=\"%.17g %.17g %.17g\" friction=\"%.17g 0 0\"", o->id,
-		type[o->shape], size.x, size.y, size.z, o->friction);
-	write_solref(f, o->restitution, h);
-	fputs("/>", f);
-}
-
-static void write_body(FILE *f, const ob_passport *o, const ob_state *s, double h)
-{
-	const ob_vec3 *p = &s->pose.p, *i = &o->inertia;
-	const ob_quat *q = &s->pose.q;
-	fprintf(f, "<body name=\"%u\" pos=\"%.17g %.17g %.17g\" quat=\"%.17g %.17g %.17g %.17g\">", o->id, p->x, p->y,
-		p->z, q->w, q->x, q->y, q->z);
-	if (moves(o))
-		fprintf(f, "<freejoint/><inertial pos=\"0 0 0\" mass=\"%.17g\" diaginertia=\"%.17g %.17g %.17g\"/>",
-			o->mass, i->x, i->y, i->z);
-	write_geom(f, o, h);
-	fputs("</body>\n", f);
-}
-
-static bool usual_pair(const ob_passport *a, const ob_passport *b)
-{
-	return a->friction == b->friction && a->restitution == b->restitution;
-}
-
-// Writes the pairs for which MuJoCo would combine another friction or restitution; returns false if they are too many.
-// Its automatic contacts between the two bodies are excluded, or they would touch twice.
-static bool write_pairs(FILE *f, const ob_world *w, double h)
-{
-	uint32_t declared = 0;
-	fputs("<contact>\n", f);
-	for (uint32_t i = 0; i < w->objects; i++) {
-		for (uint32_t j = 0; j < i; j++) {
-			const ob_passport *a = &w->passport[i], *b = &w->passport[j];
-			if ((!moves(a) && !moves(b)) || !a->shape || !b->shape || usual_pair(a, b))
-				continue;
-			if (++declared > DECLARED_MOST)
-				return false;
-			double mu = sqrt(a->friction * b->friction);
-			fprintf(f, "<pair geom1=\"%u\" geom2=\"%u\" condim=\"3\" friction=\"%.17g %.17g 0 0 0\"", j, i,
-				mu, mu);
-			write_solref(f, fmax(a->restitution, b->restitution), h);
-			fprintf(f, "/><exclude body1=\"%u\" body2=\"%u\"/>\n", j, i);
-		}
-	}
-	fputs("</contact>\n", f);
-	return true;
-}
-
-static bool write_world(FILE *f, const ob_world *w, const ob_run_settings *s)
-{
-	double h = s->step_length / s->substeps;
-	uint32_t contacts = CONTACTS_LEAST + CONTACTS_PER_BODY * w->objects;
-	fprintf(f,
-		"<mujoco><compiler angle=\"radian\"/>\n"
-		"<option timestep=\"%.17g\" gravity=\"%.17g %.17g %.17g\" cone=\"elliptic\" impratio=\"10\" "
-		"solver=\"Newton\" iterations=\"%u\" tolerance=\"1e-12\"/>\n"
-		"<size nconmax=\"%u\" njmax=\"%u\"/>\n<worldbody>\n",
-		h, w->gravity.x, w->gravity.y, w->gravity.z, s->iterations, contacts, 3 * contacts);
-	for (uint32_t id = 0; id < w->objects; id++)
-		write_body(f, &w->passport[id], &w->state[id], h);
-	fputs("</worldbody>\n", f);
-	bool all = write_pairs(f, w, h);
-	fputs("</mujoco>\n", f);
-	return all;
-}
-
-static bool load(ob_engine *p, const ob_world *w, const ob_run_settings *s, ob_error *e)
+static bool load(ob_engine *p, const ob_mjcf *m, ob_error *e)
 {
 	char *text = NULL;
 	size_t length = 0;
@@ -186,12 +93,12 @@ static bool load(ob_engine *p, const ob_world *w, const ob_run_settings *s, ob_e
 	mjVFS *files = malloc(sizeof *files);
 	bool done = f && files;
 	if (!done)
-		ob_fail(e, "no memory for a world of %u bodies", w->objects);
-	if (done && !write_world(f, w, s))
+		ob_fail(e, "no memory for a world of %u bodies", p->objects);
+	if (done && !ob_mjcf_write(f, m))
 		done = ob_fail(e, "MuJoCo: more than %d pairs with a friction or restitution of their own",
-			       DECLARED_MOST);
+			       OB_MJCF_PAIRS);
 	if (f && fclose(f) && done)
-		done = ob_fail(e, "no memory for a world of %u bodies", w->objects);
+		done = ob_fail(e, "no memory for a world of %u bodies", p->objects);
 	if (done) {
 		mj_defaultVFS(files);
 		done = !mj_makeEmptyFileVFS(files, "world.xml", (int)length) || ob_fail(e, "MuJoCo: no memory");
@@ -216,25 +123,114 @@ static void destroy(ob_engine *p)
 		mj_deleteData(p->data);
 	if (p->model)
 		mj_deleteModel(p->model);
-	free(p->start);
-	free(p->force);
+	free(p->object);
+	free(p->tree);
 	free(p);
 }
 
-// A free joint's first three velocities are in the world frame, the other three in the body frame.
-static void put(ob_engine *p, uint32_t id, const ob_passport *o, const ob_state *s)
+static void get_vector(const double *v, ob_vec3 *out)
 {
-	p->start[id] = *s;
-	p->force[id] = o->force;
-	if (!moves(o))
-		return;
-	double *v = &p->data->qvel[p->model->body_dofadr[id + 1]];
-	ob_mat3 r = ob_quat_matrix(s->pose.q);
-	ob_vec3 spin = ob_rotate_back(&r, s->w);
-	memcpy(v, (double[]){ s->v.x, s->v.y, s->v.z, spin.x, spin.y, spin.z }, 6 * sizeof *v);
+	*out = ob_v3(v[0], v[1], v[2]);
 }
 
-static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_error *e)
+static void read_states(ob_engine *p)
+{
+	mj_kinematics(p->model, p->data);
+	mj_comPos(p->model, p->data);
+	mj_comVel(p->model, p->data);
+	for (uint32_t id = 0; id < p->objects; id++) {
+		const int body = p->object[id].body;
+		const double *q = &p->data->xquat[4 * body];
+		ob_state *s = &p->object[id].now;
+		double v[6]; // angular, linear
+		if (p->model->body_weldid[body] == 0)
+			continue;
+		mj_objectVelocity(p->model, p->data, mjOBJ_BODY, body, v, 0);
+		get_vector(&p->data->xpos[3 * body], &s->pose.p);
+		s->pose.q = ob_quat_normalize((ob_quat){ q[0], q[1], q[2], q[3] });
+		get_vector(v, &s->w);
+		get_vector(v + 3, &s->v);
+	}
+}
+
+// Sets the velocities of a body's coordinates. Those of a ball, and the turn of a free body, are in the body's frame.
+static void put(ob_engine *p, uint32_t id, const ob_world *w)
+{
+	const int body = p->object[id].body;
+	const ob_state *s = &w->state[id];
+	const ob_mat3 r = ob_quat_matrix(s->pose.q);
+	ob_state parent = { .pose.q = ob_quat_identity() };
+	if (p->tree[id] != OB_JOINT_WORLD) {
+		const uint32_t other = ob_joint_other(&w->joint[p->tree[id]], id);
+		parent = other == OB_JOINT_WORLD ? parent : w->state[other];
+	}
+	const ob_vec3 turn = ob_sub(s->w, parent.w), back = ob_rotate_back(&r, turn);
+	const ob_vec3 shift = ob_sub(ob_sub(s->v, parent.v), ob_cross(parent.w, ob_sub(s->pose.p, parent.pose.p)));
+	for (int i = 0; i < p->model->body_jntnum[body]; i++) {
+		const int joint = p->model->body_jntadr[body] + i;
+		double *v = &p->data->qvel[p->model->jnt_dofadr[joint]];
+		ob_vec3 axis;
+		get_vector(&p->data->xaxis[3 * joint], &axis);
+		switch (p->model->jnt_type[joint]) {
+		case mjJNT_FREE:
+			memcpy(v, (double[]){ s->v.x, s->v.y, s->v.z, back.x, back.y, back.z }, 6 * sizeof *v);
+			break;
+		case mjJNT_BALL:
+			memcpy(v, (double[]){ back.x, back.y, back.z }, 3 * sizeof *v);
+			break;
+		case mjJNT_SLIDE:
+			*v = ob_dot(axis, shift);
+			break;
+		default:
+			*v = ob_dot(axis, turn);
+		}
+	}
+}
+
+// A motor that holds a rate with a greatest force: it takes half of what is missing in a step.
+static void set_motor(ob_engine *p, const ob_joint_axis *a, const char *name, double h)
+{
+	const int i = mj_name2id(p->model, mjOBJ_ACTUATOR, name);
+	if (i < 0)
+		return;
+	const int at = p->model->actuator_trnid[2 * i];
+	p->data->ctrl[i] = a->target;
+	if (a->motor != OB_MOTOR_RATE)
+		return;
+	const double response = p->model->actuator_trntype[i] == mjTRN_TENDON
+					? p->model->tendon_invweight0[at]
+					: p->model->dof_invweight0[p->model->jnt_dofadr[at]];
+	p->model->actuator_gainprm[i * mjNGAIN] = .5 / (h * response);
+	p->model->actuator_biasprm[i * mjNBIAS + 2] = -.5 / (h * response);
+}
+
+static void set_motors(ob_engine *p, const ob_world *w, double h)
+{
+	char name[32];
+	for (uint32_t i = 0; i < w->joints; i++) {
+		snprintf(name, sizeof name, "%u", i);
+		set_motor(p, &w->joint[i].axis, name, h);
+		snprintf(name, sizeof name, "%u.2", i);
+		set_motor(p, &w->joint[i].second, name, h);
+	}
+}
+
+static void set_up(ob_engine *p, const ob_world *w, double h)
+{
+	char name[16];
+	for (uint32_t id = 0; id < w->objects; id++) {
+		snprintf(name, sizeof name, "%u", id);
+		p->object[id] =
+			(struct object){ mj_name2id(p->model, mjOBJ_BODY, name), w->passport[id].force, w->state[id] };
+	}
+	mj_kinematics(p->model, p->data);
+	for (uint32_t id = 0; id < w->objects; id++)
+		put(p, id, w);
+	set_motors(p, w, h);
+}
+
+// variant: 1: Runge and Kutta's integrator
+static ob_engine *create(const ob_world *w, const ob_run_settings *s, uint32_t variant, ob_error *e)
 {
 	if (!(s->step_length > 0) || !s->substeps || !s->iterations) {
 		ob_fail(e, "%u substeps of a step of %g s with %u iterations: MuJoCo must be told what to do",
@@ -250,15 +246,18 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_error *
 	ob_engine *p = calloc(1, sizeof *p);
 	if (p) {
 		*p = (ob_engine){ .substeps = s->substeps, .objects = w->objects };
-		p->start = calloc(w->objects + 1, sizeof *p->start);
-		p->force = calloc(w->objects + 1, sizeof *p->force);
+		p->object = calloc(w->objects + 1, sizeof *p->object);
+		p->tree = calloc(w->objects + 1, sizeof *p->tree);
 	}
-	if (!p || !p->start || !p->force) {
+	if (!p || !p->object || !p->tree || !ob_joint_tree(w, p->tree)) {
 		ob_fail(e, "no memory for a world of %u bodies", w->objects);
-	} else if (load(p, w, s, e)) {
-		for (uint32_t id = 0; id < w->objects; id++)
-			put(p, id, &w->passport[id], &w->state[id]);
-		return p;
+	} else {
+		const ob_mjcf m = { w, p->tree, s->step_length / s->substeps, s->iterations,
+				    variant ? "RK4" : "Euler" };
+		if (load(p, &m, e)) {
+			set_up(p, w, m.step);
+			return p;
+		}
 	}
 	destroy(p);
 	return NULL;
@@ -287,28 +286,18 @@ static bool sound(const ob_engine *p, ob_error *e)
 static bool step(ob_engine *p, ob_error *e)
 {
 	for (uint32_t id = 0; id < p->objects; id++)
-		memcpy(&p->data->xfrc_applied[6 * (id + 1)], &p->force[id], 3 * sizeof(double));
+		memcpy(&p->data->xfrc_applied[6 * p->object[id].body], &p->object[id].force, 3 * sizeof(double));
 	for (uint32_t k = 0; k < p->substeps; k++)
 		if (!try_step(p, e) || !sound(p, e))
 			return false;
+	read_states(p);
 	return true;
 }
 
 static void get(const ob_engine *p, ob_state *state)
 {
-	for (uint32_t id = 0; id < p->objects; id++) {
-		state[id] = p->start[id];
-		int joint = p->model->body_jntadr[id + 1];
-		if (joint < 0)
-			continue;
-		const double *x = &p->data->qpos[p->model->jnt_qposadr[joint]];
-		const double *v = &p->data->qvel[p->model->jnt_dofadr[joint]];
-		state[id].pose.p = ob_v3(x[0], x[1], x[2]);
-		state[id].pose.q = ob_quat_normalize((ob_quat){ x[3], x[4], x[5], x[6] });
-		ob_mat3 r = ob_quat_matrix(state[id].pose.q);
-		state[id].v = ob_v3(v[0], v[1], v[2]);
-		state[id].w = ob_rotate(&r, ob_v3(v[3], v[4], v[5]));
-	}
+	for (uint32_t id = 0; id < p->objects; id++)
+		state[id] = p->object[id].now;
 }
 
 OB_PART(ob_engine_part) = { OB_PART_HEAD(ob_engine_part), .create = create, .step = step, .get = get,

@@ -176,6 +176,13 @@ static ob_engine *create_lagged(const ob_world *w, const ob_run_settings *s, ob_
 	return create_as(w, s, OB_SOLVER_LAGGED, OB_INTEGRATOR_EXACT, e);
 }
 
+static bool takes_joints(const ob_world *w, ob_error *e)
+{
+	(void)w;
+	(void)e;
+	return true;
+}
+
 // clang-format off
 #define USUAL .step_length = OB_DEFAULT_STEP, .substeps = OB_DEFAULT_SUBSTEPS, .iterations = OB_DEFAULT_ITERATIONS
 #define THE_REST \
@@ -183,7 +190,7 @@ static ob_engine *create_lagged(const ob_world *w, const ob_run_settings *s, ob_
 	.recovered = recovered, .destroy = destroy, .drives = OB_WORLD_DRIVES_SURFACES, .hulls = true
 
 const ob_engine_kind ob_engine_obsim = {
-	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = OB_DEFAULT_TOLERANCE }, .joints = true, THE_REST
+	.name = "obsim", .title = "obsim (coloured)", .create = create_coloured, .usual = { USUAL, .tolerance = OB_DEFAULT_TOLERANCE }, .takes_joints = takes_joints, THE_REST
 };
 const ob_engine_kind ob_engine_obsim_jacobi = {
 	.name = "obsim-jacobi", .title = "obsim (Jacobi)", .create = create_jacobi, .usual = { USUAL }, THE_REST

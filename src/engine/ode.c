@@ -42,6 +42,7 @@ struct ob_engine {
 	double substep; // s
 	uint32_t substeps, objects, joints;
 	ob_joint_passport *joint; // [joints]
+	uint32_t *first, *next; // [objects], [2 joints]: lists of ends of joints, 1 + 2 joint + side
 };
 
 static void destroy(ob_engine *p)
@@ -51,29 +52,41 @@ static void destroy(ob_engine *p)
 	ob_ode_world_destroy(p->world);
 	ob_drive_finish(&p->drive);
 	free(p->joint);
+	free(p->first);
+	free(p->next);
 	free(p);
 	ob_engine_ode_leave();
 }
 
-// Objects that a joint holds do not touch each other.
+// Objects that a joint holds do not touch each other, unless it says so.
 static bool may_touch(const void *engine, uint32_t a, uint32_t b)
 {
 	const ob_engine *p = engine;
-	for (uint32_t i = 0; i < p->joints; i++)
-		if ((p->joint[i].object[0] == a && p->joint[i].object[1] == b) ||
-		    (p->joint[i].object[0] == b && p->joint[i].object[1] == a))
+	for (uint32_t i = p->first[a]; i; i = p->next[i - 1]) {
+		const ob_joint_passport *j = &p->joint[(i - 1) / 2];
+		if (j->object[i % 2] == b && !(j->flags & OB_JOINT_COLLIDES))
 			return false;
+	}
 	return true;
 }
 
 static bool join(ob_engine *p, const ob_world *w)
 {
 	p->joint = calloc(w->joints + 1, sizeof *p->joint);
-	if (!p->joint)
+	p->first = calloc(w->objects + 1, sizeof *p->first);
+	p->next = calloc(w->joints + 1, 2 * sizeof *p->next);
+	if (!p->joint || !p->first || !p->next)
 		return false;
 	for (uint32_t i = 0; i < w->joints; i++) {
-		p->joint[p->joints++] = w->joint[i];
-		if (!ob_ode_world_join(p->world, i, &w->joint[i]))
+		const ob_joint_passport *j = &w->joint[i];
+		p->joint[p->joints++] = *j;
+		for (uint32_t end = 2 * i; end < 2 * i + 2; end++) {
+			if (j->object[end % 2] == OB_JOINT_WORLD)
+				continue;
+			p->next[end] = p->first[j->object[end % 2]];
+			p->first[j->object[end % 2]] = end + 1;
+		}
+		if (j->kind != OB_JOINT_APART && !ob_ode_world_join(p->world, i, j))
 			return false;
 	}
 	return true;
@@ -101,7 +114,7 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, ob_ode_wor
 	setup.objects = w->objects;
 	setup.sleeping = s->sleeping;
 	setup.joints = w->joints;
-	setup.may_touch = may_touch;
+	setup.may_touch = w->joints ? may_touch : NULL;
 	setup.of = p;
 	p->world = ob_ode_world_create(&setup);
 	if (!p->world || !ob_drive_init(&p->drive, w)) {
@@ -180,9 +193,21 @@ static void get(const ob_engine *p, ob_state *state)
 		ob_ode_world_get(p->world, i, &state[i], &asleep, &touching);
 }
 
+static bool takes_joints(const ob_world *w, ob_error *e)
+{
+	for (uint32_t i = 0; i < w->joints; i++) {
+		const ob_joint_passport *j = &w->joint[i];
+		if (!ob_ode_has_joint(j))
+			return ob_fail(e, "its joints do not have what acts along %s", j->name);
+		if (!ob_engine_joint_lasts(j, e))
+			return false;
+	}
+	return true;
+}
+
 #define THE_REST \
 	.version = OB_ODE_VERSION, .step = step, .get = get, .destroy = destroy, .drives = OB_WORLD_DRIVES_SURFACES, \
-	.joints = true
+	.takes_joints = takes_joints
 #define QUICK \
 	.usual = { .step_length = OB_DEFAULT_STEP, .substeps = 1, .iterations = OB_DEFAULT_MONOLITH_ITERATIONS }, \
 	.iteration_choice = { 5, 10, 20, 50, 100, 200, 500 }

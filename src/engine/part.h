@@ -8,7 +8,8 @@
 
 typedef struct ob_engine_part {
 	ob_part_head head;
-	ob_engine *(*create)(const ob_world *w, const ob_run_settings *s, ob_error *e);
+	// variant: 0: the usual one
+	ob_engine *(*create)(const ob_world *w, const ob_run_settings *s, uint32_t variant, ob_error *e);
 	bool (*step)(ob_engine *p, ob_error *e);
 	void (*get)(const ob_engine *p, ob_state *state);
 	void (*destroy)(ob_engine *p);

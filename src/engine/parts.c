@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "engine/engines.h"
+#include "engine/joint_tree.h"
 #include "engine/part.h"
 
 #define BULLET "libbullet3.24"
@@ -13,7 +14,7 @@ struct ob_engine {
 };
 
 static ob_engine *create(const char *name, const char *package, const ob_world *w, const ob_run_settings *s,
-			 ob_error *e)
+			 uint32_t variant, ob_error *e)
 {
 	const ob_engine_part *part = ob_part_load(name, sizeof *part, false, package, e);
 	if (!part)
@@ -23,7 +24,7 @@ static ob_engine *create(const char *name, const char *package, const ob_world *
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	*p = (ob_engine){ part, part->create(w, s, e) };
+	*p = (ob_engine){ part, part->create(w, s, variant, e) };
 	if (p->inner)
 		return p;
 	free(p);
@@ -47,14 +48,47 @@ static void destroy(ob_engine *p)
 	free(p);
 }
 
+static bool is_driven(const ob_joint_passport *j)
+{
+	return j->flags & OB_JOINT_DRIVEN;
+}
+
 #ifdef OB_BULLET_VERSION
 static ob_engine *create_bullet(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
 	if (s->step_length > 0 && s->substeps && s->iterations)
-		return create("bullet", BULLET, w, s, e);
+		return create("bullet", BULLET, w, s, 0, e);
 	ob_fail(e, "%u substeps of a step of %g s with %u iterations: Bullet must be told what to do", s->substeps,
 		s->step_length, s->iterations);
 	return NULL;
+}
+
+// Its constraint of six degrees of freedom has for each axis limits, a spring with a damper, and a motor that holds a rate.
+static bool bullet_takes_axis(const ob_joint_passport *j, const ob_joint_axis *a, ob_error *e)
+{
+	if (a->armature > 0)
+		return ob_fail(e, "its joints have no rotors: %s", j->name);
+	if (a->friction > 0 && a->motor == OB_MOTOR_RATE)
+		return ob_fail(e, "an axis has a motor or friction: %s", j->name);
+	if (a->motor == OB_MOTOR_VALUE)
+		return ob_fail(e, "no motor pulls to a value: %s", j->name);
+	return true;
+}
+
+static bool bullet_takes(const ob_world *w, ob_error *e)
+{
+	for (uint32_t i = 0; i < w->joints; i++) {
+		const ob_joint_passport *j = &w->joint[i];
+		if (j->kind == OB_JOINT_DISTANCE)
+			return ob_fail(e, "it has no joint such as %s", j->name);
+		if (!ob_engine_joint_lasts(j, e))
+			return false;
+		if (j->kind == OB_JOINT_BALL && is_driven(j))
+			return ob_fail(e, "nothing acts on the turns of a ball: %s", j->name);
+		if (is_driven(j) && !(bullet_takes_axis(j, &j->axis, e) && bullet_takes_axis(j, &j->second, e)))
+			return false;
+	}
+	return true;
 }
 
 static bool check_bullet(ob_error *e)
@@ -75,13 +109,19 @@ const ob_engine_kind ob_engine_bullet = {
 	.destroy = destroy,
 	.drives = OB_WORLD_DRIVES_BODIES,
 	.hulls = true,
+	.takes_joints = bullet_takes,
 };
 #endif
 
 #ifdef OB_MUJOCO_VERSION
 static ob_engine *create_mujoco(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
-	return create("mujoco", MUJOCO, w, s, e);
+	return create("mujoco", MUJOCO, w, s, 0, e);
+}
+
+static ob_engine *create_mujoco_rk4(const ob_world *w, const ob_run_settings *s, ob_error *e)
+{
+	return create("mujoco", MUJOCO, w, s, 1, e);
 }
 
 static bool check_mujoco(ob_error *e)
@@ -89,16 +129,48 @@ static bool check_mujoco(ob_error *e)
 	return ob_part_check("mujoco", MUJOCO, e);
 }
 
+static bool closes(const ob_joint_passport *j, ob_error *e)
+{
+	if (j->kind == OB_JOINT_SLIDER || j->kind == OB_JOINT_UNIVERSAL)
+		return ob_fail(e, "no slider or universal closes a loop: %s", j->name);
+	return !(j->flags & OB_JOINT_DRIVEN) || ob_fail(e, "nothing acts where a loop is closed: %s", j->name);
+}
+
+static bool mujoco_takes(const ob_world *w, ob_error *e)
+{
+	uint32_t *tree = calloc(w->objects + 1, sizeof *tree);
+	bool fine = (tree && ob_joint_tree(w, tree)) || ob_fail(e, "no memory");
+	for (uint32_t i = 0; i < w->joints && fine; i++) {
+		const ob_joint_passport *j = &w->joint[i];
+		const bool apart = j->kind == OB_JOINT_DISTANCE || j->kind == OB_JOINT_APART;
+		bool held = apart;
+		for (int side = 0; side < 2; side++)
+			held |= j->object[side] != OB_JOINT_WORLD && tree[j->object[side]] == i;
+		fine = ob_engine_joint_lasts(j, e) && (held || closes(j, e));
+		if (fine && j->kind == OB_JOINT_DISTANCE && is_driven(j) && j->axis.armature > 0)
+			fine = ob_fail(e, "tendons have no rotors: %s", j->name);
+	}
+	free(tree);
+	return fine;
+}
+
+// Its defaults: steps of about 2 ms, at most 100 iterations.
+#define MUJOCO_KIND \
+	.version = OB_MUJOCO_VERSION, .usual = { .step_length = 1. / 60, .substeps = 8, .iterations = 100 }, \
+	.iteration_choice = { 1, 2, 5, 10, 20, 50, 100 }, .check = check_mujoco, .step = step, .get = get, \
+	.destroy = destroy, .takes_joints = mujoco_takes
+
 const ob_engine_kind ob_engine_mujoco = {
 	.name = "mujoco",
 	.title = "MuJoCo",
-	.version = OB_MUJOCO_VERSION,
-	.usual = { .step_length = 1. / 60, .substeps = 8, .iterations = 100 }, // its defaults: about 2 ms, at most 100
-	.iteration_choice = { 1, 2, 5, 10, 20, 50, 100 },
-	.check = check_mujoco,
 	.create = create_mujoco,
-	.step = step,
-	.get = get,
-	.destroy = destroy,
+	MUJOCO_KIND,
+};
+
+const ob_engine_kind ob_engine_mujoco_rk4 = {
+	.name = "mujoco-rk4",
+	.title = "MuJoCo, Runge and Kutta",
+	.create = create_mujoco_rk4,
+	MUJOCO_KIND,
 };
 #endif

@@ -34,8 +34,9 @@ ob_lab_analysis ob_lab_analyse(const ob_results *r)
 
 int ob_lab_analysis_style(const ob_lab_analysis *d, const ob_engine_kind *k)
 {
-	static const char *const known[] = { "obsim",     "obsim-jacobi", "obsim-ode", "obsim-ghost", "obsim-lag",
-					     "ode-quick", "ode-world",    "bullet",    "ode-advised", "mujoco" };
+	static const char *const known[] = { "obsim",       "obsim-jacobi", "obsim-ode", "obsim-ghost",
+					     "obsim-lag",   "ode-quick",    "ode-world", "bullet",
+					     "ode-advised", "mujoco",       "mujoco-rk4" };
 	enum { KNOWN = sizeof known / sizeof *known };
 	for (int i = 0; i < KNOWN; i++)
 		if (!strcmp(k->name, known[i]))

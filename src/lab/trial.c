@@ -41,21 +41,26 @@ static void take(ob_case_run_state *t, const ob_state *state)
 	}
 }
 
-// Name of a feature of the world that the engine lacks; NULL: none.
-static const char *lacks(const ob_engine_kind *kind, const ob_world *w)
+// False and e: the engine lacks a feature of the world.
+static bool takes(const ob_engine_kind *kind, const ob_world *w, ob_error *e)
 {
 	if (kind->drives < ob_world_drives(w))
-		return "takes no bodies that move as they are told";
-	return w->hulls && !kind->hulls ? "takes no hulls" : w->joints && !kind->joints ? "takes no joints" : NULL;
+		return ob_fail(e, "takes no bodies that move as they are told");
+	if (w->hulls && !kind->hulls)
+		return ob_fail(e, "takes no hulls");
+	if (w->joints && !kind->takes_joints)
+		return ob_fail(e, "takes no joints");
+	return !w->joints || kind->takes_joints(w, e);
 }
 
-// Runs to the end or to the first failure, by the case's judgement or an invalid state. Only stepping is timed.
+// Runs to the end or to the first failure, by the case's judgement or an invalid state. Only stepping is timed. e: why there
+// is no engine.
 static void watch(ob_case_run_state *t, ob_engine *engine, const ob_engine_kind *kind, ob_state *state,
 		  ob_case_result *out, ob_error *e)
 {
 	const ob_case *c = t->of;
 	uint64_t frames = (uint64_t)lround(c->duration / t->settings.step_length);
-	t->failed = lacks(kind, t->world);
+	t->failed = engine ? NULL : e->text;
 	bool broken = t->failed;
 	ob_conservation conserved = ob_conservation_begin(t->world);
 	take(t, t->world->state);
@@ -130,14 +135,14 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	ob_state *state = calloc(w.objects, sizeof *state);
 	ob_engine *engine = NULL;
 	bool made = t.now.motion && t.now.hull && t.body_memory && state;
+	ob_error broke = { "" };
 	if (!made) {
 		ob_fail(e, "no memory for a world of %u bodies", w.objects);
-	} else if (!lacks(kind, &w)) {
+	} else if (takes(kind, &w, &broke)) {
 		engine = kind->create(&w, &t.settings, e);
 		made = engine;
 	}
 	if (made) {
-		ob_error broke = { "" };
 		watch(&t, engine, kind, state, out, &broke);
 		kind->destroy(engine);
 		add_figures(c, out->figure, t.figure);

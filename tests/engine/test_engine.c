@@ -228,7 +228,7 @@ static void again(void)
 // A body at rest with sleeping enabled: the same state to the last bit, frame after frame.
 static void sleep_on(void)
 {
-	if (is("mujoco") || kind->free) // has no sleeping
+	if (strncmp(kind->name, "mujoco", 6) == 0 || kind->free) // has no sleeping
 		return;
 	little_world *l = little_world_new();
 	little_ground(l);

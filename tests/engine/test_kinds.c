@@ -9,7 +9,7 @@
 // A collapsing heap shows any difference between two engines.
 static void differ(void)
 {
-	static ob_state end[16][LITTLE_MOST];
+	static ob_state end[24][LITTLE_MOST];
 	little_world *l = little_world_new();
 	little_ground(l);
 	for (int i = 0; i < 6; i++)

@@ -73,13 +73,18 @@ CREATE(drunk, in_use, 3)
 CREATE(bursting, bursting, 0)
 CREATE(dying, in_use, 3)
 
+static bool takes_joints(const ob_world *w, ob_error *e)
+{
+	return true;
+}
+
 #define ENGINE(kind, step_function, get_function) \
 	const ob_engine_kind kind##_engine = { .name = #kind, \
 					       .title = #kind, \
 					       .version = "", \
 					       .drives = OB_WORLD_DRIVES_SURFACES, \
 					       .hulls = true, \
-					       .joints = true, \
+					       .takes_joints = takes_joints, \
 					       .create = create_##kind, \
 					       .step = step_function, \
 					       .get = get_function, \
