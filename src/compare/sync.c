@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,29 +14,29 @@
 
 #define RATE(HZ) \
 	{ \
-		"ledger_" #HZ "_hz", "ledger, " #HZ " Hz", OB_SYNC_LEDGER, false, false, 0, HZ \
+		"ledger_" #HZ "_hz", "ledger, " #HZ " Hz", OB_SYNC_LEDGER, false, false, 0, HZ, false \
 	}
 #define LAGS(COUPLING, KEY, TITLE) \
-	{ KEY "_lag_1ms", TITLE ", lag 1 ms", COUPLING, false, false, .001, 0 }, \
-		{ KEY "_lag_3ms", TITLE ", lag 3 ms", COUPLING, false, false, .003, 0 }, \
-		{ KEY "_lag_10ms", TITLE ", lag 10 ms", COUPLING, false, false, .01, 0 }, \
-		{ KEY "_lag_30ms", TITLE ", lag 30 ms", COUPLING, false, false, .03, 0 }, \
+	{ KEY "_lag_1ms", TITLE ", lag 1 ms", COUPLING, false, false, .001, 0, false }, \
+		{ KEY "_lag_3ms", TITLE ", lag 3 ms", COUPLING, false, false, .003, 0, false }, \
+		{ KEY "_lag_10ms", TITLE ", lag 10 ms", COUPLING, false, false, .01, 0, false }, \
+		{ KEY "_lag_30ms", TITLE ", lag 30 ms", COUPLING, false, false, .03, 0, false }, \
 	{ \
-		KEY "_lag_100ms", TITLE ", lag 100 ms", COUPLING, false, false, .1, 0 \
+		KEY "_lag_100ms", TITLE ", lag 100 ms", COUPLING, false, false, .1, 0, false \
 	}
 const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS] = {
-	{ "lockstep_threads", "lockstep, 2 threads", OB_SYNC_LOCKSTEP, false, false, 0, 0 },
-	{ "lockstep_processes", "lockstep, 2 processes", OB_SYNC_LOCKSTEP, true, false, 0, 0 },
-	{ "lockstep_threads_each", "lockstep, thread each", OB_SYNC_LOCKSTEP, false, true, 0, 0 },
-	{ "ledger_threads", "ledger, 2 threads", OB_SYNC_LEDGER, false, false, 0, 0 },
-	{ "ledger_processes", "ledger, 2 processes", OB_SYNC_LEDGER, true, false, 0, 0 },
-	{ "ledger_threads_each", "ledger, thread each", OB_SYNC_LEDGER, false, true, 0, 0 },
-	{ "ledger_processes_each", "ledger, process each", OB_SYNC_LEDGER, true, true, 0, 0 },
-	{ "own_threads", "own, 2 threads", OB_SYNC_OWN, false, false, 0, 0 },
-	{ "own_processes", "own, 2 processes", OB_SYNC_OWN, true, false, 0, 0 },
-	{ "own_processes_each", "own, process each", OB_SYNC_OWN, true, true, 0, 0 },
-	{ "heavy_threads", "own, heavy, 2 threads", OB_SYNC_HEAVY, false, false, 0, 0 },
-	{ "ode_threads", "own, ODE, 2 threads", OB_SYNC_ODE, false, false, 0, 0 },
+	{ "lockstep_threads", "lockstep, 2 threads", OB_SYNC_LOCKSTEP, false, false, 0, 0, true },
+	{ "lockstep_processes", "lockstep, 2 processes", OB_SYNC_LOCKSTEP, true, false, 0, 0, true },
+	{ "lockstep_threads_each", "lockstep, thread each", OB_SYNC_LOCKSTEP, false, true, 0, 0, false },
+	{ "ledger_threads", "ledger, 2 threads", OB_SYNC_LEDGER, false, false, 0, 0, true },
+	{ "ledger_processes", "ledger, 2 processes", OB_SYNC_LEDGER, true, false, 0, 0, false },
+	{ "ledger_threads_each", "ledger, thread each", OB_SYNC_LEDGER, false, true, 0, 0, false },
+	{ "ledger_processes_each", "ledger, process each", OB_SYNC_LEDGER, true, true, 0, 0, false },
+	{ "own_threads", "own, 2 threads", OB_SYNC_OWN, false, false, 0, 0, false },
+	{ "own_processes", "own, 2 processes", OB_SYNC_OWN, true, false, 0, 0, false },
+	{ "own_processes_each", "own, process each", OB_SYNC_OWN, true, true, 0, 0, true },
+	{ "heavy_threads", "own, heavy, 2 threads", OB_SYNC_HEAVY, false, false, 0, 0, false },
+	{ "ode_threads", "own, ODE, 2 threads", OB_SYNC_ODE, false, false, 0, 0, false },
 	RATE(125),
 	RATE(250),
 	RATE(500),
@@ -48,7 +49,7 @@ const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS] = {
 const ob_metric ob_sync_metrics[OB_SYNC_METRICS] = {
 	METRIC(OB_SYNC_CPU, "cpu_s_per_body_and_simulated_s", "CPU, body and s", "ms", 1e3,
 	       "CPU time of all workers over moving bodies and simulated seconds"),
-	METRIC(OB_SYNC_WALL, "wall_s_per_simulated_s", "wall, s", "ms", 1e3,
+	METRIC(OB_SYNC_WALL, "wall_s_per_simulated_s", "wall, s", "s", 1,
 	       "wall-clock time of a simulated second, with the measurement of each step"),
 	METRIC(OB_SYNC_UPDATES, "updates_per_s", "updates/s", "k", 1e-3,
 	       "steps of all simulators in a second of wall-clock time"),
@@ -62,7 +63,8 @@ const ob_metric ob_sync_metrics[OB_SYNC_METRICS] = {
 	METRIC(OB_SYNC_SIZES, "worst_penetration_sizes", "over size", "1", 1,
 	       "that over the median thickness of the bodies that move"),
 	METRIC(OB_SYNC_ENERGY, "energy_gain_max", "energy gained", "1", 1,
-	       "largest energy above that of the start, over it; work of prescribed motion is not counted"),
+	       "largest energy above that of the start, over it, 0 below 1e-12; work of prescribed motion is not "
+	       "counted"),
 	METRIC(OB_SYNC_BY_LAG, "energy_by_lag", "by late mail", "1", 1,
 	       "energy that late mail of the ledger has added, over the energy of the start: the sum over all pairs of "
 	       "each "
@@ -127,7 +129,8 @@ static char **arguments(const job *j, uint64_t seed)
 static void read_report(const job *j, const char *r, double *m)
 {
 	const bool free = j->of->coupling != OB_SYNC_LOCKSTEP;
-	const double energy = ob_json_read_number(r, "energy_start");
+	static const double rounding = 1e-12;
+	const double energy = ob_json_read_number(r, "energy_start"), gain = ob_json_read_number(r, "energy_gain_max");
 	const double simulated = ob_json_read_number(r, "simulated_s"), wall = ob_json_read_number(r, "wall_s"),
 		     steps = ob_json_read_number(r, "steps") * j->point->objects;
 	m[OB_SYNC_CPU] = ob_json_read_number(r, "cpu_s") / simulated / j->point->objects;
@@ -137,7 +140,7 @@ static void read_report(const job *j, const char *r, double *m)
 	m[OB_SYNC_LATENCY_MOST] = ob_json_read_number(r, "lag_max_s");
 	m[OB_SYNC_WORST] = ob_json_read_number(r, "worst_penetration_m");
 	m[OB_SYNC_SIZES] = m[OB_SYNC_WORST] / j->point->size;
-	m[OB_SYNC_ENERGY] = ob_json_read_number(r, "energy_gain_max");
+	m[OB_SYNC_ENERGY] = gain < rounding ? 0 : gain;
 	m[OB_SYNC_BY_LAG] = ob_json_read_number(r, "energy_by_lag_j") / (energy != 0 ? fabs(energy) : 1);
 	m[OB_SYNC_MOMENTUM] = ob_json_read_number(r, "momentum_error");
 	m[OB_SYNC_LOST] = energy - ob_json_read_number(r, "energy_end");
@@ -156,24 +159,34 @@ static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
 
 // ---- schedule
 
-static bool schedule(const ob_sync_comparison *c, uint32_t seeds, job *all, ob_trials *s)
+const ob_sync_point *ob_sync_main_point(const ob_sync_comparison *c)
+{
+	static const double usual = 100; // objects
+	const ob_sync_point *best = c->point;
+	for (const ob_sync_point *p = c->point; p < c->point + c->points; p++)
+		if (fabs(log(p->objects / usual)) < fabs(log(best->objects / usual)))
+			best = p;
+	return best;
+}
+
+static bool schedule(const ob_sync_comparison *c, const ob_sync_point *p, uint32_t seeds, job *all, ob_trials *s)
 {
 	enum { LOCKSTEP_STEPS = 60 };
 	static const double step_s = 1e-5;
-	for (uint32_t i = 0; i < c->points; i++)
-		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
-			const ob_sync_configuration *of = &ob_sync_table[w];
-			job *j = &all[i * OB_SYNC_CONFIGURATIONS + w];
-			*j = (job){ c, &c->point[i], of };
-			const double rate = of->coupling == OB_SYNC_LOCKSTEP ? LOCKSTEP_STEPS : rate_of(c, of);
-			ob_trial t = { .seed = c->point[i].seed,
-				       .guess_s = .1 + step_s * rate * c->duration * c->point[i].objects,
-				       .what = j };
-			snprintf(t.of, sizeof t.of, "%s", c->point[i].key);
-			snprintf(t.configuration, sizeof t.configuration, "%s", of->key);
-			if (!ob_trials_add(s, &t))
-				return false;
-		}
+	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+		const ob_sync_configuration *of = &ob_sync_table[w];
+		if (!of->swept && p != ob_sync_main_point(c))
+			continue;
+		all[w] = (job){ c, p, of };
+		const double rate = of->coupling == OB_SYNC_LOCKSTEP ? LOCKSTEP_STEPS : rate_of(c, of);
+		ob_trial t = { .seed = p->seed,
+			       .guess_s = .1 + step_s * rate * c->duration * p->objects,
+			       .what = &all[w] };
+		snprintf(t.of, sizeof t.of, "%s", p->key);
+		snprintf(t.configuration, sizeof t.configuration, "%s", of->key);
+		if (!ob_trials_add(s, &t))
+			return false;
+	}
 	return ob_trials_repeat(s, 0, seeds, OB_ORDER_TO_AND_FRO, true);
 }
 
@@ -182,7 +195,7 @@ static void scale_lags(ob_sync_comparison *c)
 {
 	for (uint32_t i = 0; i < c->points; i++) {
 		ob_sync_point *p = &c->point[i];
-		const double lost = ob_sync_summarise(c, p, 0, OB_SYNC_LOST).median;
+		const double lost = ob_sync_estimate(c, p, 0, OB_SYNC_LOST).value;
 		p->speed = lost > 0 ? sqrt(2 * lost / p->mass) : NAN;
 		for (size_t k = 0; k < c->records.count; k++) {
 			ob_record *r = &c->records.record[k];
@@ -193,27 +206,53 @@ static void scale_lags(ob_sync_comparison *c)
 }
 
 // CPU of a run, s, at most: a heap that explodes takes long.
-static double limit_of(const ob_sync_comparison *c)
+static double limit_of(const ob_sync_comparison *c, const ob_sync_point *p)
 {
-	double bodies = 0;
-	for (uint32_t i = 0; i < c->points; i++)
-		bodies = fmax(bodies, c->point[i].objects);
-	return 10 + .1 * bodies * c->duration;
+	return 5 + .15 * p->objects * c->duration;
 }
 
-// Runs all configurations with so many seeds, as far as they have not been run. fresh: again.
-static bool run_seeds(const ob_sync_comparison *c, uint32_t seeds, const ob_experiment *x, const char *folder,
-		      bool fresh, ob_records *records, ob_error *e)
+// Runs the configurations of a point with so many seeds, as far as they have not been run. fresh: again.
+static bool run_point(ob_sync_comparison *c, const ob_sync_point *p, uint32_t seeds, ob_experiment x,
+		      const char *folder, bool fresh, ob_error *e)
 {
-	job *all = calloc(OB_SYNC_POINTS * OB_SYNC_CONFIGURATIONS, sizeof *all);
+	job all[OB_SYNC_CONFIGURATIONS];
 	ob_trials s = { 0 };
-	bool fine = (all && schedule(c, seeds, all, &s)) || ob_fail(e, "out of memory");
+	bool fine = schedule(c, p, seeds, all, &s) || ob_fail(e, "out of memory");
 	if (fine && fresh)
-		ob_records_drop(records, &s);
-	fine = fine && ob_experiment_run(x, &s, records, folder, e);
+		ob_records_drop(&c->records, &s);
+	x.limit_s = limit_of(c, p);
+	fine = fine && ob_experiment_run(&x, &s, &c->records, folder, e);
 	ob_trials_finish(&s);
-	free(all);
 	return fine;
+}
+
+// Runs the main point with as many seeds as an interval takes, each other point with one, then each with one more as long
+// as the budget lasts for it.
+static bool run_points(ob_sync_comparison *c, const ob_experiment *x, const char *folder, bool fresh, ob_error *e)
+{
+	enum { INTERVAL = 3 };
+	const double begun = ob_clock_wall();
+	const uint32_t main_point = (uint32_t)(ob_sync_main_point(c) - c->point);
+	double longest[OB_SYNC_POINTS] = { 0 }; // s, of a seed
+	for (uint32_t seeds = 1; seeds <= c->seeds; seeds++)
+		for (uint32_t k = 0; k < c->points; k++) {
+			const uint32_t i = k == 0 ? main_point : k <= main_point ? k - 1 : k; // the main point first
+			ob_sync_point *p = &c->point[i];
+			const double since = ob_clock_wall();
+			const uint32_t least = i != main_point       ? 1
+					       : c->seeds < INTERVAL ? c->seeds
+								     : INTERVAL,
+				       more = isinf(c->budget) ? c->seeds
+					      : seeds > least  ? seeds
+							       : least;
+			if (p->seeds >= more || (p->seeds >= least && since - begun + longest[i] > c->budget))
+				continue;
+			if (!run_point(c, p, more, *x, folder, fresh && p->seeds == 0, e))
+				return false;
+			longest[i] = fmax(longest[i], (ob_clock_wall() - since) / (more - p->seeds));
+			p->seeds = more;
+		}
+	return true;
 }
 
 bool ob_sync_run(ob_sync_comparison *c, const char *commit, const char *folder, bool fresh, ob_error *e)
@@ -222,23 +261,11 @@ bool ob_sync_run(ob_sync_comparison *c, const char *commit, const char *folder, 
 				  .commit = commit,
 				  .metrics = OB_SYNC_METRICS,
 				  .metric = ob_sync_metrics,
-				  .run = run_trial,
-				  .limit_s = limit_of(c) };
-	const double begun = ob_clock_wall();
-	const uint32_t first = isfinite(c->budget) ? 1 : c->seeds;
-	uint32_t seeds = first;
-	double longest = 0; // s
-	bool fine = ob_experiment_open(&x, folder, &c->records, e);
-	for (bool more = fine; more; seeds++) {
-		const double since = ob_clock_wall();
-		fine = run_seeds(c, seeds, &x, folder, fresh && seeds == first, &c->records, e);
-		longest = fmax(longest, ob_clock_wall() - since);
-		more = fine && seeds < c->seeds && ob_clock_wall() - begun + longest < c->budget;
-	}
-	c->seeds = seeds - 1;
-	if (fine)
-		scale_lags(c);
-	return fine;
+				  .run = run_trial };
+	if (!ob_experiment_open(&x, folder, &c->records, e) || !run_points(c, &x, folder, fresh, e))
+		return false;
+	scale_lags(c);
+	return true;
 }
 
 void ob_sync_finish(ob_sync_comparison *c)
@@ -248,23 +275,26 @@ void ob_sync_finish(ob_sync_comparison *c)
 
 // ---- results
 
-ob_statistics ob_sync_summarise(const ob_sync_comparison *c, const ob_sync_point *p, int configuration,
-				ob_sync_metric m)
+static bool is_positive(ob_sync_metric m)
 {
-	return ob_records_summarise(&c->records, p->key, ob_sync_table[configuration].key, m);
+	return m != OB_SYNC_ENERGY && m != OB_SYNC_BY_LAG && m != OB_SYNC_MOMENTUM && m != OB_SYNC_LOST;
 }
 
-ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling)
+ob_estimate ob_sync_estimate(const ob_sync_comparison *c, const ob_sync_point *p, int configuration, ob_sync_metric m)
 {
-	double x[OB_SYNC_CONFIGURATIONS], y[OB_SYNC_CONFIGURATIONS];
-	size_t n = 0;
-	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
-		const double lag = ob_sync_summarise(c, p, w, OB_SYNC_LAG).median,
-			     error = ob_sync_summarise(c, p, w, OB_SYNC_SIZES).median;
-		if (ob_sync_table[w].coupling == coupling && ob_sync_table[w].delay > 0 && lag > 0 && error > 0)
-			x[n] = log(lag), y[n++] = log(error);
-	}
-	return ob_reference_line(n, x, y);
+	return ob_records_estimate(&c->records, p->key, ob_sync_table[configuration].key, m, is_positive(m));
+}
+
+static double value(const ob_sync_comparison *c, const ob_sync_point *p, int w, ob_sync_metric m)
+{
+	return ob_sync_estimate(c, p, w, m).value;
+}
+
+// True for configurations that differ in the injected lag alone.
+static bool is_of_lags(int w, ob_sync_coupling coupling)
+{
+	const ob_sync_configuration *of = &ob_sync_table[w];
+	return of->coupling == coupling && !of->processes && !of->each && of->rate == 0;
 }
 
 bool ob_sync_is_of_rates(int w)
@@ -273,21 +303,28 @@ bool ob_sync_is_of_rates(int w)
 	return of->coupling == OB_SYNC_LEDGER && !of->processes && !of->each && of->delay == 0;
 }
 
+ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling)
+{
+	double x[OB_SYNC_CONFIGURATIONS], y[OB_SYNC_CONFIGURATIONS];
+	size_t n = 0;
+	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+		const double lag = value(c, p, w, OB_SYNC_LAG), error = value(c, p, w, OB_SYNC_SIZES);
+		if (is_of_lags(w, coupling) && ob_sync_table[w].delay > 0 && lag > 0 && error > 0)
+			x[n] = log(lag), y[n++] = log(error);
+	}
+	return ob_reference_line(n, x, y);
+}
+
 ob_line ob_sync_order_of_step(const ob_sync_comparison *c, const ob_sync_point *p)
 {
 	double x[OB_SYNC_CONFIGURATIONS], y[OB_SYNC_CONFIGURATIONS];
 	size_t n = 0;
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
-		const double error = ob_sync_summarise(c, p, w, OB_SYNC_SIZES).median;
+		const double error = value(c, p, w, OB_SYNC_SIZES);
 		if (ob_sync_is_of_rates(w) && error > 0)
 			x[n] = -log(rate_of(c, &ob_sync_table[w])), y[n++] = log(error);
 	}
 	return ob_reference_line(n, x, y);
-}
-
-static double median(const ob_sync_comparison *c, const ob_sync_point *p, int w, ob_sync_metric m)
-{
-	return ob_sync_summarise(c, p, w, m).median;
 }
 
 // Free configuration without an injected lag, of a coupling or of any (OB_SYNC_COUPLINGS), with the least penetration;
@@ -297,159 +334,300 @@ static int best_free(const ob_sync_comparison *c, const ob_sync_point *p, ob_syn
 	int best = -1;
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 		const ob_sync_configuration *of = &ob_sync_table[w];
-		const double error = median(c, p, w, OB_SYNC_WORST);
+		const double error = value(c, p, w, OB_SYNC_WORST);
 		if (of->coupling == OB_SYNC_LOCKSTEP || of->delay > 0 || of->rate > 0 || isnan(error) ||
 		    (coupling != OB_SYNC_COUPLINGS && of->coupling != coupling))
 			continue;
-		if (best < 0 || error < median(c, p, best, OB_SYNC_WORST))
+		if (best < 0 || error < value(c, p, best, OB_SYNC_WORST))
 			best = w;
 	}
 	return best;
 }
 
-// Largest lag, s, up to which a coupling's worst penetration stays below a share of the size; -1: not even without;
-// 0: none was seen, as nothing touched.
+// ---- texts
+
+typedef struct text {
+	char *to;
+	size_t room, n;
+} text;
+
+static void say(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void say(text *t, const char *format, ...)
+{
+	va_list words;
+	va_start(words, format);
+	if (t->n < t->room)
+		t->n += (size_t)vsnprintf(t->to + t->n, t->room - t->n, format, words);
+	va_end(words);
+}
+
+// A number with two digits, or all before the point.
+static void say_number(text *t, double x)
+{
+	say(t, fabs(x) < 100 ? "%.2g" : "%.0f", x);
+}
+
+// A value in a unit for people, with its interval.
+static void say_estimate(text *t, ob_estimate e, double scale)
+{
+	say_number(t, scale * e.value);
+	if (isnan(e.low))
+		return;
+	say(t, " (");
+	say_number(t, scale * e.low);
+	say(t, " to ");
+	say_number(t, scale * e.high);
+	say(t, ")");
+}
+
+// ---- hypotheses
+
+typedef enum verdict { NOT_TESTED, UNDECIDED, CONTRADICTED, SUPPORTED } verdict;
+static const char *const verdict_word[] = { "Not tested.", "Undecided.", "Contradicted.", "Not contradicted." };
+
+static verdict worse(verdict a, verdict b)
+{
+	return a == CONTRADICTED || b == CONTRADICTED ? CONTRADICTED : a < b ? a : b;
+}
+
+// Order of the error in the lag between two configurations, from ratios seed by seed.
+static ob_estimate order_between(const ob_sync_comparison *c, const ob_sync_point *p, int from, int to)
+{
+	const char *a = ob_sync_table[to].key, *b = ob_sync_table[from].key;
+	const ob_estimate error = ob_records_estimate_ratio(&c->records, p->key, a, b, OB_SYNC_SIZES);
+	const double decades = log(value(c, p, to, OB_SYNC_LAG) / value(c, p, from, OB_SYNC_LAG));
+	return (ob_estimate){ error.n, log(error.value) / decades, log(error.low) / decades,
+			      log(error.high) / decades };
+}
+
+// Says the orders of a coupling's error over decades of the lag. Overlapping intervals contradict no fixed power.
+static verdict judge_coupling(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling,
+			      const char *name, text *t)
+{
+	static const double bounds[] = { 0, .001, .01, .1 }; // s, injected
+	double least_high = INFINITY, most_low = -INFINITY;
+	int last = -1;
+	bool known = true;
+	say(t, " %s: powers", name);
+	for (int w = 0, k = 0; w < OB_SYNC_CONFIGURATIONS && k < 4; w++) {
+		if (!is_of_lags(w, coupling) || ob_sync_table[w].delay != bounds[k])
+			continue;
+		if (last >= 0) {
+			const ob_estimate order = order_between(c, p, last, w);
+			say(t, "%s ", k > 1 ? "," : "");
+			say_estimate(t, order, 1);
+			say(t, " from ");
+			say_number(t, 1e3 * value(c, p, last, OB_SYNC_LATENCY));
+			say(t, " to ");
+			say_number(t, 1e3 * value(c, p, w, OB_SYNC_LATENCY));
+			say(t, " ms");
+			least_high = fmin(least_high, order.high), most_low = fmax(most_low, order.low);
+			known &= !isnan(order.low);
+		}
+		last = w, k++;
+	}
+	if (!known || (most_low <= 0 && least_high >= 0 && most_low <= least_high)) {
+		say(t, known ? ": no power is excluded, 0 neither." : ".");
+		return UNDECIDED;
+	}
+	if (most_low > least_high || least_high < 0) {
+		say(t, ": no fixed power.");
+		return CONTRADICTED;
+	}
+	say(t, ": any power from ");
+	say_number(t, most_low);
+	say(t, " to ");
+	say_number(t, least_high);
+	say(t, " describes it.");
+	return SUPPORTED;
+}
+
+static verdict judge_power(const ob_sync_comparison *c, const ob_sync_point *p, text *t)
+{
+	const verdict ledger = judge_coupling(c, p, OB_SYNC_LEDGER, "Ledger", t),
+		      own = judge_coupling(c, p, OB_SYNC_OWN, "Own", t);
+	const ob_line step = ob_sync_order_of_step(c, p);
+	if (!isnan(step.slope_low))
+		say(t,
+		    " Beside it, without an injected lag, the ledger's error grows with the length of a step to the "
+		    "power of %.2f (%.2f to %.2f).",
+		    step.slope, step.slope_low, step.slope_high);
+	say(t, " Scenes of other speeds and sizes would test whether the product alone counts.");
+	return worse(ledger, own);
+}
+
+static verdict judge_momentum(const ob_sync_comparison *c, const ob_sync_point *p, text *t)
+{
+	const int l = best_free(c, p, OB_SYNC_LEDGER), o = best_free(c, p, OB_SYNC_OWN);
+	const ob_estimate ledger = ob_sync_estimate(c, p, l, OB_SYNC_MOMENTUM),
+			  own = ob_sync_estimate(c, p, o, OB_SYNC_MOMENTUM);
+	if (!ledger.n || !own.n) {
+		say(t,
+		    " Something is fixed in this scene, and takes up momentum. (The program's tests hold the ledger, "
+		    "with the mail under way, to 1e-12 for random lags, jitter, orders and kills.)");
+		return NOT_TESTED;
+	}
+	say(t, " Change of momentum, without the mail under way: ");
+	say_estimate(t, ledger, 1);
+	say(t, " by the ledger, ");
+	say_estimate(t, own, 1);
+	say(t, " by own responses.");
+	return ledger.high < own.low ? SUPPORTED : ledger.low > own.high ? CONTRADICTED : UNDECIDED;
+}
+
+// Energy gained and late mail's are those of one run, so at each injected lag they are compared by their intervals.
+static verdict judge_energy(const ob_sync_comparison *c, const ob_sync_point *p, text *t)
+{
+	static const double noticeable = 1e-6;
+	verdict v = NOT_TESTED;
+	say(t, " Energy gained, and late mail's, over that at the start:");
+	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+		const ob_estimate gained = ob_sync_estimate(c, p, w, OB_SYNC_ENERGY),
+				  mail = ob_sync_estimate(c, p, w, OB_SYNC_BY_LAG);
+		if (!is_of_lags(w, OB_SYNC_LEDGER) || ob_sync_table[w].delay == 0 || !gained.n || !mail.n)
+			continue;
+		say(t, " %g ms: ", 1e3 * ob_sync_table[w].delay);
+		if (gained.high < noticeable || gained.value < noticeable)
+			say(t, "none");
+		else
+			say_estimate(t, gained, 1);
+		say(t, ", ");
+		say_estimate(t, mail, 1);
+		say(t, ";");
+		const verdict here = isnan(gained.low)                                     ? UNDECIDED
+				     : gained.high < noticeable || gained.high <= mail.low ? SUPPORTED
+				     : gained.low > fmax(mail.high, noticeable)            ? CONTRADICTED
+											   : UNDECIDED;
+		v = v == NOT_TESTED ? here : worse(v, here);
+	}
+	t->n -= t->n < t->room && t->to[t->n - 1] == ';';
+	say(t,
+	    ". What hits lose is not measured apart, so late mail may have added more than was gained, but it cannot "
+	    "be shown to be the only source.");
+	return v;
+}
+
+void ob_sync_judge(const ob_sync_comparison *c, int hypothesis, char *to, size_t room)
+{
+	static verdict (*const judge[OB_SYNC_HYPOTHESES])(const ob_sync_comparison *, const ob_sync_point *,
+							  text *) = { judge_power, judge_momentum, judge_energy };
+	const ob_sync_point *p = ob_sync_main_point(c);
+	char reasons[2048] = "";
+	text t = { reasons, sizeof reasons, 0 };
+	verdict v = NOT_TESTED;
+	if (best_free(c, p, OB_SYNC_LEDGER) < 0 || best_free(c, p, OB_SYNC_OWN) < 0)
+		say(&t, " Too little was measured.");
+	else
+		v = judge[hypothesis](c, p, &t);
+	snprintf(to, room, "%s%s", verdict_word[v], reasons);
+}
+
+// ---- recommendation
+
+// Largest lag, s, up to which the interval of a coupling's worst penetration stays below a share of the size; -1: not even
+// without; 0: none was seen, as nothing touched.
 static double tolerable_lag(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling,
 			    double share)
 {
 	double most = -1;
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
-		const ob_sync_configuration *of = &ob_sync_table[w];
-		if (of->coupling != coupling || of->processes || of->each || of->rate > 0)
+		const ob_estimate error = ob_sync_estimate(c, p, w, OB_SYNC_SIZES);
+		if (!is_of_lags(w, coupling))
 			continue;
-		if (!(median(c, p, w, OB_SYNC_SIZES) <= share))
+		if (!((isnan(error.high) ? error.value : error.high) <= share))
 			break; // rows of a coupling stand in the order of lags
-		most = fmax(most, fmax(median(c, p, w, OB_SYNC_LATENCY), 0));
+		most = fmax(most, fmax(value(c, p, w, OB_SYNC_LATENCY), 0));
 	}
 	return most;
 }
 
-// Least injected lag, s, with which a coupling gains energy; NaN: none does.
-static double gains_from(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling)
+// Least injected lag, s, with which a coupling gains energy, by the whole interval or possibly; NaN: none does.
+static double gains_from(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling, bool possibly)
 {
 	static const double noticeable = 1e-6;
-	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++)
-		if (ob_sync_table[w].coupling == coupling && ob_sync_table[w].rate == 0 &&
-		    median(c, p, w, OB_SYNC_ENERGY) > noticeable)
+	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+		const ob_estimate gain = ob_sync_estimate(c, p, w, OB_SYNC_ENERGY);
+		const double edge = possibly ? gain.high : gain.low;
+		if (is_of_lags(w, coupling) && ob_sync_table[w].delay > 0 &&
+		    (isnan(edge) ? gain.value : edge) > noticeable)
 			return ob_sync_table[w].delay;
+	}
 	return NAN;
 }
 
-// Appends the order of an error with its interval.
-static size_t print_order(char *to, size_t room, const char *of, ob_line order)
+// Says which configurations without an injected lag gained energy in some run.
+static void say_gains(text *t, const ob_sync_comparison *c, const ob_sync_point *p)
 {
-	if (isnan(order.slope))
-		return 0;
-	if (isnan(order.slope_low))
-		return (size_t)snprintf(to, room, " %s: %.2f.", of, order.slope);
-	return (size_t)snprintf(to, room, " %s: %.2f (%.2f to %.2f).", of, order.slope, order.slope_low,
-				order.slope_high);
-}
-
-static void judge_power(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room)
-{
-	const ob_line ledger = ob_sync_order(c, p, OB_SYNC_LEDGER), own = ob_sync_order(c, p, OB_SYNC_OWN);
-	size_t n = (size_t)snprintf(to, room, "Powers of the lag, each over %zu lags.", ledger.n);
-	n += print_order(to + n, n < room ? room - n : 0, "Ledger", ledger);
-	n += print_order(to + n, n < room ? room - n : 0, "Own", own);
-	n += print_order(to + n, n < room ? room - n : 0, "Length of a step, ledger, no injected lag",
-			 ob_sync_order_of_step(c, p));
-	const double width = fmax(ledger.slope_high - ledger.slope_low, own.slope_high - own.slope_low);
-	if (n < room && !isnan(width))
-		snprintf(to + n, room - n, " %s",
-			 width < .5 ? "One power describes each."
-				    : "One power does not describe them: the intervals are wide, so the curves bend.");
-}
-
-static void judge_momentum(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room)
-{
-	const double ledger = median(c, p, best_free(c, p, OB_SYNC_LEDGER), OB_SYNC_MOMENTUM),
-		     own = median(c, p, best_free(c, p, OB_SYNC_OWN), OB_SYNC_MOMENTUM);
-	if (isnan(ledger) || isnan(own))
-		snprintf(to, room,
-			 "Not tested by this scene: something is fixed in it, and takes up momentum. A test of the "
-			 "program holds the ledger to 1e-12 with the mail under way, for random lags, jitter, orders "
-			 "and kills.");
-	else
-		snprintf(to, room,
-			 "Change of momentum, without the mail under way: %.2g by the ledger, %.2g by own responses.",
-			 ledger, own);
-}
-
-static void judge_energy(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room)
-{
-	double gained = 0, by_mail = -INFINITY, mildest = INFINITY;
+	bool any = false;
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
-		if (ob_sync_table[w].coupling != OB_SYNC_LEDGER || isnan(median(c, p, w, OB_SYNC_BY_LAG)))
+		const ob_estimate gain = ob_sync_estimate(c, p, w, OB_SYNC_ENERGY);
+		if (ob_sync_table[w].delay > 0 || !(gain.value > 0))
 			continue;
-		gained = fmax(gained, median(c, p, w, OB_SYNC_ENERGY));
-		by_mail = fmax(by_mail, median(c, p, w, OB_SYNC_BY_LAG));
-		if (ob_sync_table[w].delay > 0 && median(c, p, w, OB_SYNC_BY_LAG) > 0)
-			mildest = fmin(mildest, ob_sync_table[w].delay);
+		say(t, "%s %s by ", any ? "," : " Without an injected lag some runs gained energy, in the mean:",
+		    ob_sync_table[w].title);
+		say_estimate(t, gain, 1);
+		any = true;
 	}
-	size_t n = (size_t)snprintf(
-		to, room,
-		"Of the energy at the start, late mail added up to %.2g, and the bodies had at most %.2g more than "
-		"at the start: what hits lose is not counted against it.",
-		by_mail, gained);
-	if (n < room && isfinite(mildest))
-		snprintf(to + n, room - n,
-			 " Late mail added energy from an injected lag of %.3g ms on, and took some below.",
-			 1e3 * mildest);
+	say(t, "%s", any ? " of that at the start." : " Without an injected lag no run gained energy.");
 }
 
-void ob_sync_judge(const ob_sync_comparison *c, const ob_sync_point *p, int hypothesis, char *to, size_t room)
+// The advice that ratios of free running to lockstep allow.
+static const char *advice(ob_estimate error, ob_estimate cost)
 {
-	static void (*const judge[])(const ob_sync_comparison *, const ob_sync_point *, char *,
-				     size_t) = { judge_power, judge_momentum, judge_energy };
-	if (best_free(c, p, OB_SYNC_LEDGER) < 0 || best_free(c, p, OB_SYNC_OWN) < 0)
-		snprintf(to, room, "Too little was measured.");
-	else
-		judge[hypothesis](c, p, to, room);
+	if (isnan(error.low) || isnan(cost.low))
+		return "Fewer than three seeds decide nothing.";
+	if (cost.low <= 1 && cost.high >= 1)
+		return error.low > 1 ? "Which of the two is cheaper is undecided; lockstep is more accurate."
+				     : "Which of the two is cheaper is undecided.";
+	if (error.low > 1)
+		return cost.low > 1 ? "So run in lockstep, unless simulators must not wait for each other."
+				    : "So choose by need: free running is cheaper, lockstep more accurate.";
+	if (cost.high < 1)
+		return "It was not shown to be less accurate, so free running costs nothing here: take it where "
+		       "simulators must not wait.";
+	return "It was not shown to be less accurate: take it where simulators must not wait, and pay the CPU.";
 }
 
 void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room)
 {
 	static const double share = .1; // of the size: penetration that counts as large
 	const int free = best_free(c, p, OB_SYNC_COUPLINGS);
-	const double exact = median(c, p, 0, OB_SYNC_WORST), cost = median(c, p, 0, OB_SYNC_CPU);
-	if (free < 0 || isnan(exact)) {
-		snprintf(to, room, "Too little was measured to recommend anything.");
+	text t = { to, room, 0 };
+	if (free < 0 || isnan(value(c, p, 0, OB_SYNC_WORST))) {
+		say(&t, "Too little was measured to recommend anything.");
 		return;
 	}
 	const ob_sync_configuration *of = &ob_sync_table[free];
-	const double error = median(c, p, free, OB_SYNC_WORST), ratio = median(c, p, free, OB_SYNC_CPU) / cost;
-	const ob_statistics ratios =
-		ob_records_ratio(&c->records, p->key, of->key, ob_sync_table[0].key, OB_SYNC_CPU, true);
-	char interval[64] = "";
-	if (!isnan(ratios.mean_low) && c->seeds > 2)
-		snprintf(interval, sizeof interval, " (%.2g to %.2g)", exp(ratios.mean_low), exp(ratios.mean_high));
-	size_t n = (size_t)snprintf(
-		to, room,
-		"Lockstep kept bodies within %.3g mm of each other's surfaces. The most accurate free form "
-		"(%s) let them sink in by %.3g mm, and took %.2g times the CPU%s. ",
-		1e3 * exact, of->title, 1e3 * error, ratio, interval);
-	n += (size_t)snprintf(to + n, room - n, "%s ",
-			      error <= exact && ratio <= 1
-				      ? "So free running costs nothing here: take it where simulators must not wait."
-			      : error <= exact
-				      ? "It is as accurate: take it where simulators must not wait, and pay the CPU."
-			      : ratio <= 1 ? "So choose by need: free running is cheaper, lockstep more accurate."
-					   : "So run in lockstep, unless simulators must not wait for each other.");
-	const double lag = tolerable_lag(c, p, of->coupling, share), gains = gains_from(c, p, of->coupling);
-	if (n < room && lag > 0)
-		n += (size_t)snprintf(
-			to + n, room - n,
-			"Free simulators of this coupling stay within %.0f %% of the bodies' size up to a latency of "
-			"%.3g ms, which is a lag of %.2g sizes at these speeds. ",
-			100 * share, 1e3 * lag, lag * p->speed / p->size);
-	else if (n < room && lag < 0)
-		n += (size_t)snprintf(to + n, room - n,
-				      "Even without an injected lag it sinks in by more than %.0f %% of their size. ",
-				      100 * share);
-	if (n < room && isnan(gains))
-		snprintf(to + n, room - n, "No lag that was tried made it gain energy.");
-	else if (n < room)
-		snprintf(to + n, room - n,
-			 "It gains energy from an injected lag of %.3g ms on: bound the lag below that.", 1e3 * gains);
+	const char *lockstep = ob_sync_table[0].key;
+	const ob_estimate error = ob_records_estimate_ratio(&c->records, p->key, of->key, lockstep, OB_SYNC_WORST),
+			  cost = ob_records_estimate_ratio(&c->records, p->key, of->key, lockstep, OB_SYNC_CPU);
+	say(&t, "Lockstep kept bodies within ");
+	say_estimate(&t, ob_sync_estimate(c, p, 0, OB_SYNC_WORST), 1e3);
+	say(&t, " mm of each other's surfaces. The most accurate free form (%s) let them sink in by ", of->title);
+	say_estimate(&t, ob_sync_estimate(c, p, free, OB_SYNC_WORST), 1e3);
+	say(&t, " mm, ");
+	say_estimate(&t, error, 1);
+	say(&t, " times as far, and took ");
+	say_estimate(&t, cost, 1);
+	say(&t, " times the CPU. %s", advice(error, cost));
+	if (p != ob_sync_main_point(c))
+		return;
+	say_gains(&t, c, p);
+	const double lag = tolerable_lag(c, p, of->coupling, share), gains = gains_from(c, p, of->coupling, false),
+		     may_gain = gains_from(c, p, of->coupling, true);
+	if (lag > 0)
+		say(&t,
+		    " Free simulators of this coupling stay within %.0f %% of the bodies' size up to a latency of %.3g "
+		    "ms, which is a lag of %.2g sizes at these speeds.",
+		    100 * share, 1e3 * lag, lag * p->speed / p->size);
+	else if (lag < 0)
+		say(&t, " Even without an injected lag it may sink in by more than %.0f %% of their size.",
+		    100 * share);
+	if (isnan(may_gain))
+		say(&t, " No injected lag made this coupling gain energy.");
+	else if (isnan(gains))
+		say(&t, " From an injected lag of %.3g ms on it may gain energy: that is undecided.", 1e3 * may_gain);
+	else
+		say(&t, " It gains energy from an injected lag of %.3g ms on: bound the lag below %s.", 1e3 * gains,
+		    may_gain < gains ? "that, and better below the lags where that is undecided" : "that");
 }

@@ -2,10 +2,13 @@
 // cost and the error of each. An experiment (experiment/) in which a trial is an `obsim run` of its own.
 //
 // A case is a sweep point, a configuration a row of ob_sync_table. Samples are seeds: a free run differs each time, and a
-// scene that draws random numbers does so with each seed.
+// scene that draws random numbers does so with each seed. If there are several points, the one nearest to a hundred objects runs all
+// configurations, the others those that show how cost and error grow with the number of simulators. Large points get fewer
+// seeds if time is short.
 #ifndef OB_COMPARE_SYNC_H
 #define OB_COMPARE_SYNC_H
 
+#include "experiment/analysis.h"
 #include "experiment/experiment.h"
 #include "reference/statistics.h"
 
@@ -24,6 +27,7 @@ typedef struct ob_sync_configuration {
 	bool processes, each; // each: a worker for each object; else two workers
 	double delay; // s after which a publication is seen
 	double rate; // Hz, of steps; 0: the comparison's
+	bool swept; // runs at each point of a sweep
 } ob_sync_configuration;
 
 enum { OB_SYNC_CONFIGURATIONS = 26, OB_SYNC_POINTS = 16, OB_SYNC_DEFINES = 64 };
@@ -54,6 +58,7 @@ typedef struct ob_sync_point {
 	uint32_t objects; // that move
 	uint64_t seed;
 	double size, mass; // m, median thickness of what moves; kg, all of it
+	uint32_t seeds; // made, after ob_sync_run
 	double speed; // m/s: what the energy that lockstep loses is worth; after ob_sync_run
 } ob_sync_point;
 
@@ -61,8 +66,9 @@ typedef struct ob_sync_comparison {
 	const char *scene; // path
 	const char *define[OB_SYNC_DEFINES]; // "name=value" of -D
 	uint32_t defines, points;
-	uint32_t seeds; // at most; after ob_sync_run: number that was run
-	double budget; // s, wall: no further seed is begun that would not be done by then; the first is run in any case
+	uint32_t seeds; // most of a point
+	double budget; // s, wall: a point gets no further seed that would not be done by then; three of the main point and one
+		// of each other are run in any case
 	double duration, rate, jitter; // s, Hz, share: of free runs
 	ob_sync_point point[OB_SYNC_POINTS];
 	ob_records records; // after ob_sync_run
@@ -71,20 +77,24 @@ typedef struct ob_sync_comparison {
 // Runs the trials that are missing in the folder (NULL: nothing is stored); fresh: all.
 bool ob_sync_run(ob_sync_comparison *c, const char *commit, const char *folder, bool fresh, ob_error *e);
 void ob_sync_finish(ob_sync_comparison *c);
-// Median and interval of a metric over seeds. n = 0: it was not measured.
-ob_statistics ob_sync_summarise(const ob_sync_comparison *c, const ob_sync_point *p, int configuration,
-				ob_sync_metric m);
+// Point with all configurations.
+const ob_sync_point *ob_sync_main_point(const ob_sync_comparison *c);
+// Mean of a metric over seeds, with its interval. n = 0: it was not measured.
+ob_estimate ob_sync_estimate(const ob_sync_comparison *c, const ob_sync_point *p, int configuration, ob_sync_metric m);
 
-// Order of a coupling's error in the lag, with its interval of 95 %: slope of the worst penetration over the lag, both
-// logarithmic. slope NaN: fewer than two lags were run.
+// Order of a coupling's error in the injected lag, with its interval of 95 %: slope of the worst penetration over the lag,
+// both logarithmic. slope NaN: fewer than two lags were run.
 ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling);
 // True for configurations that differ in the rate alone.
 bool ob_sync_is_of_rates(int configuration);
 // Order of the ledger's error in the length of a step, without an injected lag.
 ob_line ob_sync_order_of_step(const ob_sync_comparison *c, const ob_sync_point *p);
-// Judges each hypothesis of the page, 0 to 2, by the figures.
-void ob_sync_judge(const ob_sync_comparison *c, const ob_sync_point *p, int hypothesis, char *to, size_t room);
-// Recommendation by rules, from the figures alone.
+
+enum { OB_SYNC_HYPOTHESES = 3 };
+// Judges a hypothesis of the page by the figures of the main point. The first word is the verdict: "Undecided" if intervals
+// overlap.
+void ob_sync_judge(const ob_sync_comparison *c, int hypothesis, char *to, size_t room);
+// Recommendation by rules, from the figures and their intervals alone.
 void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room);
 
 void ob_sync_print(const ob_sync_comparison *c, FILE *f, size_t width);

@@ -10,53 +10,59 @@
 #include "experiment/table.h"
 #include "sync_texts.h"
 
-#define BY_LAG_TITLE "Energy by late mail / energy at the start"
-
 static const char *const coupling_title[OB_SYNC_COUPLINGS] = { "lockstep", "ledger", "own", "own, heavy", "own, ODE" };
-
-static bool was_run(const ob_sync_comparison *c, const ob_sync_point *p, int w)
-{
-	return ob_sync_summarise(c, p, w, OB_SYNC_CPU).n > 0;
-}
 
 // True if any configuration measured it: momentum is measured only where nothing is fixed.
 static bool was_measured(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_metric m)
 {
 	bool any = false;
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++)
-		any |= ob_sync_summarise(c, p, w, m).n > 0 && !isnan(ob_sync_summarise(c, p, w, m).median);
+		any |= ob_sync_estimate(c, p, w, m).n > 0;
 	return any;
+}
+
+static bool is_shown(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_metric m)
+{
+	return m != OB_SYNC_LATENCY_MOST && m != OB_SYNC_SIZES && was_measured(c, p, m);
+}
+
+// Adds a mean with its interval, in the metric's unit for people.
+static void add_cell(ob_table *t, ob_estimate e, double scale)
+{
+	const double v = scale * e.value, low = scale * e.low, high = scale * e.high;
+	if (!e.n)
+		ob_table_add(t, "–");
+	else
+		ob_table_add(t, "%.3g", v);
+	if (low < high)
+		ob_table_small(t, "%.3g to %.3g", low, high);
 }
 
 static ob_table *table_of(const ob_sync_comparison *c, const ob_sync_point *p)
 {
 	char align[OB_SYNC_METRICS + 1] = "l";
 	for (int m = 0; m < OB_SYNC_SHOWN; m++)
-		strcat(align, was_measured(c, p, m) ? "r" : "");
+		strcat(align, is_shown(c, p, m) ? "r" : "");
 	ob_table *t = ob_table_new(align);
 	if (!t)
 		return NULL;
 	ob_table_add(t, "%s", "");
 	for (int m = 0; m < OB_SYNC_SHOWN; m++) {
 		const char *unit = ob_sync_metrics[m].unit;
-		if (!was_measured(c, p, m))
+		if (!is_shown(c, p, m))
 			continue;
 		ob_table_add(t, "%s", ob_sync_metrics[m].title);
 		if (strcmp(unit, "1") != 0)
 			ob_table_small(t, "%s", unit);
 	}
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
-		if (!was_run(c, p, w))
+		if (!ob_sync_estimate(c, p, w, OB_SYNC_CPU).n)
 			continue;
 		ob_table_add(t, "%s", ob_sync_table[w].title);
 		for (int m = 0; m < OB_SYNC_SHOWN; m++) {
-			if (!was_measured(c, p, m))
+			if (!is_shown(c, p, m))
 				continue;
-			const ob_statistics s = ob_sync_summarise(c, p, w, m);
-			const double scale = ob_sync_metrics[m].scale;
-			ob_table_add(t, isnan(s.median) ? "–" : "%.3g", scale * s.median);
-			if (!isnan(s.median_low))
-				ob_table_small(t, "%.3g to %.3g", scale * s.median_low, scale * s.median_high);
+			add_cell(t, ob_sync_estimate(c, p, w, m), ob_sync_metrics[m].scale);
 		}
 	}
 	return t;
@@ -81,7 +87,7 @@ void ob_sync_print(const ob_sync_comparison *c, FILE *f, size_t width)
 		size_t from = 0;
 		ob_table *t = table_of(c, p);
 		fprintf(f, "%s%s%s, %" PRIu32 " objects, %" PRIu32 " seed%s\n\n", c->scene, *p->define ? ", " : "",
-			p->define, p->objects, c->seeds, c->seeds == 1 ? "" : "s");
+			p->define, p->objects, p->seeds, p->seeds == 1 ? "" : "s");
 		if (t)
 			ob_table_print(t, f, width);
 		ob_table_free(t);
@@ -94,83 +100,100 @@ void ob_sync_print(const ob_sync_comparison *c, FILE *f, size_t width)
 
 // ---- diagrams
 
-static ob_chart *begin_chart(const ob_sync_comparison *c, const ob_sync_point *p)
+// p: NULL for all points.
+static ob_chart *begin_chart(const ob_sync_comparison *c, const ob_sync_point *p, const char *title, const char *x,
+			     const char *y)
 {
 	ob_chart *d = ob_chart_new();
-	if (d)
-		snprintf(d->subtitle, sizeof d->subtitle,
-			 "%.150s %s, %" PRIu32 " objects, medians of %" PRIu32 " seeds; %.60s", c->scene, p->define,
-			 p->objects, c->seeds, c->records.commit);
+	if (!d)
+		return NULL;
+	size_t n = (size_t)snprintf(d->subtitle, sizeof d->subtitle, "%.150s", c->scene);
+	if (p)
+		snprintf(d->subtitle + n, sizeof d->subtitle - n,
+			 " %s, %" PRIu32 " objects, means of %" PRIu32 " seeds; %.60s", p->define, p->objects, p->seeds,
+			 c->records.commit);
+	else
+		snprintf(d->subtitle + n, sizeof d->subtitle - n, ", means over seeds; %.60s", c->records.commit);
+	snprintf(d->title, sizeof d->title, "%s", title);
+	snprintf(d->x_label, sizeof d->x_label, "%s", x);
+	snprintf(d->y_label, sizeof d->y_label, "%s", y);
+	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
 	return d;
 }
 
-static void add_point(ob_chart *d, const ob_sync_comparison *c, const ob_sync_point *p, int w, ob_sync_metric along,
-		      ob_sync_metric up)
+// Adds a point with its interval.
+static void add_point(ob_chart *d, double x, ob_estimate y, double scale, const char *of)
 {
-	const ob_statistics x = ob_sync_summarise(c, p, w, along), y = ob_sync_summarise(c, p, w, up);
-	const double sx = ob_sync_metrics[along].scale, sy = ob_sync_metrics[up].scale;
 	char hint[192];
-	if (isnan(x.median) || isnan(y.median))
+	if (isnan(x) || isnan(y.value))
 		return;
-	snprintf(hint, sizeof hint, "%s: %.3g, %.3g", ob_sync_table[w].title, sx * x.median, sy * y.median);
-	ob_plot_point *at = ob_chart_add(d, sx * x.median, sy * y.median, "", hint);
-	const bool known = !isnan(y.median_low);
-	at->low = known ? sy * y.median_low : y.n > 1 ? sy * y.least : 0;
-	at->high = known ? sy * y.median_high : y.n > 1 ? sy * y.most : 0;
+	snprintf(hint, sizeof hint, "%s: %.3g, %.3g", of, x, scale * y.value);
+	ob_plot_point *at = ob_chart_add(d, x, scale * y.value, "", hint);
+	if (!isnan(y.low))
+		at->low = scale * y.low, at->high = scale * y.high;
 }
 
-// An error over lag x speed / size, a curve for each coupling, on two threads.
-static ob_chart *chart_lags(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_metric up, const char *title,
-			    bool slopes)
+// Adds a curve of a coupling's configurations with two threads over the lag.
+static void add_lags(ob_chart *d, const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling,
+		     ob_sync_metric up)
 {
-	ob_chart *d = begin_chart(c, p);
-	if (!d)
-		return NULL;
-	snprintf(d->title, sizeof d->title, "%s over the lag", title);
-	snprintf(d->x_label, sizeof d->x_label, "lag × speed / size");
-	snprintf(d->y_label, sizeof d->y_label, "%s", title);
-	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
-	for (int k = OB_SYNC_LEDGER; k < OB_SYNC_COUPLINGS; k++) {
+	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
+		const ob_sync_configuration *of = &ob_sync_table[w];
+		if (of->coupling == coupling && !of->processes && !of->each && of->rate == 0)
+			add_point(d, ob_sync_estimate(c, p, w, OB_SYNC_LAG).value, ob_sync_estimate(c, p, w, up), 1,
+				  of->title);
+	}
+}
+
+static ob_chart *chart_error(const ob_sync_comparison *c, const ob_sync_point *p)
+{
+	ob_chart *d = begin_chart(c, p, "Worst penetration over the lag, two threads", "lag × speed / size",
+				  "worst penetration / size");
+	for (int k = OB_SYNC_LEDGER; d && k < OB_SYNC_COUPLINGS; k++) {
 		const ob_line order = ob_sync_order(c, p, k);
 		char name[128];
-		snprintf(name, sizeof name, slopes && !isnan(order.slope) ? "%s: slope %.2f" : "%s", coupling_title[k],
+		snprintf(name, sizeof name, isnan(order.slope) ? "%s" : "%s: slope %.2f", coupling_title[k],
 			 order.slope);
 		ob_chart_begin(d, k - 1, false, name);
-		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
-			const ob_sync_configuration *of = &ob_sync_table[w];
-			if ((int)of->coupling == k && !of->processes && !of->each && of->rate == 0)
-				add_point(d, c, p, w, OB_SYNC_LAG, up);
-		}
+		add_lags(d, c, p, k, OB_SYNC_SIZES);
 	}
+	return d;
+}
+
+static ob_chart *chart_energy(const ob_sync_comparison *c, const ob_sync_point *p)
+{
+	ob_chart *d = begin_chart(c, p, "Energy over the lag, two threads", "lag × speed / size",
+				  "energy / energy at the start");
+	if (!d)
+		return NULL;
+	d->plot.y.scale = OB_SCALE_LINEAR;
+	ob_chart_begin(d, OB_SYNC_LEDGER - 1, false, "ledger: gained");
+	add_lags(d, c, p, OB_SYNC_LEDGER, OB_SYNC_ENERGY);
+	ob_chart_begin(d, OB_SYNC_LEDGER - 1, true, "ledger: by late mail");
+	add_lags(d, c, p, OB_SYNC_LEDGER, OB_SYNC_BY_LAG);
+	ob_chart_begin(d, OB_SYNC_OWN - 1, false, "own: gained");
+	add_lags(d, c, p, OB_SYNC_OWN, OB_SYNC_ENERGY);
 	return d;
 }
 
 // Worst penetration over the rate of steps, with the ledger on two threads and no injected lag; lockstep beside it.
 static ob_chart *chart_rates(const ob_sync_comparison *c, const ob_sync_point *p)
 {
-	ob_chart *d = begin_chart(c, p);
+	ob_chart *d = begin_chart(c, p, "Worst penetration over the rate of steps, two threads",
+				  "steps of a simulator in a second (Hz)", "worst penetration (mm)");
 	if (!d)
 		return NULL;
 	const ob_line order = ob_sync_order_of_step(c, p);
-	const double exact = 1e3 * ob_sync_summarise(c, p, 0, OB_SYNC_WORST).median;
+	const double exact = 1e3 * ob_sync_estimate(c, p, 0, OB_SYNC_WORST).value;
 	char name[128];
-	snprintf(d->title, sizeof d->title, "Worst penetration over the rate of steps");
-	snprintf(d->x_label, sizeof d->x_label, "steps of a simulator in a second (Hz)");
-	snprintf(d->y_label, sizeof d->y_label, "worst penetration (mm)");
-	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
 	snprintf(name, sizeof name, isnan(order.slope) ? "ledger" : "ledger: order %.2f", order.slope);
 	ob_chart_begin(d, OB_SYNC_LEDGER - 1, false, name);
 	for (int pass = 0; pass < 2; pass++) // the usual rate's row stands before the others
 		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 			const double rate = ob_sync_table[w].rate > 0 ? ob_sync_table[w].rate : c->rate;
-			const ob_statistics y = ob_sync_summarise(c, p, w, OB_SYNC_WORST);
-			char hint[160];
-			if (!ob_sync_is_of_rates(w) || isnan(y.median) || (rate >= c->rate) != pass)
-				continue;
-			snprintf(hint, sizeof hint, "%s: %.3g mm", ob_sync_table[w].title, 1e3 * y.median);
-			ob_plot_point *at = ob_chart_add(d, rate, 1e3 * y.median, "", hint);
-			at->low = 1e3 * (isnan(y.median_low) ? y.least : y.median_low);
-			at->high = 1e3 * (isnan(y.median_high) ? y.most : y.median_high);
+			if (ob_sync_is_of_rates(w) && (rate >= c->rate) == pass)
+				add_point(d, rate, ob_sync_estimate(c, p, w, OB_SYNC_WORST), 1e3,
+					  ob_sync_table[w].title);
 		}
 	if (exact > 0) {
 		snprintf(d->mark_label, sizeof d->mark_label, "lockstep %.2g mm", exact);
@@ -183,21 +206,44 @@ static ob_chart *chart_rates(const ob_sync_comparison *c, const ob_sync_point *p
 // CPU over the worst penetration, without injected lags.
 static ob_chart *chart_cost(const ob_sync_comparison *c, const ob_sync_point *p)
 {
-	ob_chart *d = begin_chart(c, p);
-	if (!d)
-		return NULL;
-	snprintf(d->title, sizeof d->title, "CPU over the worst penetration, no injected lag");
-	snprintf(d->x_label, sizeof d->x_label, "worst penetration (mm)");
-	snprintf(d->y_label, sizeof d->y_label, "CPU per body and simulated second (ms)");
-	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
-	for (int k = 0; k < OB_SYNC_COUPLINGS; k++) {
+	ob_chart *d = begin_chart(c, p, "CPU over the worst penetration, no injected lag", "worst penetration (mm)",
+				  "CPU per body and simulated second (ms)");
+	for (int k = 0; d && k < OB_SYNC_COUPLINGS; k++) {
 		ob_chart_begin(d, k, false, coupling_title[k])->line = false;
 		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++)
 			if ((int)ob_sync_table[w].coupling == k && ob_sync_table[w].delay == 0 &&
 			    ob_sync_table[w].rate == 0)
-				add_point(d, c, p, w, OB_SYNC_WORST, OB_SYNC_CPU);
+				add_point(d, 1e3 * ob_sync_estimate(c, p, w, OB_SYNC_WORST).value,
+					  ob_sync_estimate(c, p, w, OB_SYNC_CPU), 1e3, ob_sync_table[w].title);
 	}
 	return d;
+}
+
+// A metric over the number of simulators, if that varies.
+static ob_chart *chart_objects(const ob_sync_comparison *c, ob_sync_metric up, const char *title, const char *y)
+{
+	ob_chart *d = c->points > 1 ? begin_chart(c, NULL, title, "simulators", y) : NULL;
+	for (int w = 0, style = 0; d && w < OB_SYNC_CONFIGURATIONS; w++) {
+		if (!ob_sync_table[w].swept)
+			continue;
+		ob_chart_begin(d, style++, false, ob_sync_table[w].title);
+		for (uint32_t i = 0; i < c->points; i++)
+			add_point(d, c->point[i].objects, ob_sync_estimate(c, &c->point[i], w, up),
+				  ob_sync_metrics[up].scale, ob_sync_table[w].title);
+	}
+	return d;
+}
+
+static ob_chart *chart_objects_cpu(const ob_sync_comparison *c)
+{
+	return chart_objects(c, OB_SYNC_CPU, "CPU over the number of simulators",
+			     "CPU per body and simulated second (ms)");
+}
+
+static ob_chart *chart_objects_error(const ob_sync_comparison *c)
+{
+	return chart_objects(c, OB_SYNC_WORST, "Worst penetration over the number of simulators",
+			     "worst penetration (mm)");
 }
 
 // ---- the page
@@ -218,17 +264,17 @@ static void write_recommendation(ob_page *p, const void *with)
 {
 	const ob_sync_comparison *c = with;
 	char text[2048];
-	ob_sync_recommend(c, &c->point[c->points - 1], text, sizeof text);
+	ob_sync_recommend(c, ob_sync_main_point(c), text, sizeof text);
 	write_paragraph(p, "lead", text);
 }
 
 static void write_hypotheses(ob_page *p, const void *with)
 {
 	const ob_sync_comparison *c = with;
-	for (int i = 0; i < 3; i++) {
-		char name[8], text[1024];
+	for (int i = 0; i < OB_SYNC_HYPOTHESES; i++) {
+		char name[16], text[2048];
 		snprintf(name, sizeof name, "H%d", i + 1);
-		ob_sync_judge(c, &c->point[c->points - 1], i, text, sizeof text);
+		ob_sync_judge(c, i, text, sizeof text);
 		ob_page_term(p, name, text);
 	}
 }
@@ -236,24 +282,35 @@ static void write_hypotheses(ob_page *p, const void *with)
 static void write_setting(ob_page *p, const void *with)
 {
 	const ob_sync_comparison *c = with;
-	char text[256];
+	char text[1024];
 	double took = 0;
 	for (size_t i = 0; i < c->records.count; i++)
 		took += c->records.record[i].took_s;
 	ob_page_term(p, "Scene", c->scene);
 	ob_page_term(p, "Machine", c->records.machine);
 	ob_page_term(p, "Program", c->records.commit);
-	snprintf(text, sizeof text, "%g s simulated, %" PRIu32 " seeds of each configuration; %.0f s in all",
-		 c->duration, c->seeds, took);
+	size_t n = (size_t)snprintf(text, sizeof text,
+				    "%zu of %g simulated seconds, %.0f s in all; seeds of each configuration:",
+				    c->records.count, c->duration, took);
+	for (uint32_t i = 0; i < c->points && n < sizeof text; i++)
+		n += (size_t)snprintf(text + n, sizeof text - n, "%s %" PRIu32 "%s%s%s", i ? "," : "",
+				      c->point[i].seeds, *c->point[i].define ? " (" : "", c->point[i].define,
+				      *c->point[i].define ? ")" : "");
 	ob_page_term(p, "Runs", text);
 }
 
-static void write_figure(ob_page *p, ob_chart *d)
+// caption: may be "".
+static void write_figure(ob_page *p, ob_chart *d, const char *caption)
 {
-	ob_page_markup(p, "<figure>\n");
-	if (d)
+	if (d && d->points) {
+		ob_page_markup(p, "<figure>\n");
 		ob_chart_html(d, p);
-	ob_page_markup(p, "</figure>\n");
+		ob_page_markup(p, "<figcaption>");
+		ob_page_text(p, caption);
+		ob_page_markup(p, "</figcaption>\n</figure>\n");
+	} else {
+		ob_chart_free(d);
+	}
 }
 
 static void write_slopes(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
@@ -261,48 +318,66 @@ static void write_slopes(ob_page *p, const ob_sync_comparison *c, const ob_sync_
 	ob_page_markup(p, "<ul>\n");
 	for (int k = OB_SYNC_LEDGER; k < OB_SYNC_COUPLINGS; k++) {
 		const ob_line order = ob_sync_order(c, at, k);
-		if (isnan(order.slope))
+		if (isnan(order.slope_low))
 			continue;
-		ob_page_markup(p, "<li>%s: error grows with the lag to the power of %.2f", coupling_title[k],
-			       order.slope);
-		if (!isnan(order.slope_low))
-			ob_page_markup(p, " (%.2f to %.2f)", order.slope_low, order.slope_high);
-		ob_page_markup(p, ", over %zu lags</li>\n", order.n);
+		ob_page_markup(p, "<li>%s: slope %.2f (%.2f to %.2f) over %zu injected lags</li>\n", coupling_title[k],
+			       order.slope, order.slope_low, order.slope_high, order.n);
 	}
 	ob_page_markup(p, "</ul>\n");
 }
 
-static void write_points(ob_page *p, const void *with)
+static void write_diagrams(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
 {
-	const ob_sync_comparison *c = with;
-	for (uint32_t i = c->points; i-- > 0;) {
-		const ob_sync_point *at = &c->point[i];
-		size_t from = 0;
-		char text[2048];
-		ob_page_markup(p, "<section>\n<h3>%" PRIu32 " objects%s", at->objects, *at->define ? ", " : "");
-		ob_page_text(p, at->define);
-		ob_page_print_quantity(text, sizeof text, at->size, "m");
-		ob_page_markup(p, "; size %s, ", text);
-		ob_page_print_quantity(text, sizeof text, at->speed, "m/s");
-		ob_page_markup(p, "speed %s</h3>\n", text);
-		ob_table *t = table_of(c, at);
-		if (t)
-			ob_table_html(t, p);
-		ob_table_free(t);
-		write_figure(p, chart_lags(c, at, OB_SYNC_SIZES, "Worst penetration / size", true));
-		write_slopes(p, c, at);
-		write_figure(p, chart_rates(c, at));
-		write_figure(p, chart_lags(c, at, OB_SYNC_ENERGY, "Energy gained / energy at the start", false));
-		write_figure(p, chart_lags(c, at, OB_SYNC_BY_LAG, BY_LAG_TITLE, false));
-		write_figure(p, chart_cost(c, at));
+	write_figure(p, chart_error(c, at),
+		     "Bars: intervals of 95 % (Student). The first point of each curve has no injected "
+		     "lag. A slope is that over the injected lags alone.");
+	write_slopes(p, c, at);
+	write_figure(p, chart_rates(c, at), "Bars: intervals of 95 % (Student). No injected lag.");
+	write_figure(p, chart_energy(c, at),
+		     "Bars: intervals of 95 % (Student). Gained: the most above the start, 0 if never. "
+		     "By late mail: its work, at the end of the run.");
+	write_figure(p, chart_cost(c, at), "Bars: intervals of 95 % of the CPU (Student).");
+}
+
+static void write_point(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
+{
+	size_t from = 0;
+	char text[2048];
+	ob_page_markup(p, "<section>\n<h3>%" PRIu32 " objects%s", at->objects, *at->define ? ", " : "");
+	ob_page_text(p, at->define);
+	ob_page_print_quantity(text, sizeof text, at->size, "m");
+	ob_page_markup(p, "; size %s, ", text);
+	ob_page_print_quantity(text, sizeof text, at->speed, "m/s");
+	ob_page_markup(p, "speed %s; %" PRIu32 " seed%s</h3>\n", text, at->seeds, at->seeds == 1 ? "" : "s");
+	ob_table *t = table_of(c, at);
+	if (t)
+		ob_table_html(t, p);
+	ob_table_free(t);
+	if (at == ob_sync_main_point(c)) {
+		write_diagrams(p, c, at);
+	} else {
 		ob_sync_recommend(c, at, text, sizeof text);
 		write_paragraph(p, "note", text);
-		for (const ob_record *r; (r = next_failure(c, at, &from));) {
-			snprintf(text, sizeof text, "%s failed: %s", r->configuration, r->reason);
-			write_paragraph(p, "note", text);
-		}
-		ob_page_markup(p, "</section>\n");
 	}
+	for (const ob_record *r; (r = next_failure(c, at, &from));) {
+		snprintf(text, sizeof text, "%s failed: %s", r->configuration, r->reason);
+		write_paragraph(p, "note", text);
+	}
+	ob_page_markup(p, "</section>\n");
+}
+
+static void write_points(ob_page *p, const void *with)
+{
+	static const char caption[] = "Bars: intervals of 95 % (Student), where there are three seeds.";
+	const ob_sync_comparison *c = with;
+	write_point(p, c, ob_sync_main_point(c));
+	if (c->points > 1)
+		ob_page_markup(p, "<h3>Number of simulators</h3>\n");
+	write_figure(p, chart_objects_cpu(c), caption);
+	write_figure(p, chart_objects_error(c), caption);
+	for (uint32_t i = 0; i < c->points; i++)
+		if (&c->point[i] != ob_sync_main_point(c))
+			write_point(p, c, &c->point[i]);
 }
 
 static void write_rate(ob_page *p, const void *with)
@@ -318,15 +393,18 @@ static void write_jitter(ob_page *p, const void *with)
 // Threats that depend on what was run.
 static void write_threats(ob_page *p, const void *with)
 {
-	enum { FEW = 6 };
+	enum { FEW = 3 };
 	const ob_sync_comparison *c = with;
-	if (c->seeds < FEW)
-		ob_page_markup(p,
-			       "<li><b>%" PRIu32
-			       " seeds</b> give no interval of 95 %%, which takes %d: free runs of one scene differ by "
-			       "a factor of up to two. The same command with the same --out adds seeds; bars of "
-			       "diagrams go from the least to the most.</li>\n",
-			       c->seeds, FEW);
+	uint32_t least = UINT32_MAX;
+	for (uint32_t i = 0; i < c->points; i++)
+		least = least < c->point[i].seeds ? least : c->point[i].seeds;
+	if (least < FEW)
+		ob_page_markup(
+			p,
+			"<li><b>%" PRIu32 " seed%s</b> of a configuration give no interval, which takes %d: free runs "
+			"of one scene differ by a factor of up to two. The same command with the same --out adds "
+			"seeds.</li>\n",
+			least, least == 1 ? "" : "s", FEW);
 	if (c->points < 2)
 		ob_page_markup(
 			p, "<li>One number of objects. --vary n=10,100,1000 compares several, where the scene has a "
@@ -361,17 +439,11 @@ static void write_page(FILE *f, const void *with)
 bool ob_sync_write_folder(const ob_sync_comparison *c, const char *folder, ob_error *e)
 {
 	bool fine = ob_folder_write(folder, "report.html", write_page, c, e);
-	for (uint32_t i = 0; fine && i < c->points; i++) {
-		const ob_sync_point *p = &c->point[i];
-		fine = ob_chart_write_point(chart_lags(c, p, OB_SYNC_SIZES, "Worst penetration / size", true), folder,
-					    "error", p->define, e) &&
-		       ob_chart_write_point(
-			       chart_lags(c, p, OB_SYNC_ENERGY, "Energy gained / energy at the start", false), folder,
-			       "energy", p->define, e) &&
-		       ob_chart_write_point(chart_lags(c, p, OB_SYNC_BY_LAG, BY_LAG_TITLE, false), folder, "by_lag",
-					    p->define, e) &&
-		       ob_chart_write_point(chart_rates(c, p), folder, "rate", p->define, e) &&
-		       ob_chart_write_point(chart_cost(c, p), folder, "cost", p->define, e);
-	}
-	return fine;
+	const ob_sync_point *p = ob_sync_main_point(c);
+	return fine && ob_chart_write(chart_error(c, p), folder, "error", e) &&
+	       ob_chart_write(chart_energy(c, p), folder, "energy", e) &&
+	       ob_chart_write(chart_rates(c, p), folder, "rate", e) &&
+	       ob_chart_write(chart_cost(c, p), folder, "cost", e) &&
+	       ob_chart_write(chart_objects_cpu(c), folder, "objects-cpu", e) &&
+	       ob_chart_write(chart_objects_error(c), folder, "objects-error", e);
 }

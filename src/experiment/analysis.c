@@ -9,16 +9,45 @@ static bool is_of(const ob_record *r, const char *of, const char *configuration)
 	return !strcmp(r->configuration, configuration) && !strcmp(r->of, of);
 }
 
-ob_statistics ob_records_summarise(const ob_records *r, const char *of, const char *configuration, size_t metric)
+static size_t collect(const ob_records *r, const char *of, const char *configuration, size_t metric,
+		      double x[OB_SAMPLES])
 {
-	double x[OB_SAMPLES];
 	size_t n = 0;
 	for (size_t i = 0; i < r->count && n < OB_SAMPLES; i++) {
 		const ob_record *one = &r->record[i];
 		if (!one->failure && is_of(one, of, configuration) && !isnan(one->metric[metric]))
 			x[n++] = one->metric[metric];
 	}
+	return n;
+}
+
+ob_statistics ob_records_summarise(const ob_records *r, const char *of, const char *configuration, size_t metric)
+{
+	double x[OB_SAMPLES];
+	const size_t n = collect(r, of, configuration, metric, x);
 	return ob_reference_summarise(n, x);
+}
+
+static ob_estimate estimate(const ob_statistics *s, bool logarithms)
+{
+	enum { LEAST = 3 };
+	ob_estimate e = { s->n, s->mean, s->n < LEAST ? NAN : s->mean_low, s->n < LEAST ? NAN : s->mean_high };
+	if (logarithms)
+		e.value = exp(e.value), e.low = exp(e.low), e.high = exp(e.high);
+	return e;
+}
+
+ob_estimate ob_records_estimate(const ob_records *r, const char *of, const char *configuration, size_t metric,
+				bool geometric)
+{
+	double x[OB_SAMPLES];
+	const size_t n = collect(r, of, configuration, metric, x);
+	for (size_t i = 0; i < n; i++)
+		geometric &= x[i] > 0 && isfinite(x[i]);
+	for (size_t i = 0; geometric && i < n; i++)
+		x[i] = log(x[i]);
+	const ob_statistics s = ob_reference_summarise(n, x);
+	return estimate(&s, geometric);
 }
 
 ob_statistics ob_records_ratio(const ob_records *r, const char *of, const char *a, const char *b, size_t metric,
@@ -37,6 +66,12 @@ ob_statistics ob_records_ratio(const ob_records *r, const char *of, const char *
 		x[n++] = logarithm ? log(ratio) : ratio;
 	}
 	return ob_reference_summarise(n, x);
+}
+
+ob_estimate ob_records_estimate_ratio(const ob_records *r, const char *of, const char *a, const char *b, size_t metric)
+{
+	const ob_statistics s = ob_records_ratio(r, of, a, b, metric, true);
+	return estimate(&s, true);
 }
 
 bool ob_records_have(const ob_records *r, const char *of, const char *configuration, const ob_record **failed)

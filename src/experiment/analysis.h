@@ -11,6 +11,18 @@ enum { OB_SAMPLES = 128 }; // samples used of one case and configuration
 // Median, mean, and their 95 % intervals, of a metric over the completed trials that measured it without failure;
 // OB_SAMPLES at most.
 ob_statistics ob_records_summarise(const ob_records *r, const char *of, const char *configuration, size_t metric);
+// Mean over samples with Student's interval of 95 %.
+typedef struct ob_estimate {
+	size_t n;
+	double value, low, high; // value NAN for n = 0; the others for n < 3
+} ob_estimate;
+
+// Geometric mean, by the logarithms, if all values are positive and it is asked for; else the arithmetic one. Samples as
+// above.
+ob_estimate ob_records_estimate(const ob_records *r, const char *of, const char *configuration, size_t metric,
+				bool geometric);
+// Geometric mean of the ratios of configurations a and b in the same case, seed by seed.
+ob_estimate ob_records_estimate_ratio(const ob_records *r, const char *of, const char *a, const char *b, size_t metric);
 // Ratio of configurations a and b in the same case, repeat by repeat and seed by seed: variation between samples
 // cancels out. logarithm: uses the natural logarithms of the ratios, for a geometric mean.
 ob_statistics ob_records_ratio(const ob_records *r, const char *of, const char *a, const char *b, size_t metric,

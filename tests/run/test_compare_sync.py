@@ -31,7 +31,7 @@ class CompareSync(program.Case):
 			self.assertGreater(os.path.getsize(os.path.join(out, file)), 1000, file)
 		with open(os.path.join(out, "report.html")) as f:
 			page = f.read()
-		for part in "Question", "Recommendation", "Figures", "Method", "Threats to validity", "ledger, process each", "1 seeds":
+		for part in "Question", "Recommendation", "Figures", "Method", "Threats to validity", "ledger, process each", "<b>1 seed</b>":
 			self.assertIn(part, page)
 		self.assertNotIn("{{", page)
 		with open(os.path.join(out, "results.csv")) as f:
@@ -41,6 +41,21 @@ class CompareSync(program.Case):
 		self.assertGreater(float(lags["ledger_lag_30ms"]), float(lags["ledger_lag_3ms"]))
 		again = program.call(*words)
 		self.assertEqual(again.stdout, done.stdout) # nothing is run again
+
+	def test_sweep(self):
+		"""The point nearest to a hundred objects runs all, others a few; three seeds give intervals."""
+		out = self.path("out")
+		done = program.call("compare", self.scene(), "--sync", "lockstep,free", "--vary", "n=2,3", "--seeds", 3, "--duration", .1,
+			"--out", out)
+		self.assertEqual(done.returncode, 0, done.stderr)
+		with open(os.path.join(out, "results.csv")) as f:
+			cases = [r["case"].split(" @")[0] for r in csv.DictReader(f)]
+		self.assertEqual((cases.count("scene.lua n=2"), cases.count("scene.lua n=3")), (3 * 4, 3 * 26))
+		with open(os.path.join(out, "report.html")) as f:
+			page = f.read()
+		self.assertRegex(page, r"took [\d.]+ \([\d.]+ to [\d.]+\) times the CPU")
+		self.assertIn("over the number of simulators", page)
+		self.assertGreater(os.path.getsize(os.path.join(out, "plots/objects-cpu.svg")), 1000)
 
 	def test_refusals(self):
 		scene = self.scene()
