@@ -12,8 +12,8 @@
 // rate that holds b against all else that acts on it. So b is supported between a's publications from the first step
 // on, and an impulse of a hit is not repeated. b takes back what was too much with the next deposit. Where publications
 // are delayed, two steps are too few: a load of one millisecond would go on for ten, and swing up from body to body. So
-// a load goes on as far as its mean over twice the delay reached. It then brings no more than it has brought before,
-// however short the steps are.
+// beyond what holds b, a load goes on only as far as its mean over twice the delay reached. It then brings no more than it
+// has brought before, however short the steps are.
 //
 // Energy of the lag: an impulse P was computed for a partner at the velocity v. If that is v + u when P arrives, the pair
 // gains P u. Each simulator sums its side of this (ob_free_counts): work of the mail that it consumed, and work of the mail
