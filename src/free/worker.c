@@ -16,6 +16,7 @@ typedef struct worker {
 	uint32_t worker, sims;
 	uint32_t *id; // [sims] their objects
 	ob_free_sim *sim;
+	double *time; // [sims] their own times, side by side for the search; infinity: absent, or failed
 	ob_free_scratch scratch;
 	uint32_t until; // as of the last look
 	uint64_t fault_chances;
@@ -31,6 +32,12 @@ uint32_t ob_free_worker_of(const ob_universe *u, uint32_t id)
 	return id < most ? (uint32_t)((uint64_t)id * workers / most) : id % workers;
 }
 
+// Notes the time of a simulator for the search of the earliest.
+static void note_time(worker *w, const ob_free_sim *s)
+{
+	w->time[s - w->sim] = s->present && !s->failed ? s->time : INFINITY;
+}
+
 // Begins simulators of objects that are new to this worker. Objects come and go while all wait for the host. Chances of
 // faults are counted by updates, so that a successor does not fail at the same place for ever.
 static bool adopt(worker *w)
@@ -44,6 +51,7 @@ static bool adopt(worker *w)
 		if ((present != s->present || (present && generation != s->generation)) &&
 		    !ob_free_sim_begin(s, w->u, id))
 			return false;
+		note_time(w, s);
 		w->fault_chances += first ? s->counts.updates : 0;
 	}
 	return true;
@@ -57,11 +65,12 @@ static bool begin(worker *w, ob_universe *u, uint32_t number)
 		w->sims += ob_free_worker_of(u, id) == number;
 	w->sim = calloc(w->sims + 1, sizeof *w->sim);
 	w->id = calloc(w->sims + 1, sizeof *w->id);
+	w->time = calloc(w->sims + 1, sizeof *w->time);
 	for (uint32_t id = 0, n = 0; w->id && id < capacity; id++)
 		if (ob_free_worker_of(u, id) == number)
 			w->id[n++] = id;
 	w->scratch.worker = number;
-	return w->sim && w->id && ob_free_scratch_begin(&w->scratch, u);
+	return w->sim && w->id && w->time && ob_free_scratch_begin(&w->scratch, u);
 }
 
 static void finish(worker *w)
@@ -70,29 +79,29 @@ static void finish(worker *w)
 		ob_free_sim_finish(&w->sim[i]);
 	free(w->sim);
 	free(w->id);
+	free(w->time);
 	ob_free_schedule_close(w->scratch.schedule);
 	ob_free_scratch_finish(&w->scratch);
 }
 
-// Returns the earliest simulator that may step, as far as is known; NULL: none. blocked: the earliest that a neighbour
-// blocks.
+// Returns the earliest simulator that may step, as far as is known; NULL: none. blocked: then the earliest that a
+// neighbour blocks.
 static ob_free_sim *earliest(worker *w, ob_free_sim **blocked)
 {
 	const double until = w->until * w->scratch.boundary;
 	ob_free_sim *first = NULL;
 	*blocked = NULL;
 	for (uint32_t i = 0; i < w->sims; i++) {
-		ob_free_sim *s = &w->sim[i];
-		if (!s->present || s->failed || s->time >= until)
+		if (w->time[i] >= until || (first && w->time[i] >= first->time))
 			continue;
+		ob_free_sim *s = &w->sim[i];
 		if (s->blocker != OB_NO_OBJECT && !ob_free_lag_is_over(s, w->u)) {
 			if (!*blocked || s->time < (*blocked)->time)
 				*blocked = s;
 			continue;
 		}
 		s->blocker = OB_NO_OBJECT;
-		if (!first || s->time < first->time)
-			first = s;
+		first = s;
 	}
 	return first;
 }
@@ -133,13 +142,16 @@ static void work(worker *w)
 		ob_free_put_counts(w->u, blocked->id, &blocked->counts);
 	} else if (!s) {
 		turn_to(w, OB_TRACE_WAIT, 0, 0);
-		if (w->sims == 1 && w->sim->present)
+		if (w->sims == 1 && w->sim->present) {
 			ob_free_sim_sleep(w->sim, &w->scratch, w->until * w->scratch.boundary);
+			note_time(w, w->sim);
+		}
 		ob_free_wait_for_host(w->u, w->until);
 	} else if (!wait_for_clock(w, s) && ob_free_lag_allows(s, &w->scratch)) {
 		ob_worker_set_object(w->u, w->worker, s->id);
 		turn_to(w, OB_TRACE_STEPS, 0, 0);
 		ob_free_sim_step(s, &w->scratch);
+		note_time(w, s);
 		w->span.a++;
 		ob_fault_chance_of(w->u, w->worker, &w->fault_chances);
 	}
