@@ -175,8 +175,8 @@ bool ob_ledger_look(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neig
 	const ob_passport *p = &n->passport;
 	const ob_account *theirs = &seen->account;
 	const double since = s->time - seen->motion.t0;
-	// several that correct the same body, each by what it saw long ago, would correct it too far
-	const uint32_t others = x->free->delay > 0 ? head.solvers - (seen->known && !theirs->closed) : 0;
+	// several that correct the same body at once, each as if alone, would correct it too far
+	const uint32_t others = head.solvers - (seen->known && !theirs->closed);
 	seen->share = 1. / (1 + (others < OB_LEDGER_ACCOUNTS ? others : 0));
 	seen->step = head.step;
 	seen->torque = ob_madd(ob_scale(part(theirs->rate, TWIST), -1), seen->share, part(head.torque, 0));

@@ -24,8 +24,8 @@
 // Epochs: an account is closed when the two part, and dropped by a when b has consumed all of it, then by b. A new contact
 // has a new epoch, in which sums begin at 0.
 //
-// Shares: a body's mass is shared among all that solve its contacts if publications are delayed. Several that correct the
-// same body, each by what it saw long ago, would correct it too far.
+// Shares: a body's mass is shared among all that solve its contacts. Several that correct the same body at once, each as if
+// alone, would correct it too far: it swings from step to step, and creeps wherever friction lets it.
 //
 // Shift: the positions of overlapping bodies are corrected. b's part is mailed as a displacement; it bears no momentum.
 #ifndef OB_FREE_LEDGER_H

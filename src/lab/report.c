@@ -217,8 +217,9 @@ static void write_free(ob_page *p, const void *with)
 			begin_section(p, chart, "free", "Simulators that wait for nobody",
 				      "Free simulators have times of their own. Their error over the delay "
 				      "after which a neighbour sees what they publish; the error over the rate "
-				      "of their steps stands above and with each case, lockstep beside it. A "
-				      "ledger computes a pair's impulse once; own: each side computes its own.");
+				      "of their steps stands with each case, lockstep beside it. A ledger "
+				      "computes a pair's impulse once; own: each side computes its own. Two "
+				      "runs of one setting differ.");
 		if (chart)
 			ob_page_markup(p, "<figure>\n");
 		ob_chart_html(chart, p);

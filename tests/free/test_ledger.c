@@ -193,6 +193,30 @@ static void test_first_load(void)
 	CHECK_NEAR(first_load(1), 1, 1e-5);
 }
 
+// A pyramid stays where it is set down: its boxes lie on two each, and all that bear a box share what they correct.
+static void test_pyramid_stays(void)
+{
+	enum { ROWS = 4 };
+	hand *h = hand_create(settings(1000, .002), ob_v3(0, 0, -9.81));
+	hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+	double x[HAND_OBJECTS] = { 0 }, aside = 0;
+	for (int row = 0; row < ROWS; row++)
+		for (int i = 0; i < ROWS - row; i++) {
+			x[h->objects] = 1.05 * (i - .5 * (ROWS - row - 1));
+			hand_add(h, OB_SHAPE_BOX, ob_v3(.5, .5, .5), 1000, ob_v3(x[h->objects], 0, row + .5), none, 0);
+		}
+	uint64_t random = 1;
+	for (uint64_t step = 6; step <= 60; step += 6) {
+		hand_until(h, step);
+		CHECK(hand_run(h, &random, 0));
+	}
+	for (uint32_t id = 1; id < h->objects; id++)
+		aside = ob_max(aside, fabs(h->sim[id].motion.p.x - x[id]));
+	printf("farthest that a box of a pyramid got aside in a second: %.2g mm\n", 1e3 * aside);
+	CHECK(aside < 1e-3);
+	hand_destroy(h);
+}
+
 // A stack whose mail is late: loads go on no longer than they have lasted, or they would swing up until it explodes.
 static void test_stack_of_late_mail(void)
 {
@@ -271,6 +295,7 @@ int main(void)
 	test_hit_once();
 	test_stack();
 	test_first_load();
+	test_pyramid_stays();
 	test_stack_of_late_mail();
 	test_column_lands();
 	test_work_of_mail();
