@@ -1,6 +1,6 @@
 #include "engine/mjcf.h"
 
-#include <string.h>
+#include <stdio.h>
 
 #include "engine/joint_tree.h"
 #include "shape/shape.h"
@@ -9,6 +9,7 @@ enum {
 	CONTACTS_PER_BODY = 12, // average limit: memory for their rows grows with the square of the bodies
 	CONTACTS_LEAST = 200,
 	ROWS_PER_JOINT = 12, // at most
+	DEPTH = 48, // of bodies in a file
 };
 
 static const double impedance = .9999; // of equality constraints: as hard as MuJoCo lets them be
@@ -145,9 +146,9 @@ static void write_sites(const ob_mjcf *m, FILE *f, uint32_t id)
 	}
 }
 
-static void write_bodies(const ob_mjcf *m, FILE *f, uint32_t parent);
+static bool write_bodies(ob_mjcf *m, FILE *f, uint32_t parent, uint32_t depth);
 
-static void write_body(const ob_mjcf *m, FILE *f, uint32_t id, const ob_pose *parent)
+static bool write_body(ob_mjcf *m, FILE *f, uint32_t id, const ob_pose *parent, uint32_t depth)
 {
 	const ob_passport *o = &m->world->passport[id];
 	const ob_pose *at = &m->world->state[id].pose;
@@ -164,21 +165,49 @@ static void write_body(const ob_mjcf *m, FILE *f, uint32_t id, const ob_pose *pa
 	}
 	write_geom(f, o, m->step);
 	write_sites(m, f, id);
-	write_bodies(m, f, id);
+	const bool all = write_bodies(m, f, id, depth + 1);
 	fputs("</body>\n", f);
+	return all;
+}
+
+static FILE *begin_file(ob_mjcf *m)
+{
+	if (m->files == OB_MJCF_FILES)
+		return NULL;
+	struct ob_mjcf_file *file = &m->file[m->files++];
+	return open_memstream(&file->text, &file->length);
+}
+
+// Goes on in a file of its own, if bodies are too deep.
+static bool write_deep(ob_mjcf *m, FILE *f, uint32_t id, const ob_pose *parent, uint32_t depth)
+{
+	char name[16];
+	if (depth < DEPTH)
+		return write_body(m, f, id, parent, depth);
+	ob_mjcf_name(m->files, name);
+	fprintf(f, "<include file=\"%s\"/>", name);
+	FILE *deeper = begin_file(m);
+	if (!deeper)
+		return false;
+	fputs("<mujoco>", deeper);
+	const bool all = write_body(m, deeper, id, parent, 0);
+	fputs("</mujoco>\n", deeper);
+	return !fclose(deeper) && all;
 }
 
 // parent: OB_JOINT_WORLD: all that no body holds
-static void write_bodies(const ob_mjcf *m, FILE *f, uint32_t parent)
+static bool write_bodies(ob_mjcf *m, FILE *f, uint32_t parent, uint32_t depth)
 {
 	const ob_world *w = m->world;
 	const ob_pose at = parent == OB_JOINT_WORLD ? (ob_pose){ .q = ob_quat_identity() } : w->state[parent].pose;
-	for (uint32_t id = 0; id < w->objects; id++) {
+	bool all = true;
+	for (uint32_t id = 0; id < w->objects && all; id++) {
 		const uint32_t joint = m->tree[id];
 		const uint32_t by = joint == OB_JOINT_WORLD ? joint : ob_joint_other(&w->joint[joint], id);
 		if (by == parent)
-			write_body(m, f, id, &at);
+			all = write_deep(m, f, id, &at, depth);
 	}
+	return all;
 }
 
 // ---- contacts
@@ -363,7 +392,12 @@ static void write_motors(const ob_mjcf *m, FILE *f)
 	}
 }
 
-bool ob_mjcf_write(FILE *f, const ob_mjcf *m)
+void ob_mjcf_name(uint32_t file, char name[16])
+{
+	snprintf(name, 16, "%u.xml", file);
+}
+
+static bool write_world(ob_mjcf *m, FILE *f)
 {
 	const ob_world *w = m->world;
 	const uint32_t contacts = CONTACTS_LEAST + CONTACTS_PER_BODY * w->objects;
@@ -376,9 +410,9 @@ bool ob_mjcf_write(FILE *f, const ob_mjcf *m)
 	fprintf(f, "><flag filterparent=\"disable\"/></option>\n<size nconmax=\"%u\" njmax=\"%u\"/>\n<worldbody>\n",
 		contacts, 3 * contacts + ROWS_PER_JOINT * w->joints);
 	write_sites(m, f, OB_JOINT_WORLD);
-	write_bodies(m, f, OB_JOINT_WORLD);
+	bool all = write_bodies(m, f, OB_JOINT_WORLD, 0);
 	fputs("</worldbody>\n<contact>\n", f);
-	const bool all = write_pairs(m, f);
+	all &= write_pairs(m, f);
 	write_parted(m, f);
 	fputs("</contact>\n<equality>\n", f);
 	write_equalities(m, f);
@@ -388,4 +422,11 @@ bool ob_mjcf_write(FILE *f, const ob_mjcf *m)
 	write_motors(m, f);
 	fputs("</actuator></mujoco>\n", f);
 	return all;
+}
+
+bool ob_mjcf_write(ob_mjcf *m)
+{
+	FILE *f = begin_file(m);
+	const bool all = f && write_world(m, f);
+	return f && !fclose(f) && all;
 }

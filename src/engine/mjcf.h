@@ -10,10 +10,13 @@
 #ifndef OB_ENGINE_MJCF_H
 #define OB_ENGINE_MJCF_H
 
-#include <stdio.h>
-
 #include "settings/settings.h"
 #include "world/world.h"
+
+enum {
+	OB_MJCF_FILES = 100, // at most; bodies nest 48 deep in each
+	OB_MJCF_PAIRS = 10000, // at most, with a friction or restitution of their own
+};
 
 typedef struct ob_mjcf {
 	const ob_world *world;
@@ -21,11 +24,17 @@ typedef struct ob_mjcf {
 	double step; // s
 	uint32_t iterations;
 	const char *integrator; // "Euler", "RK4"
+	uint32_t files; // written
+	struct ob_mjcf_file {
+		char *text; // free() it
+		size_t length;
+	} file[OB_MJCF_FILES];
 } ob_mjcf;
 
-// false: more pairs with a friction or restitution of their own than OB_MJCF_PAIRS.
-enum { OB_MJCF_PAIRS = 10000 };
-bool ob_mjcf_write(FILE *f, const ob_mjcf *m);
+// Name of a file; the first includes all others, as MuJoCo's parser takes no deep nesting.
+void ob_mjcf_name(uint32_t file, char name[16]);
+// Writes the files. false: the limits, or memory, do not suffice.
+bool ob_mjcf_write(ob_mjcf *m);
 bool ob_mjcf_moves(const ob_passport *o);
 
 #endif

@@ -57,13 +57,13 @@ static void ignore_warning(const char *text)
 	(void)text; // mjData counts the relevant ones
 }
 
-static bool try_model(ob_engine *p, const mjVFS *files, ob_error *e)
+static bool try_model(ob_engine *p, const char *name, const mjVFS *files, ob_error *e)
 {
 	jmp_buf back;
 	char why[200] = "";
 	rescue = &back;
 	if (setjmp(back) == 0)
-		p->model = mj_loadXML("world.xml", files, why, sizeof why);
+		p->model = mj_loadXML(name, files, why, sizeof why);
 	else
 		snprintf(why, sizeof why, "%s", complaint);
 	if (p->model && setjmp(back) == 0)
@@ -85,31 +85,39 @@ static bool try_step(ob_engine *p, ob_error *e)
 
 // ---- the model
 
-static bool load(ob_engine *p, const ob_mjcf *m, ob_error *e)
+// Adds the text to the files in memory.
+static bool add_file(mjVFS *files, uint32_t number, const struct ob_mjcf_file *file)
 {
-	char *text = NULL;
-	size_t length = 0;
-	FILE *f = open_memstream(&text, &length);
+	char name[16];
+	ob_mjcf_name(number, name);
+	if (mj_makeEmptyFileVFS(files, name, (int)file->length))
+		return false;
+	memcpy(files->filedata[files->nfile - 1], file->text, file->length);
+	return true;
+}
+
+static bool load(ob_engine *p, ob_mjcf *m, ob_error *e)
+{
+	char first[16];
 	mjVFS *files = malloc(sizeof *files);
-	bool done = f && files;
-	if (!done)
-		ob_fail(e, "no memory for a world of %u bodies", p->objects);
-	if (done && !ob_mjcf_write(f, m))
-		done = ob_fail(e, "MuJoCo: more than %d pairs with a friction or restitution of their own",
-			       OB_MJCF_PAIRS);
-	if (f && fclose(f) && done)
-		done = ob_fail(e, "no memory for a world of %u bodies", p->objects);
-	if (done) {
+	bool done = files || ob_fail(e, "MuJoCo: no memory");
+	if (files)
 		mj_defaultVFS(files);
-		done = !mj_makeEmptyFileVFS(files, "world.xml", (int)length) || ob_fail(e, "MuJoCo: no memory");
+	if (done && !ob_mjcf_write(m))
+		done = ob_fail(e,
+			       "MuJoCo: no room for %u bodies, or more than %d pairs with a friction or restitution "
+			       "of their own",
+			       p->objects, OB_MJCF_PAIRS);
+	for (uint32_t i = 0; i < m->files; i++) {
+		if (done && !add_file(files, i, &m->file[i]))
+			done = ob_fail(e, "MuJoCo: no memory");
+		free(m->file[i].text);
 	}
-	if (done) {
-		memcpy(files->filedata[0], text, length);
-		done = try_model(p, files, e);
+	ob_mjcf_name(0, first);
+	done = done && try_model(p, first, files, e);
+	if (files)
 		mj_deleteVFS(files);
-	}
 	free(files);
-	free(text);
 	return done;
 }
 
@@ -252,8 +260,11 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, uint32_t v
 	if (!p || !p->object || !p->tree || !ob_joint_tree(w, p->tree)) {
 		ob_fail(e, "no memory for a world of %u bodies", w->objects);
 	} else {
-		const ob_mjcf m = { w, p->tree, s->step_length / s->substeps, s->iterations,
-				    variant ? "RK4" : "Euler" };
+		ob_mjcf m = { .world = w,
+			      .tree = p->tree,
+			      .step = s->step_length / s->substeps,
+			      .iterations = s->iterations,
+			      .integrator = variant ? "RK4" : "Euler" };
 		if (load(p, &m, e)) {
 			set_up(p, w, m.step);
 			return p;
