@@ -44,8 +44,22 @@ static void finish(little_universe *l, little_scene *s)
 
 // ---- a flat one and the plane
 
-enum { SPHERE, BOX, CAPSULE, CYLINDER, HULL, SHAPES };
-static const char *const shape_name[] = { "sphere", "box", "capsule", "cylinder", "hull" };
+enum { SPHERE, BOX, CAPSULE, CYLINDER, HULL, COMPOUND, SHAPES };
+static const char *const shape_name[] = { "sphere", "box", "capsule", "cylinder", "hull", "compound" };
+
+// A slab with a ball at one end.
+static ob_world_body club(little_scene *s, ob_vec3 p)
+{
+	ob_vec3 corner[8];
+	for (int k = 0; k < 8; k++)
+		corner[k] = ob_v3(k & 1 ? .3 : -.3, k & 2 ? .15 : -.15, k & 4 ? .1 : -.1);
+	const ob_hull_part part[] = { { .point = corner, .points = 8, .density = 1 },
+				      { .round = OB_SHAPE_SPHERE,
+					.size = { .2, 0, 0 },
+					.pose = { { .35, 0, 0 }, { 1, 0, 0, 0 } },
+					.density = 1 } };
+	return ob_world_compound(&s->world, 3, part, 2, p);
+}
 
 static ob_world_body body(little_scene *s, int shape, ob_vec3 p)
 {
@@ -60,6 +74,8 @@ static ob_world_body body(little_scene *s, int shape, ob_vec3 p)
 		return ob_world_capsule(&s->world, 3, .2, .3, p);
 	case CYLINDER:
 		return ob_world_cylinder(&s->world, 3, .3, .2, p);
+	case COMPOUND:
+		return club(s, p);
 	default:
 		return ob_world_hull(&s->world, 3, wedge, sizeof wedge / sizeof *wedge, p);
 	}
