@@ -8,6 +8,7 @@
 #include "motion/joint_value.h"
 #include "solver/joint_axis.h"
 #include "solver/joint_load.h"
+#include "solver/six.h"
 
 static const double compliance = 1e-9; // of a row, as a share of its own response
 
@@ -282,12 +283,11 @@ double ob_joint_row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_r
 
 void ob_joint_respond(const ob_held_joint *j, const double *impulse, ob_body_row *rows)
 {
-	for (uint32_t r = 0; r < j->rows.rows; r++)
-		for (int i = 0; i < 6; i++) {
-			rows[1 + j->child][i] += impulse[r] * j->response[0][r][i];
-			if (j->parent != OB_SPARSE_FIXED)
-				rows[1 + j->parent][i] += impulse[r] * j->response[1][r][i];
-		}
+	for (uint32_t r = 0; r < j->rows.rows; r++) {
+		ob_six_add(rows[1 + j->child], impulse[r], j->response[0][r]);
+		if (j->parent != OB_SPARSE_FIXED)
+			ob_six_add(rows[1 + j->parent], impulse[r], j->response[1][r]);
+	}
 }
 
 double ob_joint_axis_rate(const ob_held_joint *j, const ob_body_row *rows)
@@ -298,11 +298,9 @@ double ob_joint_axis_rate(const ob_held_joint *j, const ob_body_row *rows)
 void ob_joint_push_axis(ob_held_joint *j, double impulse, ob_body_row *rows)
 {
 	ob_joint_note_axis(j, impulse);
-	for (int i = 0; i < 6; i++) {
-		rows[1 + j->child][i] += impulse * j->response[0][j->base][i];
-		if (j->parent != OB_SPARSE_FIXED)
-			rows[1 + j->parent][i] += impulse * j->response[1][j->base][i];
-	}
+	ob_six_add(rows[1 + j->child], impulse, j->response[0][j->base]);
+	if (j->parent != OB_SPARSE_FIXED)
+		ob_six_add(rows[1 + j->parent], impulse, j->response[1][j->base]);
 }
 
 void ob_joints_find_impulses(ob_island_work *w)

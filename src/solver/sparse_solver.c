@@ -1,6 +1,7 @@
 #include "solver/sparse_solver.h"
 
 #include "base/allocate.h"
+#include "solver/six.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -198,19 +199,23 @@ void ob_sparse_push(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint
 {
 	for (uint32_t r = 0; r < j->rows; r++) {
 		const double push = j->y[r] / j->compliance[r];
-		for (int i = 0; i < 6; i++)
-			t->change[child][i] += push * j->child[r][i];
-		for (int i = 0; i < 6 && parent != OB_SPARSE_FIXED; i++)
-			t->change[parent][i] += push * j->parent[r][i];
+		ob_six_add(t->change[child], push, j->child[r]);
+		if (parent != OB_SPARSE_FIXED)
+			ob_six_add(t->change[parent], push, j->parent[r]);
 	}
 }
 
-// Adds s x y^T.
-static void add_product(double (*m)[6], double s, const double *x, const double *y)
+// Adds x y^T.
+static void add_product(double (*m)[6], const double *x, const double *y)
 {
 	for (int i = 0; i < 6; i++)
-		for (int k = 0; k < 6; k++)
-			m[i][k] += s * x[i] * y[k];
+		ob_six_add(m[i], x[i], y);
+}
+
+static void set_scaled(double *out, double s, const double *x)
+{
+	memcpy(out, x, 6 * sizeof *out);
+	ob_six_scale(out, s);
 }
 
 void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent)
@@ -221,16 +226,16 @@ void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child,
 		fixed ? NULL : t->block[child_first ? block_of(t, child, parent) : block_of(t, parent, child)];
 	for (uint32_t r = 0; r < j->rows; r++) {
 		const double stiffness = 1 / j->compliance[r], push = stiffness * j->y[r];
-		add_product(t->own[child], stiffness, j->child[r], j->child[r]);
-		for (int i = 0; i < 6; i++)
-			t->change[child][i] += push * j->child[r][i];
+		double of_child[6], of_parent[6];
+		set_scaled(of_child, stiffness, j->child[r]);
+		add_product(t->own[child], of_child, j->child[r]);
+		ob_six_add(t->change[child], push, j->child[r]);
 		if (fixed)
 			continue;
-		add_product(t->own[parent], stiffness, j->parent[r], j->parent[r]);
-		add_product(both, stiffness, child_first ? j->parent[r] : j->child[r],
-			    child_first ? j->child[r] : j->parent[r]);
-		for (int i = 0; i < 6; i++)
-			t->change[parent][i] += push * j->parent[r][i];
+		set_scaled(of_parent, stiffness, j->parent[r]);
+		add_product(t->own[parent], of_parent, j->parent[r]);
+		add_product(both, child_first ? j->child[r] : j->parent[r], child_first ? of_parent : of_child);
+		ob_six_add(t->change[parent], push, j->parent[r]);
 	}
 }
 
@@ -273,13 +278,28 @@ static void upper_solve(double (*root)[6], const double *inverse, double *x)
 	}
 }
 
-// m <- m - a b^T, with b^T given
-static void subtract(double (*m)[6], double (*a)[6], double (*bt)[6])
+// block <- L^-1 block
+static void lower_solve_block(double (*root)[6], const double *inverse, double (*block)[6])
 {
-	for (int i = 0; i < 6; i++)
+	for (int i = 0; i < 6; i++) {
+		double row[6];
+		memcpy(row, block[i], sizeof row);
+		for (int k = 0; k < i; k++)
+			ob_six_add(row, -root[i][k], block[k]);
+		set_scaled(block[i], inverse[i], row);
+	}
+}
+
+// m <- m - a^T b
+static void subtract(double (*m)[6], double (*a)[6], double (*b)[6])
+{
+	for (int i = 0; i < 6; i++) {
+		double row[6];
+		memcpy(row, m[i], sizeof row);
 		for (int k = 0; k < 6; k++)
-			for (int c = 0; c < 6; c++)
-				m[i][c] -= a[i][k] * bt[k][c];
+			ob_six_add(row, -a[k][i], b[k]);
+		memcpy(m[i], row, sizeof row);
+	}
 }
 
 static void eliminate_body(ob_sparse_solver *t, uint32_t k)
@@ -288,24 +308,18 @@ static void eliminate_body(ob_sparse_solver *t, uint32_t k)
 	cholesky(t->own[body], t->inverse[body]);
 	lower_solve(t->own[body], t->inverse[body], t->change[body]);
 	for (uint32_t i = from; i < to; i++)
-		for (int r = 0; r < 6; r++)
-			lower_solve(t->own[body], t->inverse[body], t->block[i][r]);
+		lower_solve_block(t->own[body], t->inverse[body], t->block[i]);
 	for (uint32_t i = from; i < to; i++) {
 		const uint32_t sooner = t->below[i], place = t->node[sooner].place;
-		ob_sparse_block turned;
-		for (int r = 0; r < 6; r++)
-			for (int c = 0; c < 6; c++)
-				turned[c][r] = t->block[i][r][c];
-		subtract(t->own[sooner], t->block[i], turned);
-		for (int r = 0; r < 6; r++)
-			for (int c = 0; c < 6; c++)
-				t->change[sooner][r] -= t->block[i][r][c] * t->change[body][c];
+		subtract(t->own[sooner], t->block[i], t->block[i]);
+		for (int c = 0; c < 6; c++)
+			ob_six_add(t->change[sooner], -t->change[body][c], t->block[i][c]);
 		for (uint32_t j = t->first[place]; to - from > 1 && j < t->first[place + 1]; j++)
 			t->node[t->below[j]].mark = j;
 		for (uint32_t j = from; j < to; j++) {
 			const uint32_t later = t->below[j];
 			if (t->node[later].place > place)
-				subtract(t->block[t->node[later].mark], t->block[j], turned);
+				subtract(t->block[t->node[later].mark], t->block[i], t->block[j]);
 		}
 	}
 }
@@ -314,9 +328,9 @@ static void back_substitute(ob_sparse_solver *t, uint32_t k)
 {
 	const uint32_t body = t->order[k];
 	for (uint32_t i = t->first[k]; i < t->first[k + 1]; i++)
-		for (int r = 0; r < 6; r++)
-			for (int c = 0; c < 6; c++)
-				t->change[body][c] -= t->block[i][r][c] * t->change[t->below[i]][r];
+		for (int c = 0; c < 6; c++)
+			for (int r = 0; r < 6; r++)
+				t->change[body][c] -= t->block[i][c][r] * t->change[t->below[i]][r];
 	upper_solve(t->own[body], t->inverse[body], t->change[body]);
 }
 
@@ -331,9 +345,8 @@ static void forward_substitute(ob_sparse_solver *t, uint32_t k)
 	const uint32_t body = t->order[k];
 	lower_solve(t->own[body], t->inverse[body], t->change[body]);
 	for (uint32_t i = t->first[k]; i < t->first[k + 1]; i++)
-		for (int r = 0; r < 6; r++)
-			for (int c = 0; c < 6; c++)
-				t->change[t->below[i]][r] -= t->block[i][r][c] * t->change[body][c];
+		for (int c = 0; c < 6; c++)
+			ob_six_add(t->change[t->below[i]], -t->change[body][c], t->block[i][c]);
 }
 
 void ob_sparse_substitute(ob_sparse_solver *t)
@@ -394,9 +407,11 @@ static void invert_body(ob_sparse_solver *t, uint32_t k)
 		upper_solve(t->own[body], t->inverse[body], column);
 	}
 	for (uint32_t i = from; i < to; i++)
-		for (int r = 0; r < 6; r++) // rows of W: solved from the right
-			upper_solve(t->own[body], t->inverse[body],
-				    memcpy(t->shares[i][r], t->block[i][r], sizeof t->block[i][r]));
+		for (int r = 0; r < 6; r++) { // rows of W: solved from the right
+			for (int c = 0; c < 6; c++)
+				t->shares[i][r][c] = t->block[i][c][r];
+			upper_solve(t->own[body], t->inverse[body], t->shares[i][r]);
+		}
 	for (uint32_t i = from; i < to; i++) {
 		memset(t->between[i], 0, sizeof t->between[i]);
 		for (uint32_t j = from; j < to; j++) {

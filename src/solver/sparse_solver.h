@@ -64,7 +64,7 @@ typedef struct ob_sparse_solver {
 	uint32_t *first; // [bodies + 1], by place in the order: range in below
 	uint32_t below_max, *below; // neighbours that remain when a body is eliminated
 	uint32_t blocks_max;
-	ob_sparse_block *block; // one for each entry of below: the neighbour's rows, the eliminated body's columns
+	ob_sparse_block *block; // one for each entry of below: the eliminated body's rows, the neighbour's columns
 	ob_sparse_block *own; // [body]
 	double (*inverse)[6]; // [body]: inverses of its factor's diagonal
 	double (*change)[6]; // [body]: the right-hand side, then dv
