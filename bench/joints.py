@@ -2,7 +2,7 @@
 """joints.py OBSIM FILE FOLDER: runs obsim lab into FOLDER on mechanisms, with steps of each engine that become shorter
 and shorter, and writes into FILE, between <!-- lab: joints --> and <!-- end -->, the CPU that each needs for an error.
 
-Results that FOLDER has already are not measured again. Needs an otherwise idle machine; it takes some six minutes.
+Results that FOLDER has already are not measured again. Needs an otherwise idle machine; it takes some ten minutes.
 """
 import csv
 import os
@@ -15,13 +15,13 @@ CASES = {'pendulum-90': 'Pendulum, 20 s', 'double-pendulum': 'Double pendulum, 4
 STEPS = 'substeps=1,2,4,8,16,32,64'
 RUNS = [('obsim', 'tolerance=5mm,.5mm,.05mm'), ('ode-world,mujoco,mujoco-rk4', STEPS), ('ode-quick,bullet', STEPS + ',iterations=20,100')]
 ENGINES = ['obsim', 'mujoco', 'mujoco-rk4', 'ode-world', 'ode-quick', 'bullet']
-LEVELS = [1e-2, 1e-3, 1e-4, 1e-6, 1e-8]
-LIMIT = '25'  # s of CPU for a run
+LEVELS = [1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10]
+LIMIT = '40'  # s of CPU for a run
 
 
 def error(row):
     """First figure of a run; nothing of one that failed."""
-    return float(row['figure_1'] or 'inf') if not row['reason'] else float('inf')
+    return float(row['figure1'] or 'inf') if not row['reason'] else float('inf')
 
 
 def cost(rows, level):
@@ -35,7 +35,8 @@ def table(results):
         for level in LEVELS:
             costs = [cost([r for r in results if (r['case'], r['engine']) == (case, engine)], level) for engine in ENGINES]
             best = min((c for c in costs if c), default=None)
-            lines.append([title, f'{level:g}'] + ['never' if not c else f'**{c:.3g}**' if c == best else f'{c:.3g}' for c in costs])
+            if best:
+                lines.append([title, f'{level:g}'] + ['never' if not c else f'**{c:,.0f}**' if c == best else f'{c:,.0f}' for c in costs])
     return ''.join('| ' + ' | '.join(line) + ' |\n' for line in lines)
 
 
