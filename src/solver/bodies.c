@@ -445,9 +445,10 @@ void ob_bodies_integrate_positions(ob_solver *s)
 	double smooth = 2 * w->max_acceleration * w->max_acceleration * w->h * w->h;
 	ob_surfaces_carry(s);
 	for (uint32_t i = 1; i <= w->bodies; i++) {
+		const double before = surface_speed(w, i);
 		s->methods.move(s, i, smooth);
 		set_speed_bound(w, i);
-		w->body[i].path += w->h * surface_speed(w, i);
+		w->body[i].path += w->h * ob_max(before, surface_speed(w, i)); // it may slow down
 	}
 	for (uint32_t row = w->bodies + 1; w->surfaces.count && row < w->rows; row++)
 		advance_surface(s, row);

@@ -125,6 +125,29 @@ static void compare(const slide *x, double *way, double *angle)
 	free(s);
 }
 
+// The length of path that a motion carries is no shorter than the way: pairs are not looked at before it has grown so far.
+static void check_path(uint32_t substeps)
+{
+	little_scene *s = little_scene_new();
+	s->run.substeps = substeps;
+	ob_world_ground(&s->world);
+	ob_world_box(&s->world, 2, ob_v3(.3, .3, .1), ob_v3(0, 0, .1)).state->v = ob_v3(2, 1, 0);
+	ob_world_material(&s->world, mu, 0);
+	little_universe l;
+	little_open(&l, s);
+	ob_state last = little_state(&l, 1);
+	double path = 0;
+	for (int step = 0; step < 30; step++) {
+		little_run(&l, 1);
+		const ob_state now = little_state(&l, 1);
+		const double length = ob_newest_motion(l.u, 1)->path;
+		CHECK(length - path >= ob_norm(ob_sub(now.pose.p, last.pose.p)) - 1e-12);
+		last = now, path = length;
+	}
+	little_close(&l);
+	free(s);
+}
+
 // Squares, plates and bars from fast spins with little way to fast slides with little spin; on the ground at one end of
 // the range and on a box at the other.
 int main(void)
@@ -141,5 +164,7 @@ int main(void)
 			CHECK_NEAR(way, 0, .01);
 			CHECK_NEAR(angle, 0, .01);
 		}
+	for (uint32_t substeps = 1; substeps <= 8; substeps *= 8)
+		check_path(substeps);
 	return check_end();
 }
