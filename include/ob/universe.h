@@ -142,7 +142,8 @@ typedef struct ob_motion {
 	ob_vec3 a; // m/s^2, constant while the motion holds, unless it swings (gravity in flight, 0 when supported)
 	double path; // m, length of path of the fastest surface point since the run began
 	uint32_t step; // the step that published this
-	uint32_t flags; // OB_MOTION_*
+	uint16_t flags; // OB_MOTION_*
+	uint16_t deviation_rate; // m/s by which the deviation grows after that step, coded alike
 	union {
 		struct {
 			float rest_time; // s, rest timer: time below the sleeping threshold

@@ -1,16 +1,27 @@
-// Deviation: bound of the errors of a motion since the running second began, in m, as 16 bits that a motion carries. Code
-// c > 0 is 2^((c - 48 1024) / 1024) m, to 1/1000; 0 is none, or less than 4e-15 m.
+// Deviation: bound of the errors of a motion since the running second began: of its place after a step, and of its
+// velocity, by which the first grows until the second ends. A motion carries both in 16 bits each: code c > 0 is
+// 2^((c - 48 1024) / 1024) m or m/s, to 1/1000; 0 is none, or less than 4e-15.
+//
+//   a step's errors   place and velocity add up
+//   a hit             a body that is off leaves in another direction: the velocity is off by that share of its change
+//   a new second      both begin at 0
 #ifndef OB_MOTION_DEVIATION_H
 #define OB_MOTION_DEVIATION_H
 
 #include <math.h>
 #include <stdint.h>
 
+#include <ob/motion.h>
+
 #include "elementary/elementary.h"
 
 enum { OB_DEVIATION_ONE = 48 * 1024, OB_DEVIATION_MOST = UINT16_MAX }; // code of 1 m, largest code
 
-static inline double ob_deviation(uint16_t code)
+typedef struct ob_deviation {
+	double place, rate; // m, m/s
+} ob_deviation;
+
+static inline double ob_deviation_of_code(uint16_t code)
 {
 	return code ? ob_exp((code - OB_DEVIATION_ONE) * (M_LN2 / 1024)) : 0;
 }
@@ -34,18 +45,38 @@ static inline double ob_left_of_second(uint64_t n, double h)
 	return fmax(1 - ob_steps_of_second(n, h) * h, 0);
 }
 
-// Returns the code of a body's deviation at the second's end after a hit: it begins where either of both bodies is off
-// by "most" at most, so its direction is off by that over the radius (m), and the velocity by as much of its change
-// (m/s, of surface points), for the time that is left (s).
-static inline uint16_t ob_deviation_after_hit(uint16_t most, double change, double radius, double left)
+// Returns the part of a motion's deviation that counts at the end of step n, if no step adds to it: nothing in a new second.
+static inline ob_deviation ob_deviation_at(const ob_motion *m, uint64_t n, double h)
 {
-	return ob_deviation_code(ob_deviation(most) + left * change * fmin(ob_deviation(most) / radius, 2));
+	const double rate = ob_deviation_of_code(m->deviation_rate);
+	if (n - m->step >= ob_steps_of_second(n, h))
+		return (ob_deviation){ 0, 0 };
+	return (ob_deviation){ ob_deviation_of_code(m->deviation) + rate * (double)(n - m->step) * h, rate };
 }
 
-// Returns the part of a code as of step "before" that counts at the end of step n: nothing in a new second.
-static inline uint16_t ob_deviation_at(uint16_t code, uint64_t before, uint64_t n, double h)
+// Returns its place (m) at the end of the second in which step n ends.
+static inline double ob_deviation_of_second(ob_deviation d, uint64_t n, double h)
 {
-	return n - before < ob_steps_of_second(n, h) ? code : 0;
+	return d.place + d.rate * ob_left_of_second(n, h);
+}
+
+static inline void ob_deviation_put(ob_motion *m, ob_deviation d)
+{
+	m->deviation = ob_deviation_code(d.place);
+	m->deviation_rate = ob_deviation_code(d.rate);
+}
+
+// Returns the deviation after a hit in which either of both bodies is off by "most" at most: so the direction in which it
+// leaves is off by the place over the radius (m), and its velocity by that share of its change (m/s, of surface points).
+static inline ob_deviation ob_deviation_after_hit(ob_deviation most, double change, double radius)
+{
+	return (ob_deviation){ most.place, most.rate + change * fmin(most.place / radius, 2) };
+}
+
+// Returns the larger of two deviations, by each part.
+static inline ob_deviation ob_deviation_larger(ob_deviation a, ob_deviation b)
+{
+	return (ob_deviation){ fmax(a.place, b.place), fmax(a.rate, b.rate) };
 }
 
 #endif

@@ -487,13 +487,13 @@ void ob_bodies_report(ob_solver *s, uint32_t rest)
 				 .rest_time = body->rest_time,
 				 .island = w->body[1].id,
 				 .substeps = (uint16_t)body->next_substeps,
-				 .deviation = body->deviation,
 				 .flags = (body->moved_freely ? OB_MOTION_FREE : 0) | rest | body->refinement |
 					  (expected && ob_equilibrium_body_steady(w, i) ? OB_MOTION_STEADY : 0) };
 		if (!body->contacts && !body->joints)
 			mo.a = body->acceleration;
 		if (rest)
 			mo.v = mo.w = ob_v3(0, 0, 0);
+		ob_deviation_put(&mo, body->deviation);
 		s->calls.motion(s->calls.with, &s->in->object[i - 1], &mo, body->moved_freely);
 	}
 }

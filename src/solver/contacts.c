@@ -589,6 +589,7 @@ void ob_contact_load(ob_solver *s, const ob_island_pair *pair)
 	w->elastic |= contact->e > 0;
 	const ob_pair_state *p = pair->before;
 	contact->began = !p;
+	contact->next_point = INFINITY;
 	if (!p)
 		return;
 	contact->points = p->points;

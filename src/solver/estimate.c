@@ -12,7 +12,6 @@ bool ob_estimate_create(ob_solver *s)
 {
 	if (!(s->settings->tolerance > 0) || s->methods.sides > 1)
 		return true;
-	s->estimate.bound = ob_deviation_code(s->settings->tolerance);
 	s->estimate.probe = ob_probe_create(s->settings, s->settings->substeps);
 	s->estimate.finer = ob_probe_create(s->settings, s->settings->substeps);
 	return s->estimate.probe && s->estimate.finer;
@@ -59,12 +58,18 @@ static bool is_jolted(const ob_solver *s)
 	return w->jolt * ob_coarse_time(w) > .5 * w->substeps * s->settings->tolerance;
 }
 
+// Returns the deviation (m) at the end of the running second.
+static double of_second(const ob_solver *s, ob_deviation d)
+{
+	return ob_deviation_of_second(d, s->in->step + 1, s->settings->step_length);
+}
+
 // True if an estimate has no use: the second of each body exceeds the tolerance already, and refinement does not ask.
 static bool is_useless(const ob_solver *s)
 {
 	const ob_island_work *w = &s->island;
 	for (uint32_t row = 1; row <= w->bodies; row++)
-		if (w->body[row].deviation <= s->estimate.bound)
+		if (of_second(s, w->body[row].deviation) <= s->settings->tolerance)
 			return false;
 	return w->bodies > 1 || ob_contacts_changed(w) || is_jolted(s);
 }
@@ -85,41 +90,36 @@ static uint32_t weight_of(const ob_solver *s)
 	return (phase % SOON == 0 && ob_refinement_is_doubted(s)) || (changed && lands(s));
 }
 
-void ob_estimate_count(ob_solver *s, uint16_t before, uint16_t now)
+void ob_estimate_count(ob_solver *s, uint64_t step, ob_deviation before, ob_deviation now)
 {
-	const uint16_t bound = s->estimate.bound;
-	if (before <= bound && now > bound)
-		s->counters.unbounded += (uint64_t)llround(1 / s->settings->step_length);
-	if (now > s->estimate.largest) {
-		s->estimate.largest = now;
-		s->counters.deviation = ob_max(s->counters.deviation, ob_deviation(now));
-	}
+	const double h = s->settings->step_length, tolerance = s->settings->tolerance,
+		     was = ob_deviation_of_second(before, step, h), is = ob_deviation_of_second(now, step, h);
+	if (was <= tolerance && is > tolerance)
+		s->counters.unbounded += (uint64_t)llround(1 / h);
+	s->counters.deviation = ob_max(s->counters.deviation, is);
 }
 
-// Returns the code of a row's deviation at the end of the running step, if it adds none.
-static uint16_t deviation_before(const ob_solver *s, uint32_t row)
+// Returns the row's deviation at the end of the running step, if it adds none.
+static ob_deviation deviation_before(const ob_solver *s, uint32_t row)
 {
-	const ob_motion *last = row && row <= s->island.bodies ? s->in->object[row - 1].motion : NULL;
-	return last ? ob_deviation_at(last->deviation, last->step, s->in->step + 1, s->settings->step_length) : 0;
+	if (!row || row > s->island.bodies)
+		return (ob_deviation){ 0, 0 };
+	return ob_deviation_at(s->in->object[row - 1].motion, s->in->step + 1, s->settings->step_length);
 }
 
-// Lets a body, if it moves, leave a hit in which it or the other one was off by "most" at most.
-static void leave_hit(ob_solver *s, uint32_t row, uint16_t most)
+// Lets a body, if it moves, leave the hit of a contact in which it or the other one was off by "most" at most. Where that
+// is more than the way to the next point, that one may hit first, and the body leaves in any direction.
+static void leave_hit(ob_solver *s, const ob_contact *c, uint32_t row, ob_deviation most)
 {
 	ob_island_work *w = &s->island;
-	const double h = s->settings->step_length;
 	if (!row || row > w->bodies)
 		return;
 	ob_body *body = &w->body[row];
 	const ob_motion *last = s->in->object[row - 1].motion;
 	const double *v = w->v[row], change = ob_norm(ob_sub(ob_row_linear(v), last->v)) +
 					      body->radius * ob_norm(ob_sub(ob_row_angular(v), last->w));
-	const uint16_t after =
-		ob_deviation_after_hit(most, change, body->radius, ob_left_of_second(s->in->step + 1, h));
-	if (after <= body->deviation)
-		return;
-	ob_estimate_count(s, body->deviation, after);
-	body->deviation = after;
+	const double radius = 2 * most.place < c->next_point ? body->radius : 0;
+	body->deviation = ob_deviation_larger(body->deviation, ob_deviation_after_hit(most, change, radius));
 }
 
 // Sets the deviations of bodies to those before the step, and of those that hit each other to what follows.
@@ -132,11 +132,11 @@ static void hand_over(ob_solver *s)
 		const ob_contact *c = &w->contact[i];
 		if (!c->hit && (!c->began || c->lane == OB_NO_LANE))
 			continue;
-		const uint16_t a = deviation_before(s, c->a), b = deviation_before(s, c->b), most = a > b ? a : b;
-		if (!most)
+		const ob_deviation most = ob_deviation_larger(deviation_before(s, c->a), deviation_before(s, c->b));
+		if (!(most.place > 0))
 			continue;
-		leave_hit(s, c->a, most);
-		leave_hit(s, c->b, most);
+		leave_hit(s, c, c->a, most);
+		leave_hit(s, c, c->b, most);
 	}
 }
 
@@ -153,46 +153,49 @@ typedef struct ruler {
 	double factor;
 } ruler;
 
-// Returns the error of a second (m) by the shorter of n rulers, in the units of the run; added: m, by the steps for which the
-// estimate stands.
-static double error_by(const ob_solver *s, const ruler *r, int n, uint32_t row, uint32_t weight, double *added)
+// Solutions beside which a step's own stands.
+typedef struct rulers {
+	ruler by[2];
+	int count;
+} rulers;
+
+// Returns the error of a step by the ruler that makes the shorter second.
+static ob_deviation error_by(const ob_solver *s, const rulers *r, uint32_t row)
 {
-	const double h = s->settings->step_length;
-	double least = 0;
-	*added = 0;
-	for (int i = 0; i < n; i++) {
-		double speed = 0, error = r[i].factor * ob_probe_distance(r[i].probe, &s->island, row, &speed);
-		speed *= r[i].factor;
-		const double sum = weight * h * ob_error_of_time(error, speed, h, 1);
-		if (i && !(sum < *added))
-			continue;
-		*added = sum;
-		least = ob_error_of_run(s, error, speed);
+	ob_deviation least = { 0, 0 };
+	for (int i = 0; i < r->count; i++) {
+		double rate = 0, place = ob_probe_distance(r->by[i].probe, &s->island, row, &rate);
+		const ob_deviation e = { r->by[i].factor * place, r->by[i].factor * rate };
+		if (i == 0 || of_second(s, e) < of_second(s, least))
+			least = e;
 	}
 	return least;
 }
 
-// Updates the deviation of a body. Returns its error of a second.
-static double update_deviation(ob_solver *s, const ruler *r, int n, uint32_t row, uint32_t weight)
+// Returns the deviation with such errors in so many steps.
+static ob_deviation with(ob_deviation d, ob_deviation error, uint32_t weight)
+{
+	return (ob_deviation){ d.place + weight * error.place, d.rate + weight * error.rate };
+}
+
+// Adds the errors of so many steps to a body's deviation. Returns that (m) of a second in the units of the run.
+static double update_deviation(ob_solver *s, const rulers *r, uint32_t row, uint32_t weight)
 {
 	ob_body *body = &s->island.body[row];
-	const uint16_t before = body->deviation; // and what a hit made of it
-	double added = 0;
-	const double error = weight ? error_by(s, r, n, row, weight, &added) : 0;
-	if (weight)
-		body->deviation = ob_deviation_code(ob_deviation(before) + added);
-	ob_estimate_count(s, before, body->deviation);
-	return error;
+	const ob_deviation error = error_by(s, r, row);
+	body->deviation = with(body->deviation, error, weight);
+	ob_estimate_count(s, s->in->step + 1, deviation_before(s, row), body->deviation);
+	return ob_error_of_run(s, error.place, error.rate);
 }
 
 // True if an estimate takes a body beyond the tolerance.
-static bool exceeds(const ob_solver *s, const ruler *r, uint32_t weight)
+static bool exceeds(const ob_solver *s, const rulers *r, uint32_t weight)
 {
+	const double tolerance = s->settings->tolerance;
 	for (uint32_t row = 1; row <= s->island.bodies; row++) {
-		const uint16_t before = s->island.body[row].deviation;
-		double added;
-		error_by(s, r, 1, row, weight, &added);
-		if (before <= s->estimate.bound && ob_deviation_code(ob_deviation(before) + added) > s->estimate.bound)
+		const ob_deviation before = s->island.body[row].deviation;
+		const ob_deviation after = with(before, error_by(s, r, row), weight);
+		if (of_second(s, before) <= tolerance && of_second(s, after) > tolerance)
 			return true;
 	}
 	return false;
@@ -206,20 +209,20 @@ void ob_estimate_update(ob_solver *s)
 	const uint32_t weight = weight_of(s), n = w->substeps;
 	const bool may_double = 2 * n <= OB_MAX_SUBSTEPS, finer = (refined || n < 2 || w->joints.count) && may_double;
 	const uint32_t other = finer ? 2 * n : coarser_than(n, w->bodies);
-	ruler r[2] = { { s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) } };
-	int rulers = 1;
+	rulers r = { .count = 0 };
 	double error = 0;
 	if (weight) {
 		ob_solver_enter(s, OB_PROFILE_ESTIMATE);
 		ob_probe_solve(s->estimate.probe, s->in, other, n);
+		r.by[r.count++] = (ruler){ s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) };
 		s->counters.estimates += w->bodies;
-		if (!finer && may_double && w->bodies <= FEW_BODIES && exceeds(s, r, weight)) {
+		if (!finer && may_double && w->bodies <= FEW_BODIES && exceeds(s, &r, weight)) {
 			ob_probe_solve(s->estimate.finer, s->in, 2 * n + 1, n);
-			r[rulers++] = (ruler){ s->estimate.finer, (2 * n + 1.) / (n + 1) };
+			r.by[r.count++] = (ruler){ s->estimate.finer, (2 * n + 1.) / (n + 1) };
 		}
 	}
 	for (uint32_t row = 1; row <= w->bodies; row++)
-		error = ob_max(error, update_deviation(s, r, rulers, row, weight));
+		error = ob_max(error, update_deviation(s, &r, row, weight));
 	if (s->estimate.probe && !w->balanced)
 		ob_refinement_update(s, weight && !is_jolted(s), error);
 }

@@ -6,7 +6,8 @@
 //
 // It is made in one of 16 steps of an island, where it stands for them all. A step in which contacts of one or two bodies
 // change, or the forces on one, has one of its own, which stands for no other; so has one in which a body lands among a few. Each body's motion
-// carries the sum since the second began (motion/deviation.h). A hit hands the larger sum of both bodies on, and lets it grow.
+// carries the sums since the second began, of place and of velocity (motion/deviation.h). A hit hands the larger ones of both
+// bodies on, and adds to the velocity's.
 // Ids and steps decide, so it is the same for any worker, rank, kill and resume.
 #ifndef OB_SOLVER_ESTIMATE_H
 #define OB_SOLVER_ESTIMATE_H
@@ -20,7 +21,7 @@ void ob_estimate_finish(ob_solver *s);
 // Estimates the error of the island's solution if that is due, updates its bodies' deviations and refinement, and counts
 // what is within the tolerance.
 void ob_estimate_update(ob_solver *s);
-// Counts a body's second as unbounded when its deviation, a code, exceeds the tolerance first.
-void ob_estimate_count(ob_solver *s, uint16_t before, uint16_t now);
+// Counts a body's second as unbounded when its deviation at the end of a step takes it beyond the tolerance first.
+void ob_estimate_count(ob_solver *s, uint64_t step, ob_deviation before, ob_deviation now);
 
 #endif

@@ -769,6 +769,19 @@ static bool join_violated(ob_solver *s, uint32_t chain, double t)
 	return any;
 }
 
+// Notes how far the next corner is from a hit: a body that is off by more may hit with that one first. Points of round
+// shapes follow each other smoothly.
+static void note_next_point(ob_island_work *w, const ob_impact_instant *i)
+{
+	ob_contact *c = &w->contact[i->contact];
+	for (int side = 0; side < 2; side++)
+		if (!ob_shape_is(w->body[side ? c->b : c->a].shape, OB_CORNERED | OB_UNBOUNDED))
+			return;
+	for (int j = 0; j < i->m.points; j++)
+		if (i->m.gap[j] > OB_IMPACT_SIMULTANEOUS * w->unit.length)
+			c->next_point = ob_min(c->next_point, i->m.gap[j]);
+}
+
 // Solves one impact of all contacts from "chain" on, which hit at the same instant.
 static void solve_set(ob_solver *s, uint32_t chain)
 {
@@ -799,6 +812,7 @@ static void solve_set(ob_solver *s, uint32_t chain)
 			continue;
 		w->contact[i->contact].rebounds++;
 		w->contact[i->contact].hit = true;
+		note_next_point(w, i);
 		i->time = t;
 		ob_touches_note_impact(s, i);
 		take_geometry(s, i, &x->at[x->slot[w->contact[i->contact].a]],

@@ -13,6 +13,7 @@
 
 #include "contact/batch.h"
 #include "contact/impact.h"
+#include "motion/deviation.h"
 #include "solver/sparse_solver.h"
 #include "settings/settings.h"
 #include "table/pair_state.h"
@@ -47,7 +48,7 @@ typedef struct ob_body {
 	double hit; // s into the partial substep: its last impact; 0: none
 	uint64_t colours; // bit per colour in use
 	uint32_t next_substeps; // its request for the next step (solver/error_control.h)
-	uint16_t deviation; // as ob_motion.deviation (solver/estimate.h)
+	ob_deviation deviation; // at the step's end (solver/estimate.h)
 	uint32_t refinement; // one of OB_MOTION_REFINEMENT, or none (solver/refinement.h)
 	uint32_t active_iteration; // last iteration that changed its velocity by more than the wake threshold
 	uint32_t first_adjacent, adjacent; // range in adjacency
@@ -96,6 +97,7 @@ typedef struct ob_contact {
 	bool as_of_instant; // its geometry is that of an instant in the running partial substep
 	bool began; // its bodies did not touch at the step's start
 	bool hit; // its bodies rebounded within the step
+	double next_point; // m: least gap, at such an instant, of a point that had not hit; infinity: none
 	bool mirror; // second contact of a pair that is solved for each side apart: its own body is b
 } ob_contact;
 

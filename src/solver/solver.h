@@ -135,7 +135,6 @@ typedef struct ob_solver {
 	ob_ode_bodies ode_bodies;
 	struct { // solver/estimate.h
 		struct ob_probe *probe, *finer; // NULL: no estimates are made
-		uint16_t bound, largest; // codes of deviations: of the tolerance; the largest so far
 	} estimate;
 	const ob_island_input *in; // input of the running call
 	ob_island_work island; // scratch

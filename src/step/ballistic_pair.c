@@ -108,8 +108,7 @@ static bool apply_impact(ob_sim *s, const ob_course c[2], const ob_manifold *m, 
 static bool rebound_from_each_other(ob_sim *s, ob_course c[2], const ob_manifold *m)
 {
 	ob_state at[2] = { ob_course_state(s, &c[0]), ob_course_state(s, &c[1]) };
-	const uint16_t d[2] = { ob_course_deviation(s, &c[0]), ob_course_deviation(s, &c[1]) },
-		       most = d[0] > d[1] ? d[0] : d[1];
+	const ob_deviation most = ob_deviation_larger(ob_course_deviation(s, &c[0]), ob_course_deviation(s, &c[1]));
 	if (!apply_impact(s, c, m, at) || !ob_course_set_off(s, &c[0], &at[0], most) ||
 	    !ob_course_set_off(s, &c[1], &at[1], most))
 		return false;

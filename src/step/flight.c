@@ -258,7 +258,7 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, const ob_spin *
 	const ob_state now = { { ob_centre_at(m, end), m->q }, ob_velocity_at(m, end), m->w };
 	double box[6];
 	ob_motion_swept_bounds(&rest, body->shape, body->size, last - from, box);
-	m->deviation = ob_deviation_at(m->deviation, m->step, step, h);
+	ob_deviation_put(m, ob_deviation_at(m, step, h));
 	m->step = (uint32_t)step;
 	m->reach = (float)reach;
 	m->island = id;
@@ -423,30 +423,31 @@ ob_state ob_course_state(ob_sim *s, const ob_course *c)
 	return now;
 }
 
-uint16_t ob_course_deviation(const ob_sim *s, const ob_course *c)
+ob_deviation ob_course_deviation(const ob_sim *s, const ob_course *c)
 {
-	return ob_deviation_at(c->m.deviation, c->m.step, ob_step_count(s->u) + 1, s->settings->step_length);
+	return ob_deviation_at(&c->m, ob_step_count(s->u) + 1, s->settings->step_length);
 }
 
 // Its deviation after a hit, where either of both bodies is off by "most" at most.
-static uint16_t deviation_after(const ob_sim *s, const ob_course *c, const ob_state *at, uint16_t most)
+static ob_deviation deviation_after(const ob_sim *s, const ob_course *c, const ob_state *at, ob_deviation most)
 {
 	const ob_passport *body = ob_passport_of(s->u, c->id);
 	const double radius = ob_shape_radius(body->shape, body->size),
 		     change = ob_norm(ob_sub(at->v, ob_velocity_at(&c->m, c->since))) +
 			      radius * ob_norm(ob_sub(at->w, c->m.w));
-	return ob_deviation_after_hit(most, change, radius,
-				      ob_left_of_second(ob_step_count(s->u) + 1, s->settings->step_length));
+	return ob_deviation_after_hit(most, change, radius);
 }
 
-bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at, uint16_t most)
+bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at, ob_deviation most)
 {
 	if (c->impacts++ == IMPACTS_PER_STEP)
 		return false;
-	if (most) {
-		const uint16_t before = ob_course_deviation(s, c);
-		c->m.deviation = deviation_after(s, c, at, most);
-		ob_estimate_count(&s->solver, before, c->m.deviation);
+	if (most.place > 0) {
+		const uint64_t step = ob_step_count(s->u) + 1;
+		const ob_deviation before = ob_course_deviation(s, c), after = deviation_after(s, c, at, most);
+		ob_deviation_put(&c->m, after);
+		c->m.step = (uint32_t)step;
+		ob_estimate_count(&s->solver, step, before, after);
 	}
 	c->m.t0 = c->since;
 	c->m.p = at->pose.p, c->m.q = at->pose.q, c->m.v = at->v, c->m.w = at->w;

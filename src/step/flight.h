@@ -10,6 +10,7 @@
 #ifndef OB_STEP_FLIGHT_H
 #define OB_STEP_FLIGHT_H
 
+#include "motion/deviation.h"
 #include "motion/flight.h"
 #include "step/state.h"
 
@@ -63,11 +64,11 @@ void ob_courses_find_landings(ob_sim *s, ob_course *const *c, uint32_t n);
 void ob_course_follow(ob_sim *s, ob_course *c, double until);
 // Returns the present state of the course.
 ob_state ob_course_state(ob_sim *s, const ob_course *c);
-// Returns the code of its deviation (motion/deviation.h) at the step's end.
-uint16_t ob_course_deviation(const ob_sim *s, const ob_course *c);
+// Returns its deviation (motion/deviation.h) at the step's end.
+ob_deviation ob_course_deviation(const ob_sim *s, const ob_course *c);
 // Continues from the state after an impact; most: the larger deviation of those that met. Returns false if the object was
 // hit too often for a step.
-bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at, uint16_t most);
+bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at, ob_deviation most);
 // Rebounds from the plane that it has reached. Returns false if it does not rebound, or was hit too often.
 bool ob_course_rebound(ob_sim *s, ob_course *c);
 // Publishes the course at the step's end.

@@ -6,6 +6,7 @@
 #include "baseline/ode_baseline.h"
 #include "exchange/results.h"
 #include "schedule/calendar.h"
+#include "motion/deviation.h"
 #include "schedule/pair_checks.h"
 #include "step/broadphase.h"
 #include "step/budget.h"
@@ -105,6 +106,7 @@ void ob_sim_kick(ob_universe *u, uint32_t id, ob_vec3 push, ob_vec3 twist)
 			     ob_rotate(&r, ob_v3(l.x / pass->inertia.x, l.y / pass->inertia.y, l.z / pass->inertia.z)));
 	}
 	m.a = supported ? ob_v3(0, 0, 0) : ob_external_acceleration(run, pass);
+	ob_deviation_put(&m, ob_deviation_at(&m, step, run->step_length));
 	m.step = (uint32_t)step;
 	m.flags = 0;
 	m.rest_time = 0;

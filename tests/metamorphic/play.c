@@ -342,8 +342,7 @@ bool play_beside(const random_scene *s, uint64_t step, uint32_t substeps, played
 		good = run_to(&q, step + k);
 	for (uint32_t i = 0; good && i < s->bodies; i++) {
 		const ob_motion *m = ob_newest_motion(p.u, i);
-		out->said[i] =
-			ob_deviation(ob_deviation_at(m->deviation, m->step, step + PLAY_STEPS, s->run.step_length));
+		out->said[i] = ob_deviation_at(m, step + PLAY_STEPS, s->run.step_length).place;
 		out->off[i] = distance(&p, &q, i);
 	}
 	close_player(&q);
