@@ -317,16 +317,14 @@ static bool go_to_aims(ob_island_work *w, const limits *most)
 	     project_solution(w, alpha))
 		alpha *= backtrack;
 	f->gave_up = t < min_step;
-	if (f->gave_up)
-		return false;
-	for (uint32_t i = 0; i < w->batches; i++)
+	for (uint32_t i = 0; i < w->batches && !f->gave_up; i++)
 		for (int k = 0; k < OB_ROWS; k++)
 			w->batch[i].impulse[k] += t * f->impulse_change[i][k];
-	for (uint32_t i = 1; i <= w->bodies; i++)
+	for (uint32_t i = 1; i <= w->bodies && !f->gave_up; i++)
 		for (int c = 0; c < 6; c++)
 			w->u[i][c] += t * w->delta[i][c];
 	memset(w->delta, 0, w->rows * sizeof *w->delta);
-	return true;
+	return !f->gave_up;
 }
 
 // ---- from nothing
