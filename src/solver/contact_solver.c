@@ -22,7 +22,8 @@ static const int fine_block_sweeps = 8; // block sweeps for a converged solution
 static const double converged = 1e-12; // m/s: a block is solved once a sweep changes less
 
 // Bodies at rest.
-static const double settled = 1e-10, nearly_settled = 1e-6; // m/s: solved; nearly, so not given up
+static const double settled = 1e-10, sway_settled = 1e-7; // m/s: solved; enough while an island sways
+static const double nearly_settled = 1e-6; // m/s: not given up
 static const int max_settling_rounds = 32; // in a partial substep
 static const uint32_t max_settling_iterations = 512, max_failures = 4; // iterations; failures of direct solves
 
@@ -167,8 +168,9 @@ void ob_solver_converge(ob_solver *s, double enough, uint32_t max_iterations)
 	converge(s, &iteration, max_iterations);
 }
 
-// Solves cycles of contacts between bodies at rest. Alternates direct solves with conjugate iterations, more and more
-// of them if a direct solve does not reduce the residual. Gives up for this step if the end is not in sight.
+// Solves cycles of contacts between bodies at rest, or that sway. Alternates direct solves with conjugate iterations,
+// more and more of them if a direct solve does not reduce the residual. Gives up for this step if the end is not in
+// sight.
 static void settle(ob_solver *s, const ob_solver_iteration *last)
 {
 	ob_solver_iteration iteration = *last;
@@ -176,7 +178,8 @@ static void settle(ob_solver *s, const ob_solver_iteration *last)
 	double residual = INFINITY;
 	iteration.block_sweeps = fine_block_sweeps;
 	iteration.block_tolerance = 0;
-	iteration.wake_threshold = settled * s->island.unit.speed;
+	iteration.wake_threshold =
+		(s->island.direct.shape == OB_DIRECT_SWAYING ? sway_settled : settled) * s->island.unit.speed;
 	for (int round = 0; round < max_settling_rounds && made < max_settling_iterations && !ob_budget_spent(s);
 	     round++) {
 		made += iterations;

@@ -31,6 +31,7 @@ static const double creep_speed = 1e-4; // m/s: slower bodies whose contacts hol
 static const double neutral_speed = 1e-9; // m/s: a point that opens more slowly holds, even if it does not press
 static const double standing_speed = .02; // m/s: faster bodies fall or slide
 static const double rest_speed = 1e-3, min_rest_time = .25; // m/s, s: a body rests that has been slower for longer
+static const double sway_share = 1. / 5; // of the fastest body's speed, as that of contacts between more layers
 static const double unmoved_path = 2e-4; // m: or that has moved less since its start
 
 static ob_batch *batch_of(const ob_island_work *w, const ob_direct_contact *c)
@@ -453,7 +454,7 @@ bool ob_direct_solve(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	ob_direct_solver *f = &w->direct;
-	const limits *most = f->shape == OB_DIRECT_CYCLIC ? &of_cycles : &of_trees;
+	const limits *most = f->shape >= OB_DIRECT_CYCLIC ? &of_cycles : &of_trees;
 	for (uint32_t i = 0; i < w->batches; i++)
 		ob_batch_prepare(&w->batch[i]);
 	find_row_velocities(w);
@@ -468,7 +469,7 @@ bool ob_direct_solve(ob_solver *s)
 	set_aims(w);
 	if (go_to_aims(w, most))
 		return true;
-	return f->shape == OB_DIRECT_CYCLIC && find_from_nothing(s, most) && go_to_aims(w, most);
+	return f->shape >= OB_DIRECT_CYCLIC && find_from_nothing(s, most) && go_to_aims(w, most);
 }
 
 // ---- decision for a direct solve
@@ -578,8 +579,18 @@ static bool is_worthwhile(const ob_solver *s, double residual)
 	// After a direct solve, the next partial substep is solved finely, too. The correction is part of the impulses
 	// that the warm start repeats; left alone, it would oscillate for ever.
 	const double enough =
-		f->used_last && f->shape != OB_DIRECT_CYCLIC ? residual_after_correction : residual_threshold;
+		f->used_last && f->shape < OB_DIRECT_CYCLIC ? residual_after_correction : residual_threshold;
 	return residual > enough * s->island.unit.speed || (!f->solves && creeps(&s->island));
+}
+
+// True if bodies move far more than any touches another: an island that sways as a whole. Iterations, each carrying an
+// impulse one pair further, feed the sway of a tower; nothing else need move for it to be solved to the end.
+static bool sways(const ob_island_work *w)
+{
+	double sum, fastest = 0;
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		fastest = ob_max(fastest, w->body[i].speed);
+	return fastest_contact(w, w->v, &sum) < sway_share * fastest;
 }
 
 static void find_shape(ob_solver *s)
@@ -590,6 +601,7 @@ static void find_shape(ob_solver *s)
 		f->shape = !stands_still(w)      ? OB_DIRECT_UNFIT
 			   : !closes_cycles(w)   ? OB_DIRECT_TREES
 			   : has_come_to_rest(w) ? OB_DIRECT_CYCLIC
+			   : sways(w)            ? OB_DIRECT_SWAYING
 						 : OB_DIRECT_UNFIT;
 	if (f->shape != OB_DIRECT_UNFIT)
 		reserve(f, w);
@@ -612,5 +624,5 @@ bool ob_direct_settles(ob_solver *s, double residual)
 	if (!is_worthwhile(s, residual))
 		return false;
 	find_shape(s);
-	return s->island.direct.shape == OB_DIRECT_CYCLIC;
+	return s->island.direct.shape >= OB_DIRECT_CYCLIC;
 }

@@ -116,8 +116,9 @@ typedef struct ob_direct_solver {
 		OB_DIRECT_UNKNOWN,
 		OB_DIRECT_UNFIT,
 		OB_DIRECT_TREES,
-		OB_DIRECT_CYCLIC
-	} shape; // class of the running partial substep's contacts: too fast, trees, or with cycles
+		OB_DIRECT_CYCLIC,
+		OB_DIRECT_SWAYING
+	} shape; // class of the running partial substep's contacts: too fast, trees, with cycles at rest, and that sway
 	bool used_last; // the last partial substep was solved directly
 	bool gave_up; // a solve in this step did not reduce the residual
 	int solves; // in the running partial substep
