@@ -178,14 +178,20 @@ static ob_deviation with(ob_deviation d, ob_deviation error, uint32_t weight)
 	return (ob_deviation){ d.place + weight * error.place, d.rate + weight * error.rate };
 }
 
-// Adds the errors of so many steps to a body's deviation. Returns that (m) of a second in the units of the run.
-static double update_deviation(ob_solver *s, const rulers *r, uint32_t row, uint32_t weight)
+// Adds the errors of so many steps to a body's deviation.
+static void update_deviation(ob_solver *s, const rulers *r, uint32_t row, uint32_t weight)
 {
 	ob_body *body = &s->island.body[row];
-	const ob_deviation error = error_by(s, r, row);
-	body->deviation = with(body->deviation, error, weight);
+	body->deviation = with(body->deviation, error_by(s, r, row), weight);
 	ob_estimate_count(s, s->in->step + 1, deviation_before(s, row), body->deviation);
-	return ob_error_of_run(s, error.place, error.rate);
+}
+
+// Returns a row's error (m) by a ruler, of a second in the units of the run.
+static double error_of_run(const ob_solver *s, const ruler *r, uint32_t row)
+{
+	double rate = 0;
+	const double place = ob_probe_distance(r->probe, &s->island, row, &rate);
+	return ob_error_of_run(s, r->factor * place, r->factor * rate);
 }
 
 // True if an estimate takes a body beyond the tolerance.
@@ -216,13 +222,15 @@ void ob_estimate_update(ob_solver *s)
 		ob_probe_solve(s->estimate.probe, s->in, other, n);
 		r.by[r.count++] = (ruler){ s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) };
 		s->counters.estimates += w->bodies;
+		for (uint32_t row = 1; row <= w->bodies; row++)
+			error = ob_max(error, error_of_run(s, r.by, row));
 		if (!finer && may_double && w->bodies <= FEW_BODIES && exceeds(s, &r, weight)) {
 			ob_probe_solve(s->estimate.finer, s->in, 2 * n + 1, n);
 			r.by[r.count++] = (ruler){ s->estimate.finer, (2 * n + 1.) / (n + 1) };
 		}
 	}
 	for (uint32_t row = 1; row <= w->bodies; row++)
-		error = ob_max(error, update_deviation(s, &r, row, weight));
+		update_deviation(s, &r, row, weight);
 	if (s->estimate.probe && !w->balanced)
 		ob_refinement_update(s, weight && !is_jolted(s), error);
 }
