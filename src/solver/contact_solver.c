@@ -196,15 +196,6 @@ static void settle(ob_solver *s, const ob_solver_iteration *last)
 	s->island.direct.gave_up = residual > nearly_settled * s->island.unit.speed;
 }
 
-// Returns the largest speed (m/s) of any point of a body.
-static double largest_speed(const ob_island_work *w)
-{
-	double most = 0;
-	for (uint32_t i = 1; i <= w->bodies; i++)
-		most = ob_max(most, w->body[i].speed);
-	return most;
-}
-
 // Returns the wake threshold (m/s). A coarse run leaves larger changes to the next partial substep while something
 // moves. It does not if all is slow: then bodies would creep.
 static double wake_threshold_of(const ob_solver *s)
@@ -215,7 +206,7 @@ static double wake_threshold_of(const ob_solver *s)
 				    wake * w->substep / w->h); // a shorter partial substep moves less
 	if (w->coarseness == 1)
 		return least;
-	return ob_max(least, ob_min(coarse_wake_share * largest_speed(w), coarse_wake_way * w->tolerance / w->h));
+	return ob_max(least, ob_min(coarse_wake_share * ob_largest_speed(w), coarse_wake_way * w->tolerance / w->h));
 }
 
 static bool few_touch(const ob_island_work *w)

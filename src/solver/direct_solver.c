@@ -587,10 +587,8 @@ static bool is_worthwhile(const ob_solver *s, double residual)
 // impulse one pair further, feed the sway of a tower; nothing else need move for it to be solved to the end.
 static bool sways(const ob_island_work *w)
 {
-	double sum, fastest = 0;
-	for (uint32_t i = 1; i <= w->bodies; i++)
-		fastest = ob_max(fastest, w->body[i].speed);
-	return fastest_contact(w, w->v, &sum) < sway_share * fastest;
+	double sum;
+	return fastest_contact(w, w->v, &sum) < sway_share * ob_largest_speed(w);
 }
 
 static void find_shape(ob_solver *s)

@@ -186,12 +186,11 @@ static void update_deviation(ob_solver *s, const rulers *r, uint32_t row, uint32
 	ob_estimate_count(s, s->in->step + 1, deviation_before(s, row), body->deviation);
 }
 
-// Returns a row's error (m) by a ruler, of a second in the units of the run.
-static double error_of_run(const ob_solver *s, const ruler *r, uint32_t row)
+// Returns a row's error (m) of a second in the units of the run.
+static double error_of_run(const ob_solver *s, const rulers *r, uint32_t row)
 {
-	double rate = 0;
-	const double place = ob_probe_distance(r->probe, &s->island, row, &rate);
-	return ob_error_of_run(s, r->factor * place, r->factor * rate);
+	const ob_deviation error = error_by(s, r, row);
+	return ob_error_of_run(s, error.place, error.rate);
 }
 
 // True if an estimate takes a body beyond the tolerance.
@@ -223,7 +222,7 @@ void ob_estimate_update(ob_solver *s)
 		r.by[r.count++] = (ruler){ s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) };
 		s->counters.estimates += w->bodies;
 		for (uint32_t row = 1; row <= w->bodies; row++)
-			error = ob_max(error, error_of_run(s, r.by, row));
+			error = ob_max(error, error_of_run(s, &r, row));
 		if (!finer && may_double && w->bodies <= FEW_BODIES && exceeds(s, &r, weight)) {
 			ob_probe_solve(s->estimate.finer, s->in, 2 * n + 1, n);
 			r.by[r.count++] = (ruler){ s->estimate.finer, (2 * n + 1.) / (n + 1) };

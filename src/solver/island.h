@@ -331,6 +331,15 @@ typedef struct ob_island_work {
 	ob_joint_set joints;
 } ob_island_work;
 
+// Returns the largest speed (m/s) of any point of a body, as of its bound.
+static inline double ob_largest_speed(const ob_island_work *w)
+{
+	double most = 0;
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		most = ob_max(most, w->body[i].speed);
+	return most;
+}
+
 // Raises a threshold in a coarse run: `usual` times the coarseness, at most `bound`, which follows from the tolerance,
 // and at least `usual`. At the default tolerance and below it is `usual`.
 static inline double ob_coarser(const ob_island_work *w, double usual, double bound)

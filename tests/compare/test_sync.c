@@ -113,32 +113,11 @@ static void test_hypotheses(void)
 	       (const char *[]){ "Undecided.", "no power is excluded", NULL });
 	expect(1, (made){ .base = 1e-5, .order = 1, .cost = 3, .gains_from = 1 },
 	       (const char *[]){ "Not tested.", NULL });
-	expect(2,
-	       (made){ .base = 1e-5,
-		       .order = 1,
-		       .cost = 3,
-		       .gains_from = .03,
-		       .scatter = 0,
-		       .order_late = 0,
-		       .by_mail = .7 },
+	expect(2, (made){ .base = 1e-5, .order = 1, .cost = 3, .gains_from = .03, .by_mail = .7 },
 	       (const char *[]){ "Not contradicted.", "10 ms: none", NULL });
-	expect(2,
-	       (made){ .base = 1e-5,
-		       .order = 1,
-		       .cost = 3,
-		       .gains_from = .03,
-		       .scatter = 0,
-		       .order_late = 0,
-		       .by_mail = .1 },
+	expect(2, (made){ .base = 1e-5, .order = 1, .cost = 3, .gains_from = .03, .by_mail = .1 },
 	       (const char *[]){ "Contradicted.", NULL });
-	expect(2,
-	       (made){ .base = 1e-5,
-		       .order = 1,
-		       .cost = 3,
-		       .gains_from = .03,
-		       .scatter = 0,
-		       .order_late = 0,
-		       .by_mail = .5 },
+	expect(2, (made){ .base = 1e-5, .order = 1, .cost = 3, .gains_from = .03, .by_mail = .5 },
 	       (const char *[]){ "Undecided.", NULL });
 }
 

@@ -1,4 +1,4 @@
-// What acts along hinges and slides: limits, springs, dampers, rotors, friction, motors, and breaks, beside closed forms.
+// Limits, springs, dampers, rotors, friction, motors, and breaks along hinges and slides, beside closed forms.
 #include "mechanism.h"
 
 #include "check.h"

@@ -1,4 +1,4 @@
-// What acts on the turns of balls and universals: springs, dampers, rotors, and limits, beside closed forms.
+// Springs, dampers, rotors, and limits of the turns of balls and universals, beside closed forms.
 #include "mechanism.h"
 
 #include "motion/joint_value.h"
