@@ -8,6 +8,7 @@ static const double steepest_face = .05; // cosine: over a cap, a steeper face h
 static const double upright = 1e-6; // rad: a cap that leans by less is level
 static const double pressing = 1e-6; // relative to an acceleration: a smaller part along a facet presses nowhere
 static const double standing = 1 - 1e-6; // cosine: a cap that leans more, by 1.4 mrad, touches with its rim
+static const double leaning = 1.4e-3; // sine: a side that leans more touches with its rim
 static const double parallel = .99; // cosine: caps with rims that count as in one plane
 static const double border = 1e-9; // relative to the facet's size: so far outside counts as inside
 static const double as_low = 1e-4; // relative to ob_spots' same: spots that are lower by less are not lower
@@ -99,10 +100,13 @@ typedef struct disc {
 	double radius;
 } disc;
 
-// Returns the radius (m) of a cap of four points that stands on the other facet; 0: it leans on its rim.
-static double standing_radius(const ob_spots *s, const disc *cap)
+// Returns the ob_manifold.disc_radius of a cap. whole: all four points of its rim are over the other facet; first: the lowest
+// one is.
+static double cap_radius(const ob_spots *s, const disc *cap, bool whole, bool first)
 {
-	return s->n == 4 && fabs(ob_dot(cap->normal, s->normal)) > standing ? cap->radius : 0;
+	if (!(fabs(ob_dot(cap->normal, s->normal)) > standing))
+		return first ? -cap->radius : 0;
+	return whole && s->n == 4 ? cap->radius : 0;
 }
 
 typedef struct polygon {
@@ -234,12 +238,14 @@ static void polygon_and_disc(ob_spots *s, const polygon *p, const disc *c, const
 {
 	ob_vec3 flat[OB_HULL_CORNERS_MAX]; // corners, moved into the disc's plane
 	int whole = 0;
+	bool first = false;
 	for (int k = 0; k < 4; k++) {
 		ob_vec3 x = ob_madd(c->centre, c->radius, rim[k]);
 		ob_vec3 y = into_plane(x, s->normal, p->corner[0], p->normal);
 		if (!inside_polygon(p, s->normal, x))
 			continue;
 		add(s, polygon_is_on ? y : x, polygon_is_on ? x : y);
+		first |= k == 0;
 		whole++;
 	}
 	for (int k = 0; k < p->n; k++) {
@@ -261,8 +267,7 @@ static void polygon_and_disc(ob_spots *s, const polygon *p, const disc *c, const
 			add(s, polygon_is_on ? y : x, polygon_is_on ? x : y);
 		}
 	}
-	if (whole == 4)
-		s->disc_radius = standing_radius(s, c);
+	s->disc_radius = cap_radius(s, c, whole == 4, first);
 }
 
 // Finds the crossing of two discs' rims near x, which is in the plane of the first, as seen along the normal n. Solves
@@ -296,13 +301,14 @@ static void disc_and_disc(ob_spots *s, const disc *on, const disc *over, const o
 	ob_vec3 centre = into_plane(over->centre, n, on->centre, n), way = ob_sub(centre, on->centre);
 	const double l = ob_norm(way), r = on->radius, q = over->radius;
 	int whole = 0;
+	bool first = false;
 	for (int k = 0; k < 4; k++) {
 		ob_vec3 x = ob_madd(over->centre, q, rim_over[k]), y = into_plane(x, n, on->centre, n);
 		if (ob_norm(ob_sub(y, on->centre)) <= r * (1 + border))
-			add(s, y, x), whole++;
+			add(s, y, x), whole++, first |= k == 0;
 	}
 	if (!level || l + q <= r * (1 + border)) {
-		s->disc_radius = whole == 4 ? standing_radius(s, over) : 0;
+		s->disc_radius = cap_radius(s, over, whole == 4, first);
 	} else if (l + r <= q * (1 + border)) {
 		s->n = 0;
 		for (int k = 0; k < 4; k++) {
@@ -369,8 +375,13 @@ static void line_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 		   !within_circle(below[0], below[1], origin, on->size.x * (1 + border), share)) {
 		return;
 	}
+	const double lean = ob_dot(n, ob_sub(end[1], end[0])) / ob_norm(ob_sub(end[1], end[0]));
+	const int first = lean < 0; // the lower end
+	if (ob_shape_is(over->shape, OB_RIMMED) && fabs(lean) > leaning && s->n == 0 &&
+	    (first ? share[1] >= 1 : share[0] <= 0))
+		s->disc_radius = -over->size.x;
 	for (int k = 0; k < 2; k++) {
-		double at = ob_min(ob_max(share[k], 0), 1);
+		double at = ob_min(ob_max(share[k ^ first], 0), 1);
 		add(s, between(below[0], below[1], at), between(end[0], end[1], at));
 	}
 }
@@ -386,7 +397,7 @@ static void cap_over(ob_spots *s, const ob_placed *on, const ob_placed *over)
 			ob_vec3 x = ob_madd(cap.centre, cap.radius, rim[k]);
 			add(s, into_plane(x, s->normal, on->p, s->normal), x);
 		}
-		s->disc_radius = standing_radius(s, &cap);
+		s->disc_radius = cap_radius(s, &cap, true, true);
 	} else if (ob_shape_is(on->shape, OB_CORNERED)) {
 		const polygon p = face_of(on, s->normal);
 		polygon_and_disc(s, &p, &cap, rim, true);

@@ -14,7 +14,7 @@ typedef struct ob_spots {
 	int n;
 	ob_vec3 at[OB_SPOTS_MAX]; // m, midway between the surfaces
 	double gap[OB_SPOTS_MAX]; // m
-	double disc_radius; // m: radius of a cap that stands on the other facet as a whole; 0: none does
+	double disc_radius; // m, as ob_manifold.disc_radius
 } ob_spots;
 
 // Directions of four points on the cylinder's rim, a quarter apart. The first is where the cap reaches farthest along

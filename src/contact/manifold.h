@@ -33,7 +33,8 @@ typedef struct ob_manifold {
 	ob_vec3 at[4]; // m, world, midway between the surfaces
 	double gap[4]; // m along the normal; < 0 penetrates
 	// m: radius of a contact disc about the points' mean; the points lie on its rim. 0: the contact area is the
-	// points' convex hull. A finder receives 0, and sets it for a disc only.
+	// points' convex hull. < 0: a disc leans there, and touches with the first point alone. A finder receives 0, and
+	// sets it for a disc only.
 	double disc_radius;
 	double separation; // m, lower bound of the distance if positive; otherwise minus the depth
 	// m, path of both bodies together after which the manifold is found again; infinity, unless a finder knows that

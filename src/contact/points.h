@@ -188,7 +188,10 @@ static void set_lane(ob_batch *b, int l, const ob_batch_lane *in, ob_vec3 *frict
 	const ob_vec3 n = in->normal;
 	ob_vec3 t1, t2, ca = { 0, 0, 0 }, cb = { 0, 0, 0 };
 	lanes from[3];
-	if (in->points > 0)
+	const bool leans = in->disc_radius < 0;
+	if (leans)
+		ca = in->arm_a[0], cb = in->arm_b[0];
+	else if (in->points > 0)
 		find_friction(&of_a, &of_b, n, &ca, &cb);
 	*friction_a = ca, *friction_b = cb;
 	ob_tangents(n, &t1, &t2);
@@ -213,8 +216,9 @@ static void set_lane(ob_batch *b, int l, const ob_batch_lane *in, ob_vec3 *frict
 	lanes_put(&b->ima, l, in->inv_mass_a);
 	lanes_put(&b->imb, l, in->inv_mass_b);
 	lanes_put(&b->mu, l, in->mu);
-	lanes_put(&b->radius, l, in->points > 1 ? far[0] + far[1] + far[2] + far[3] : 0);
-	set_patch(b, l, x, y, in->points, in->points > 1 ? in->disc_radius : 0);
+	const int points = leans ? 1 : in->points; // of the patch
+	lanes_put(&b->radius, l, points > 1 ? far[0] + far[1] + far[2] + far[3] : 0);
+	set_patch(b, l, x, y, points, points > 1 ? in->disc_radius : 0);
 	b->body_a[l] = in->body_a;
 	b->body_b[l] = in->body_b;
 	b->live |= 1u << l;

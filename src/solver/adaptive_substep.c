@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "shape/part.h"
 #include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/contacts.h"
@@ -12,6 +13,8 @@
 
 // Bound of the turn (rad) and slide (share of the smaller thickness) of two touching bodies in a partial substep.
 static const double max_motion = .03;
+static const double max_round = .05; // rad: bound of the way of a contact round a rim in a partial substep
+static const double most_parts = 16; // partial substeps in a substep that it asks for at most
 static const double unnoticed = .5; // share of the tolerance that a turn may use in a coarse run
 static const double fast_share = 1. / 10; // least share of both bounds, for bodies that outrun their thickness
 static const double touching_gap = 1e-3; // m: a smaller gap counts as contact, as in a swept test
@@ -33,6 +36,43 @@ static double geometry_lifetime(const ob_island_work *w, const ob_body_row *rows
 	const double max_turn = w->stretch * ob_coarser(w, max_motion, sqrt(2 * unnoticed * allowed)),
 		     max_slide = w->stretch * ob_coarser(w, max_motion, allowed);
 	return ob_min(max_turn * share / turn, max_slide * share * thin / slide);
+}
+
+static ob_vec3 axis_of(const ob_body *body, const ob_hull *part)
+{
+	ob_vec3 centre = { 0, 0, 0 };
+	ob_mat3 r = body->r;
+	if (ob_part_is_round(part))
+		ob_part_enter(part, &centre, &r);
+	return ob_column(&r, 2);
+}
+
+// Returns the rate (rad/s) at which the point where a rim touches goes round it. The rim that leans more counts, if there are two.
+static double rate_round_rim(const ob_island_work *w, const ob_contact *contact)
+{
+	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
+	const uint32_t l = contact->lane % OB_LANES, row[2] = { contact->a, contact->b };
+	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]),
+		      turn = ob_sub(ob_row_angular(w->v[row[0]]), ob_row_angular(w->v[row[1]]));
+	double least = 1, rate = 0;
+	for (int side = 0; side < 2; side++) {
+		const ob_body *body = &w->body[row[side]];
+		const ob_vec3 axis = axis_of(body, contact->part[side]);
+		const double along = ob_dot(n, axis);
+		if (!ob_shape_is(ob_part_shape(body->shape, contact->part[side]), OB_RIMMED) || !(fabs(along) < least))
+			continue;
+		least = fabs(along);
+		rate = fabs(ob_dot(n, turn) - along * ob_dot(axis, turn)) / (1 - along * along);
+	}
+	return rate;
+}
+
+// Returns an even part of what is left of the substep (s), in which a rim rolls on by a small angle: uneven ones make it hop.
+static double even_part(const ob_island_work *w, const ob_contact *contact, double left)
+{
+	const double most = w->stretch * ob_coarser(w, max_round, 5 * max_round),
+		     parts = ob_min(rate_round_rim(w, contact) / most, most_parts / w->substep) * left;
+	return left / ob_max(1, ceil(parts));
 }
 
 // False if the geometry certainly lasts for h (s).
@@ -64,9 +104,14 @@ static double partial_length(ob_solver *s, double left)
 {
 	ob_island_work *w = &s->island;
 	double h = left;
-	for (uint32_t i = 0; i < w->contacts; i++)
-		if (may_outrun_geometry(w, &w->contact[i], h) && touches(w, &w->contact[i]))
-			h = ob_min(h, ob_max(w->h_min, geometry_lifetime(w, w->v, &w->contact[i])));
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		const ob_contact *contact = &w->contact[i];
+		const bool leans = ob_contact_leans(contact), outruns = may_outrun_geometry(w, contact, h);
+		if (!(leans || outruns) || !touches(w, contact))
+			continue;
+		h = ob_min(h, leans ? even_part(w, contact, left) : h);
+		h = ob_min(h, outruns ? ob_max(w->h_min, geometry_lifetime(w, w->v, contact)) : h);
+	}
 	for (uint32_t i = 0; i < w->contacts; i++) {
 		const ob_contact *contact = &w->contact[i];
 		if (!may_outrun_geometry(w, contact, h) || touches(w, contact) || !may_meet(w, contact, h))

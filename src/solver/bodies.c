@@ -254,6 +254,21 @@ static void drift_body(ob_island_work *w, uint32_t row, double h, bool held)
 	drift_row(w, row, h, held);
 }
 
+// True if a point carries load that may have come down within the partial substep: any but a rim's that was held already.
+static bool may_have_landed(const ob_island_work *w, uint32_t row)
+{
+	const ob_body *body = &w->body[row];
+	for (uint32_t k = 0; k < body->adjacent; k++) {
+		const ob_contact *c = &w->contact[w->adjacency[body->first_adjacent + k]];
+		for (uint32_t j = 0; c->lane != OB_NO_LANE && j < c->points; j++) {
+			const bool held = ob_contact_leans(c) && c->held >> j & 1;
+			if (!held && w->batch[c->lane / OB_LANES].impulse[j][c->lane % OB_LANES] > 0)
+				return true;
+		}
+	}
+	return false;
+}
+
 // Integrates from the midpoint (solver/midpoint.h) to the end of the partial substep. A jump of velocity counts as if it
 // had happened at the start.
 static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
@@ -264,8 +279,8 @@ static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 	ob_vec3 jump = ob_sub(ob_row_linear(u), ob_row_linear(v)),
 		jump_turn = ob_sub(ob_row_angular(u), ob_row_angular(v)), rate;
 	const bool held = body->joints && !body->contacts; // joints alone change it, and smoothly
-	const bool jumped =
-		!held && (ob_norm2(jump) >= smooth || body->radius * body->radius * ob_norm2(jump_turn) >= 9 * smooth);
+	const bool large = ob_norm2(jump) >= smooth || body->radius * body->radius * ob_norm2(jump_turn) >= 9 * smooth,
+		   jumped = large && !held && may_have_landed(w, row);
 	ob_vec3 way = ob_scale(ob_row_linear(u), h);
 	ob_quat q;
 	if (jumped)

@@ -185,19 +185,17 @@ static const double same_place = .2; // share of the smaller thickness: a point 
 static const double same_normal = .9; // cosine: no point is the same if the normal has turned farther
 static const double same_rim = .5; // share of the radius: distance that a rim may roll on with the same geometry
 
-// Returns the old point that carries load, or the only one; -1 if there is none, or several.
+// Returns the old point that carries load, or the lowest one if none does; -1 if several do, or there is no point.
 static int the_loaded(const saved_impulses *old)
 {
 	int found = -1;
-	if (old->points == 1)
-		return 0;
 	for (uint32_t k = 0; k < old->points; k++)
 		if (old->impulse[k] > 0) {
 			if (found >= 0)
 				return -1;
 			found = (int)k;
 		}
-	return found;
+	return found < 0 && old->points > 0 ? 0 : found;
 }
 
 // True if the point, at "arm" now, is on the rim on which it was. moved: m.

@@ -78,7 +78,7 @@ typedef struct ob_contact {
 	ob_vec3 arm_a[OB_PAIR_POINTS], arm_b[OB_PAIR_POINTS];
 	ob_vec3 friction_a, friction_b; // m: where friction acts
 	int8_t was[OB_PAIR_POINTS]; // for each point: its index in the previous geometry; -1: none
-	double disc_radius; // m, of the manifold
+	double disc_radius; // m, as ob_manifold.disc_radius
 	bool area_due; // its area is to be found if it touches alone (contact/area.h)
 	double spin_lever_a, spin_lever_b; // m, of its points (solver/relative_speed.h); 0 while separated
 	double path,
@@ -86,6 +86,7 @@ typedef struct ob_contact {
 	double since; // s, from the time of the geometry to the partial substep's start; infinity: unknown
 	double found_for; // s: length of the partial substep for which the geometry was found
 	bool turns; // its geometry turns noticeably within the partial substep (solver/midpoint.h)
+	unsigned held; // bits: points that are held at the surface in the partial substep
 	double mu, e; // coefficients of friction and of restitution
 	double initial_depth,
 		depth_growth; // m (solver/error_control.h): at the step's start; growth within the step
@@ -310,6 +311,7 @@ typedef struct ob_island_work {
 	bool torques; // a body has an external torque
 	bool balanced; // equilibrium is confirmed: one substep was enough
 	uint32_t substeps; // of this step
+	uint32_t partial; // partial substeps in it
 	double error, new_error; // m (solver/error_control.h): of the step; caused by the step itself
 	double depth, creep, bounce; // m: by its causes
 	double substep; // s, length of a whole substep
@@ -370,6 +372,12 @@ static inline ob_vec3 ob_body_turned_by(const ob_body *body, ob_vec3 torque)
 	return ob_v3(i[0] * torque.x + i[1] * torque.y + i[2] * torque.z,
 		     i[1] * torque.x + i[3] * torque.y + i[4] * torque.z,
 		     i[2] * torque.x + i[4] * torque.y + i[5] * torque.z);
+}
+
+// True if one of the two leans on its rim: it touches with its first point alone.
+static inline bool ob_contact_leans(const ob_contact *c)
+{
+	return c->disc_radius < 0;
 }
 
 // True if a contact has begun or ended in the step, or rebounded.

@@ -124,12 +124,15 @@ static void solve_substeps(ob_solver *s)
 	ob_island_work *w = &s->island;
 	const bool watched = w->bodies <= OB_WATCHED_BODIES && w->substeps % 2 == 0;
 	ob_vec3 start[OB_WATCHED_BODIES + 1], middle[OB_WATCHED_BODIES + 1];
+	w->partial = 0;
 	if (watched)
 		note_velocities(w, start);
 	for (uint32_t k = 0; k < w->substeps; k++) {
 		bool first = k == 0;
-		for (double left = w->substep; left > 0 && !ob_budget_spent(s); left -= w->h, first = false)
+		for (double left = w->substep; left > 0 && !ob_budget_spent(s); left -= w->h, first = false) {
 			solve_partial_substep(s, left, first);
+			w->partial++;
+		}
 		ob_joints_end(s);
 		if (watched && 2 * (k + 1) == w->substeps)
 			note_velocities(w, middle);

@@ -102,8 +102,10 @@ void ob_midpoint_mark(ob_solver *s)
 		    ob_contact_in_reach(w, contact))
 			a->among_others = b->among_others = true;
 	}
-	for (uint32_t i = 0; i < w->contacts; i++)
+	for (uint32_t i = 0; i < w->contacts; i++) {
+		w->contact[i].held = 0;
 		mark(s, &w->contact[i]);
+	}
 }
 
 // ---- rows
@@ -231,15 +233,15 @@ static unsigned set_turn(ob_island_work *w, const ob_contact *contact, const old
 	}
 	ob_vec3 at_a, at_b;
 	ob_vec3 slide = ob_sub(velocity_at(va, wa, contact->friction_a), velocity_at(vb, wb, contact->friction_b));
-	ob_friction_arms(arm_a0, arm_b0, gap, points, start_n, &at_a, &at_b);
+	ob_friction_arms(arm_a0, arm_b0, gap, ob_contact_leans(contact) ? 1 : points, start_n, &at_a, &at_b);
 	const ob_vec3 slide_start = ob_sub(velocity_at(va, wa0, at_a), velocity_at(vb, wb0, at_b));
 	const ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
 		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
 	const ob_vec3 friction = ob_add(ob_scale(t1, b->impulse[4][l]), ob_scale(t2, b->impulse[5][l]));
 	const ob_vec3 added = ob_sub(slide, slide_start);
 	most = ob_max(most, ob_max(fabs(ob_dot(t1, added)), fabs(ob_dot(t2, added))));
-	if (ob_dot(friction, slide_start) < 0 || ob_norm2(slide_start) > ob_norm2(added))
-		slide = added;
+	if (ob_contact_leans(contact) || ob_dot(friction, slide_start) < 0 || ob_norm2(slide_start) > ob_norm2(added))
+		slide = added; // reversed, the slip of a rim that rolls would go to and fro for good
 	b->turn[4][l] = ob_dot(slide, t1);
 	b->turn[5][l] = ob_dot(slide, t2);
 	b->turn[6][l] = turned(ob_dot(n, ob_sub(wa, wb)), ob_dot(start_n, ob_sub(wa0, wb0)), b->impulse[6][l]);
@@ -256,6 +258,7 @@ static void find_at_midpoint(ob_solver *s, ob_contact *contact)
 	old_geometry old = { .normal = normal_of(before, contact->lane % OB_LANES), .since = contact->since };
 	memcpy(old.arm_a, contact->arm_a, sizeof old.arm_a);
 	memcpy(old.arm_b, contact->arm_b, sizeof old.arm_b);
+	contact->held = 0;
 	s->counters.narrowphase_tests++;
 	ob_contact_find(s, contact);
 	if (contact->lane == OB_NO_LANE)
@@ -267,9 +270,9 @@ static void find_at_midpoint(ob_solver *s, ob_contact *contact)
 	for (uint32_t j = 0; j < contact->points; j++)
 		gap[j] = b->gap[j][l] + ob_impacts_slack(s, contact, j) -
 			 row_velocity(b, l, j, w->body[contact->a].first_half, w->body[contact->b].first_half);
-	const unsigned held = set_turn(w, contact, &old, gap);
+	contact->held = set_turn(w, contact, &old, gap);
 	for (uint32_t j = 0; j < contact->points; j++)
-		b->gap[j][l] = held >> j & 1 ? ob_min(gap[j], 0) : gap[j];
+		b->gap[j][l] = contact->held >> j & 1 ? ob_min(gap[j], 0) : gap[j];
 }
 
 static bool at_midpoint(const ob_island_work *w, const ob_contact *contact)

@@ -28,7 +28,7 @@ static uint32_t find_substeps(ob_solver *s, double error)
 	ob_probe_solve(coarse, s->in, first, first);
 	for (uint32_t n = first; n <= most; n *= 2) {
 		ob_probe_solve(fine, s->in, 2 * n, 2 * n);
-		const double ratio = (double)n / now;
+		const double ratio = (double)n / s->island.partial;
 		if (error_of(s, coarse, fine) * ratio * sqrt(ratio) <= error)
 			return n;
 		ob_probe *next = fine;

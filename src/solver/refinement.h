@@ -1,6 +1,5 @@
 // Refinement: more substeps for a lone body whose errors exceed the tolerance while its contacts go on, where more substeps
-// pay. A disk that rolls on its rim is of first order up to 16 substeps, and of second order from 32 on: its errors then
-// fall by a thousand. What lands and rattles gains nothing, so it stays at the run's substeps.
+// pay, by the partial substeps that it takes now. What lands and rattles gains nothing, so it stays at the run's substeps.
 //
 //   errors exceed the tolerance ──> in four steps again ──> solved with 4, 8, 16 times as many: do they fall fast?
 //                                                              yes ──> so many, while contacts go on

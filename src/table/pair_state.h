@@ -18,7 +18,7 @@ typedef struct ob_pair_state {
 	ob_vec3 between; // m, from a's centre to b's: an arm of b is that of a less this
 	double impulse[OB_PAIR_ROWS]; // N s of the last substep: 4 normal, 2 friction (along the tangents), N m s twist
 	double substep; // s, length of that substep
-	double disc_radius; // m, of a disc that they touch all over; 0: over the points' hull
+	double disc_radius; // m, as ob_manifold.disc_radius
 	ob_vec3 arm_a[OB_PAIR_POINTS]; // m
 	double gap[OB_PAIR_POINTS]; // m, separation now; < 0 is penetration
 	uint16_t points; // 0 .. 4; 0 = not touching

@@ -222,6 +222,8 @@ typedef struct rolling_disk {
 	double heading; // rad
 	bool on_box;
 	double tolerance, step; // m, s
+	uint32_t substeps; // 0: as the tolerance asks
+	double height; // m: above the ground at the start
 } rolling_disk;
 
 // Returns the share of its energy that it loses in 60 steps. late: share by which its precession is.
@@ -235,11 +237,14 @@ static double lost_by_disk(const rolling_disk *d, double *late)
 	little_scene *s = little_scene_new();
 	s->run.tolerance = d->tolerance;
 	s->run.step_length = d->step;
+	if (d->substeps)
+		s->run.substeps = d->substeps;
 	if (d->on_box)
 		ob_world_box(&s->world, 0, ob_v3(1, 1, .5), ob_v3(0, 0, -.5));
 	else
 		ob_world_ground(&s->world);
-	ob_world_body o = ob_world_add(&s->world, OB_SHAPE_CYLINDER, ob_v3(a, h, 0), 10, ob_v3(0, 0, a * sn + h * c));
+	ob_world_body o =
+		ob_world_add(&s->world, OB_SHAPE_CYLINDER, ob_v3(a, h, 0), 10, ob_v3(0, 0, a * sn + h * c + d->height));
 	o.state->pose.q =
 		ob_quat_turn(ob_quat_identity(), ob_v3(-d->tilt * sin(d->heading), d->tilt * cos(d->heading), 0));
 	o.state->w = ob_madd(ob_v3(0, 0, turn), spin, axis);
@@ -268,9 +273,31 @@ static void check_disk(double tilt, double half_thick, double heading, bool on_b
 {
 	double late;
 	const double lost = lost_by_disk(
-		&(rolling_disk){ .5, tilt, half_thick, heading, on_box, OB_DEFAULT_TOLERANCE, OB_DEFAULT_STEP }, &late);
+		&(rolling_disk){ .5, tilt, half_thick, heading, on_box, OB_DEFAULT_TOLERANCE, OB_DEFAULT_STEP, 0, 0 },
+		&late);
 	CHECK(fabs(late) <= 1e-4);
 	CHECK(fabs(lost) <= 2e-4);
+}
+
+// A small one turns by up to 4.6 rad in a step.
+static void check_small_disk(double radius, double tilt)
+{
+	double late;
+	const double lost = lost_by_disk(
+		&(rolling_disk){ radius, tilt, .05 * radius, 1, false, 1e-3 * radius, OB_DEFAULT_STEP, 0, 0 }, &late);
+	CHECK(fabs(late) <= 1e-3);
+	CHECK(fabs(lost) <= 1e-3);
+}
+
+// One that comes down on its rim while it spins nutates then, and loses as much as with finer substeps.
+static void check_dropped_disk(double radius, double tilt)
+{
+	double lost[2], late;
+	for (int i = 0; i < 2; i++)
+		lost[i] = lost_by_disk(&(rolling_disk){ radius, tilt, .05 * radius, 1, false, 0, OB_DEFAULT_STEP,
+							i ? 64 : 8, .02 * radius },
+				       &late);
+	CHECK_NEAR(lost[0], lost[1], .02);
 }
 
 // One ten times as large, at ten times the tolerance, does the same in steps that are longer by the root of ten.
@@ -279,8 +306,8 @@ static void check_sizes(double tilt)
 	double lost[2], late[2];
 	for (int i = 0; i < 2; i++) {
 		const double size = i ? 1 : .1, step = OB_DEFAULT_STEP * sqrt(size);
-		lost[i] =
-			lost_by_disk(&(rolling_disk){ size, tilt, .05 * size, 1, false, 1e-3 * size, step }, &late[i]);
+		lost[i] = lost_by_disk(&(rolling_disk){ size, tilt, .05 * size, 1, false, 1e-3 * size, step, 0, 0 },
+				       &late[i]);
 	}
 	CHECK_NEAR(lost[0], lost[1], 1e-8);
 	CHECK_NEAR(late[0], late[1], 1e-8);
@@ -294,8 +321,15 @@ int main(void)
 			check_disk(tilts[i], .025, 1, on_box);
 			check_disk(tilts[i], .1, -2, on_box);
 		}
-	for (int i = 0; i < 5; i++)
+	for (int i = 0; i < 5; i++) {
+		check_small_disk(.01, tilts[i]);
+		check_small_disk(.05, tilts[i]);
 		check_sizes(tilts[i]);
+	}
+	for (int i = 0; i < 4; i++) {
+		check_dropped_disk(.2, tilts[i]);
+		check_dropped_disk(.5, tilts[i]);
+	}
 	static const double slenderness[] = { 2, 4, 6, 10 };
 	for (int i = 0; i < 4; i++)
 		for (int on_box = 0; on_box < 2; on_box++)
