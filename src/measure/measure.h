@@ -19,6 +19,7 @@ typedef struct ob_snapshot {
 	uint32_t count;
 	ob_passport *passport;
 	ob_motion *motion;
+	ob_state *state; // at the snapshot's time; NULL: found when it is asked for, as of a record
 	uint32_t *home; // home worker of each simulator, UINT32_MAX: none; NULL: unknown, as of a record
 	double *own_time; // s, of each simulator in a free run; NaN: none; NULL: unknown
 	float (*bounds)[6]; // of each object, as ob_universe_get_bounds; NaN: none; undefined unless they were taken

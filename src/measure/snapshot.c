@@ -14,12 +14,14 @@ static bool grow_objects(ob_snapshot *s, uint32_t count)
 		return true;
 	ob_passport *passport = calloc(count, sizeof *passport);
 	ob_motion *motion = calloc(count, sizeof *motion);
+	ob_state *state = calloc(count, sizeof *state);
 	uint32_t *home = calloc(count, sizeof *home);
 	double *own_time = calloc(count, sizeof *own_time);
 	float(*bounds)[6] = calloc(count, sizeof *bounds);
-	if (!passport || !motion || !home || !own_time || !bounds) {
+	if (!passport || !motion || !state || !home || !own_time || !bounds) {
 		free(passport);
 		free(motion);
+		free(state);
 		free(home);
 		free(own_time);
 		free(bounds);
@@ -27,11 +29,13 @@ static bool grow_objects(ob_snapshot *s, uint32_t count)
 	}
 	free(s->passport);
 	free(s->motion);
+	free(s->state);
 	free(s->home);
 	free(s->own_time);
 	free(s->bounds);
 	s->passport = passport;
 	s->motion = motion;
+	s->state = state;
 	s->home = home;
 	s->own_time = own_time;
 	s->bounds = bounds;
@@ -127,12 +131,14 @@ static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_er
 	ob_passport *p = &s->passport[id], again;
 	memset(p, 0, sizeof *p);
 	memset(&s->motion[id], 0, sizeof s->motion[id]);
+	s->home[id] = UINT32_MAX;
+	s->own_time[id] = NAN;
+	if (!ob_universe_get_passport(u, id, p) || !(p->flags & OB_OBJECT_PRESENT))
+		return true;
 	if (!ob_universe_get_home(u, id, &s->home[id]))
 		s->home[id] = UINT32_MAX;
 	if (!ob_universe_get_own_time(u, id, &s->own_time[id]))
 		s->own_time[id] = NAN;
-	if (!ob_universe_get_passport(u, id, p) || !(p->flags & OB_OBJECT_PRESENT))
-		return true;
 	if (ob_universe_get_motion(u, id, &s->motion[id]))
 		return take_hulls(s, u, p, e);
 	bool there = ob_universe_get_passport(u, id, &again) && again.generation == p->generation;
@@ -197,6 +203,7 @@ bool ob_snapshot_take(ob_snapshot *s, const ob_universe *u, unsigned with, ob_er
 	for (uint32_t id = 0; id < s->count; id++)
 		if (!take_object(s, u, id, e))
 			return false;
+	ob_published_all(s->motion, s->passport, s->count, s->time, s->state);
 	if (with & OB_SNAPSHOT_BOUNDS)
 		take_bounds(s, u);
 	return take_joints(s, u, e) && (!(with & OB_SNAPSHOT_CONTACTS) || take_contacts(s, u, e));
@@ -236,6 +243,8 @@ bool ob_snapshot_copy(ob_snapshot *to, const ob_snapshot *from)
 	if (from->count) {
 		memcpy(to->passport, from->passport, from->count * sizeof *to->passport);
 		memcpy(to->motion, from->motion, from->count * sizeof *to->motion);
+		for (uint32_t i = 0; i < from->count; i++)
+			to->state[i] = ob_snapshot_state(from, i);
 		if (from->home)
 			memcpy(to->home, from->home, from->count * sizeof *to->home);
 		else
@@ -256,6 +265,7 @@ void ob_snapshot_finish(ob_snapshot *s)
 {
 	free(s->passport);
 	free(s->motion);
+	free(s->state);
 	free(s->home);
 	free(s->own_time);
 	free(s->bounds);
@@ -288,5 +298,5 @@ const ob_hull *ob_snapshot_part(const ob_snapshot *s, uint32_t id, uint32_t part
 
 ob_state ob_snapshot_state(const ob_snapshot *s, uint32_t id)
 {
-	return ob_published_at(&s->motion[id], &s->passport[id], s->time);
+	return s->state ? s->state[id] : ob_published_at(&s->motion[id], &s->passport[id], s->time);
 }

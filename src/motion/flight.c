@@ -103,3 +103,40 @@ ob_state ob_published_at(const ob_motion *m, const ob_passport *p, double t)
 		return (ob_state){ { m->p, m->q }, m->v, m->w };
 	return ob_motion_at(m, p->inertia, t);
 }
+
+// Rotations that are computed side by side, as each takes longer than all else of a state.
+enum { TURNS = 16 };
+typedef struct turning {
+	uint32_t object[TURNS];
+	double s[TURNS]; // since the spin's instant
+	ob_spin spin[TURNS], *of[TURNS];
+	int n;
+} turning;
+
+static void end_turns(turning *t, ob_state *out)
+{
+	ob_spin_prepare(t->of, t->s, t->n);
+	for (int i = 0; i < t->n; i++)
+		ob_spin_at(t->of[i], t->s[i], &out[t->object[i]].pose.q, &out[t->object[i]].w);
+	t->n = 0;
+}
+
+void ob_published_all(const ob_motion *m, const ob_passport *p, uint32_t n, double t, ob_state *out)
+{
+	turning all;
+	all.n = 0;
+	for (uint32_t i = 0; i < n; i++) {
+		if (ob_published_stands(&m[i], &p[i], t) || ob_norm2(m[i].w) == 0) {
+			out[i] = ob_published_at(&m[i], &p[i], t);
+			continue;
+		}
+		out[i].pose.p = ob_centre_at(&m[i], t);
+		out[i].v = ob_velocity_at(&m[i], t);
+		const int k = all.n++;
+		all.object[k] = i, all.s[k] = t - m[i].t0, all.of[k] = &all.spin[k];
+		ob_spin_plan(all.of[k], m[i].q, m[i].w, p[i].inertia);
+		if (all.n == TURNS)
+			end_turns(&all, out);
+	}
+	end_turns(&all, out);
+}

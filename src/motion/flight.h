@@ -17,6 +17,8 @@ ob_vec3 ob_acceleration_at(const ob_motion *m, double t);
 bool ob_published_stands(const ob_motion *m, const ob_passport *p, double t);
 // State at time t: ob_motion_at, but with the published bits if the object rests.
 ob_state ob_published_at(const ob_motion *m, const ob_passport *p, double t);
+// The same of n objects, with their rotations side by side. Of one that is absent, all of it 0, the state is 0.
+void ob_published_all(const ob_motion *m, const ob_passport *p, uint32_t n, double t, ob_state *out);
 
 typedef struct ob_flier {
 	ob_shape shape; // OB_SHAPE_NONE: anything within size.x of the centre

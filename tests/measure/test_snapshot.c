@@ -52,8 +52,9 @@ int main(void)
 	uint64_t hash = ob_measure_hash(&s);
 	CHECK(ob_snapshot_copy(&copy, &s));
 	CHECK(ob_measure_hash(&copy) == hash);
-	s.motion[5].p.x = 7;
+	s.motion[5].p.x = s.state[5].pose.p.x = 7;
 	CHECK(ob_measure_hash(&copy) == hash && ob_measure_hash(&s) != hash); // the copy's memory is its own
+	CHECK_NEAR(copy.motion[5].p.x, 6, 0);
 
 	ob_passport gone = *ob_passport_of(u, 0);
 	gone.flags = 0;

@@ -1,5 +1,9 @@
 // Motions in time: the parabola, states between two publications, and the time at which a gap closes.
+#include <string.h>
+
 #include <ob/motion.h>
+
+#include "motion/flight.h"
 
 #include "check.h"
 #include "random.h"
@@ -55,6 +59,34 @@ static void test_republishing(void)
 		CHECK_NEAR(ob_norm(ob_sub(direct.v, via.v)), 0, 1e-13);
 		CHECK_NEAR(ob_norm(ob_sub(direct.w, via.w)), 0, 1e-9);
 		CHECK_NEAR(apart(direct.pose.q, via.pose.q), 0, 1e-9);
+	}
+}
+
+// States of many have the bits of each: of short turns and long ones, tops, bodies that rest, and absent ones.
+static void test_many(void)
+{
+	enum { N = 100 };
+	static ob_motion m[N];
+	static ob_passport p[N];
+	static ob_state all[N];
+	uint64_t seed = 7;
+	const double t = 5;
+	for (int i = 1; i < N; i++) {
+		p[i] = (ob_passport){ .flags = OB_OBJECT_PRESENT, .inertia = random_inertia(&seed) };
+		m[i] = random_motion(&seed);
+		if (i % 5 == 0)
+			p[i].inertia.y = p[i].inertia.x;
+		if (i % 7 == 0)
+			m[i].flags = OB_MOTION_ASLEEP;
+		if (i % 11 == 0)
+			m[i].w = ob_v3(0, 0, 0);
+		if (i % 13 == 0)
+			m[i].t0 = i % 2 ? t : t - 1e-4;
+	}
+	ob_published_all(m, p, N, t, all);
+	for (int i = 0; i < N; i++) {
+		const ob_state one = ob_published_at(&m[i], &p[i], t);
+		CHECK(memcmp(&one, &all[i], sizeof one) == 0);
 	}
 }
 
@@ -176,6 +208,7 @@ int main(void)
 {
 	test_known_throw();
 	test_republishing();
+	test_many();
 	test_between_flights();
 	test_between_contacts();
 	test_between_landing();
