@@ -5,8 +5,9 @@
 #include "solver/refinement.h"
 
 // PERIOD: steps from one estimate to the next; SOON: of a lone body, after one above the tolerance. FEW_BODIES: islands of up
-// to so many have one where a body lands, too; of up to OB_WATCHED_BODIES at each change.
-enum { PERIOD = 16, SOON = 4, FEW_BODIES = 8 };
+// to so many have one where a body lands, too; of up to OB_WATCHED_BODIES at each change. BY_FAR: tolerances from which on a
+// second that exceeds is not doubted.
+enum { PERIOD = 16, SOON = 4, FEW_BODIES = 8, BY_FAR = 8 };
 
 bool ob_estimate_create(ob_solver *s)
 {
@@ -193,17 +194,18 @@ static double error_of_run(const ob_solver *s, const rulers *r, uint32_t row)
 	return ob_error_of_run(s, error.place, error.rate);
 }
 
-// True if an estimate takes a body beyond the tolerance.
-static bool exceeds(const ob_solver *s, const rulers *r, uint32_t weight)
+// True if an estimate takes one of few bodies beyond the tolerance, but none by far: then a finer solution may deny it.
+static bool is_doubtful(const ob_solver *s, const rulers *r, uint32_t weight)
 {
 	const double tolerance = s->settings->tolerance;
-	for (uint32_t row = 1; row <= s->island.bodies; row++) {
+	double most = 0;
+	for (uint32_t row = 1; s->island.bodies <= OB_WATCHED_BODIES && row <= s->island.bodies; row++) {
 		const ob_deviation before = s->island.body[row].deviation;
 		const ob_deviation after = with(before, error_by(s, r, row), weight);
-		if (of_second(s, before) <= tolerance && of_second(s, after) > tolerance)
-			return true;
+		if (of_second(s, before) <= tolerance)
+			most = ob_max(most, of_second(s, after));
 	}
-	return false;
+	return most > tolerance && most <= BY_FAR * tolerance;
 }
 
 void ob_estimate_update(ob_solver *s)
@@ -223,7 +225,7 @@ void ob_estimate_update(ob_solver *s)
 		s->counters.estimates += w->bodies;
 		for (uint32_t row = 1; row <= w->bodies; row++)
 			error = ob_max(error, error_of_run(s, &r, row));
-		if (!finer && may_double && w->bodies <= FEW_BODIES && exceeds(s, &r, weight)) {
+		if (!finer && may_double && is_doubtful(s, &r, weight)) {
 			ob_probe_solve(s->estimate.finer, s->in, 2 * n + 1, n);
 			r.by[r.count++] = (ruler){ s->estimate.finer, (2 * n + 1.) / (n + 1) };
 		}
