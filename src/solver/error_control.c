@@ -207,11 +207,18 @@ bool ob_error_control_accept(ob_solver *s)
 		return false;
 	}
 	set_next_substeps(s);
-	s->counters.islands_over += w->error > tolerance;
+	return true;
+}
+
+void ob_error_control_count(ob_solver *s)
+{
+	const ob_island_work *w = &s->island;
+	if (!has_tolerance(s))
+		return;
+	s->counters.islands_over += w->error > s->settings->tolerance;
 	s->counters.error = ob_max(s->counters.error, w->error);
 	s->counters.depth = ob_max(s->counters.depth, w->depth);
 	s->counters.creep = ob_max(s->counters.creep, w->creep);
 	s->counters.bounce = ob_max(s->counters.bounce, w->bounce);
 	s->counters.chosen[31 - __builtin_clz(w->substeps)]++;
-	return true;
 }

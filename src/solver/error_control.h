@@ -29,5 +29,7 @@ void ob_error_control_note_bounce(ob_solver *s); // after impacts
 // Called after the last substep. Returns true if the solution's error is tolerable; false: solve again with
 // island.substeps.
 bool ob_error_control_accept(ob_solver *s);
+// Counts the errors of the solution that stands.
+void ob_error_control_count(ob_solver *s);
 
 #endif

@@ -1,8 +1,11 @@
 #include "solver/estimate.h"
 
 #include "motion/deviation.h"
+#include "shape/shape.h"
+#include "solver/island_solver.h"
 #include "solver/probe.h"
 #include "solver/refinement.h"
+#include "solver/surfaces.h"
 
 // PERIOD: steps from one estimate to the next; SOON: of a lone body, after one above the tolerance. FEW_BODIES: islands of up
 // to so many have one where a body lands, too; of up to OB_WATCHED_BODIES at each change. BY_FAR: tolerances from which on a
@@ -65,10 +68,22 @@ static double of_second(const ob_solver *s, ob_deviation d)
 	return ob_deviation_of_second(d, s->in->step + 1, s->settings->step_length);
 }
 
+// True for a lone body that rolls, or is driven by a surface that swings, turns or runs: a step in which something happens is
+// solved finer. (Boxes that rattle have five times as many.)
+static bool follows_events(const ob_solver *s)
+{
+	const ob_island_work *w = &s->island;
+	if (w->bodies != 1 || w->joints.count || !s->estimate.probe)
+		return false;
+	return ob_shape_is(w->body[1].shape, OB_ROUND) || ob_surfaces_drive(w);
+}
+
 // True if an estimate has no use: the second of each body exceeds the tolerance already, and refinement does not ask.
 static bool is_useless(const ob_solver *s)
 {
 	const ob_island_work *w = &s->island;
+	if (follows_events(s))
+		return false;
 	for (uint32_t row = 1; row <= w->bodies; row++)
 		if (of_second(s, w->body[row].deviation) <= s->settings->tolerance)
 			return false;
@@ -158,6 +173,7 @@ typedef struct ruler {
 typedef struct rulers {
 	ruler by[2];
 	int count;
+	bool coarser; // the first has fewer substeps
 } rulers;
 
 // Returns the error of a step by the ruler that makes the shorter second.
@@ -177,6 +193,40 @@ static ob_deviation error_by(const ob_solver *s, const rulers *r, uint32_t row)
 static ob_deviation with(ob_deviation d, ob_deviation error, uint32_t weight)
 {
 	return (ob_deviation){ d.place + weight * error.place, d.rate + weight * error.rate };
+}
+
+// Solves the island beside its solution, with fewer substeps, or with twice as many where they were refined.
+static rulers solve_beside(ob_solver *s)
+{
+	const ob_island_work *w = &s->island;
+	const uint32_t n = w->substeps;
+	const bool refined = w->bodies == 1 && ob_is_refined(&s->in->object[0]),
+		   finer = (refined || n < 2 || w->joints.count) && 2 * n <= OB_MAX_SUBSTEPS;
+	const uint32_t other = finer ? 2 * n : coarser_than(n, w->bodies);
+	ob_probe_solve(s->estimate.probe, s->in, other, n);
+	return (rulers){ { { s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) } }, 1, !finer };
+}
+
+// Solves the step of a lone body again, in place of its solution, with four times as many substeps, while its error half a
+// second later is large, and falls at least as their number grows.
+static void solve_event(ob_solver *s, rulers *r)
+{
+	enum { TIMES = 4, MOST = 16 }; // by the last number; by the run's substeps
+	static const double large = .25; // share of the tolerance
+	const ob_island_work *w = &s->island;
+	double last = INFINITY;
+	for (;;) {
+		const ob_deviation e = error_by(s, r, 1);
+		const double error = e.place + .5 * ob_coarse_time(w) * e.rate;
+		if (!(error > large * s->settings->tolerance && TIMES * error <= last) ||
+		    TIMES * w->partial > MOST * s->settings->substeps)
+			return;
+		last = error;
+		ob_island_step_finer(s, TIMES * w->substeps);
+		ob_solver_enter(s, OB_PROFILE_ESTIMATE);
+		hand_over(s);
+		*r = solve_beside(s);
+	}
 }
 
 // Adds the errors of so many steps to a body's deviation.
@@ -211,21 +261,21 @@ static bool is_doubtful(const ob_solver *s, const rulers *r, uint32_t weight)
 void ob_estimate_update(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
-	const bool refined = w->bodies == 1 && ob_is_refined(&s->in->object[0]);
 	hand_over(s);
-	const uint32_t weight = weight_of(s), n = w->substeps;
-	const bool may_double = 2 * n <= OB_MAX_SUBSTEPS, finer = (refined || n < 2 || w->joints.count) && may_double;
-	const uint32_t other = finer ? 2 * n : coarser_than(n, w->bodies);
+	const uint32_t weight = weight_of(s);
+	const bool jolted = is_jolted(s);
 	rulers r = { .count = 0 };
 	double error = 0;
 	if (weight) {
 		ob_solver_enter(s, OB_PROFILE_ESTIMATE);
-		ob_probe_solve(s->estimate.probe, s->in, other, n);
-		r.by[r.count++] = (ruler){ s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) };
+		r = solve_beside(s);
 		s->counters.estimates += w->bodies;
+		if (follows_events(s) && (jolted || ob_contacts_changed(w)))
+			solve_event(s, &r);
+		const uint32_t n = w->substeps;
 		for (uint32_t row = 1; row <= w->bodies; row++)
 			error = ob_max(error, error_of_run(s, &r, row));
-		if (!finer && may_double && is_doubtful(s, &r, weight)) {
+		if (r.coarser && 2 * n < OB_MAX_SUBSTEPS && is_doubtful(s, &r, weight)) {
 			ob_probe_solve(s->estimate.finer, s->in, 2 * n + 1, n);
 			r.by[r.count++] = (ruler){ s->estimate.finer, (2 * n + 1.) / (n + 1) };
 		}
@@ -233,5 +283,5 @@ void ob_estimate_update(ob_solver *s)
 	for (uint32_t row = 1; row <= w->bodies; row++)
 		update_deviation(s, &r, row, weight);
 	if (s->estimate.probe && !w->balanced)
-		ob_refinement_update(s, weight && !is_jolted(s), error);
+		ob_refinement_update(s, weight && !jolted, error);
 }

@@ -8,6 +8,10 @@
 // change, or the forces on one, has one of its own, which stands for no other; so has one in which a body lands among a few. Each body's motion
 // carries the sums since the second began, of place and of velocity (motion/deviation.h). A hit hands the larger ones of both
 // bodies on, and adds to the velocity's.
+// A lone body that rolls, or that a surface drives, has more of it: a step in which contacts or forces change is solved again, with
+// four times as many substeps, while its error is large and falls at least as their number grows. The last solution stands.
+// Errors of one step decide it, by the first of two solutions beside: neither a second nor a unit has a part in it.
+//
 // Ids and steps decide, so it is the same for any worker, rank, kill and resume.
 #ifndef OB_SOLVER_ESTIMATE_H
 #define OB_SOLVER_ESTIMATE_H
@@ -18,8 +22,8 @@
 bool ob_estimate_create(ob_solver *s);
 void ob_estimate_finish(ob_solver *s);
 
-// Estimates the error of the island's solution if that is due, updates its bodies' deviations and refinement, and counts
-// what is within the tolerance.
+// Estimates the error of the island's solution if that is due, and solves it finer if that pays. Updates its bodies' deviations
+// and refinement, and counts what is within the tolerance.
 void ob_estimate_update(ob_solver *s);
 // Counts a body's second as unbounded when its deviation at the end of a step takes it beyond the tolerance first.
 void ob_estimate_count(ob_solver *s, uint64_t step, ob_deviation before, ob_deviation now);

@@ -219,15 +219,26 @@ void ob_island_step(ob_solver *s, const ob_island_input *in)
 		while (!solve_step(s, in))
 			s->counters.islands_redone++;
 	ob_solver_enter(s, OB_PROFILE_LOAD);
-	s->counters.island_steps++;
-	s->counters.recovered += s->island.recovered;
-	s->counters.body_steps += in->members;
+	ob_frame_leave(s);
+}
+
+void ob_island_step_finer(ob_solver *s, uint32_t substeps)
+{
+	s->island.substeps = substeps;
+	do
+		s->counters.islands_redone++;
+	while (!solve_step(s, s->in));
+	ob_solver_enter(s, OB_PROFILE_LOAD);
 	ob_frame_leave(s);
 }
 
 void ob_island_report(ob_solver *s)
 {
 	ob_solver_enter(s, OB_PROFILE_LOAD);
+	s->counters.island_steps++;
+	s->counters.recovered += s->island.recovered;
+	s->counters.body_steps += s->in->members;
+	ob_error_control_count(s);
 	const uint32_t rest = rest_flag(s);
 	ob_contacts_report(s);
 	ob_joint_loads_report(s);

@@ -87,6 +87,16 @@ bool ob_surface_swings(const ob_island_work *w, uint32_t row)
 	return at && w->surfaces.surface[at - 1].motion.flags & OB_MOTION_SWINGS;
 }
 
+bool ob_surfaces_drive(const ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->surfaces.count; i++) {
+		const ob_surface *x = &w->surfaces.surface[i];
+		if (x->motion.flags & OB_MOTION_SWINGS || ob_norm2(x->motion.w) > 0 || ob_norm2(x->running) > 0)
+			return true;
+	}
+	return false;
+}
+
 void ob_surface_note_normal(ob_island_work *w, uint32_t row, ob_vec3 n)
 {
 	const double end = .7; // cosine of the angle to the axis: with more, the flat end of a cylinder

@@ -29,6 +29,8 @@ uint32_t ob_surface_row(const ob_island_work *w, uint32_t pair);
 void ob_surface_note_normal(ob_island_work *w, uint32_t row, ob_vec3 n);
 // True if the row's surface has an acceleration that changes all the time.
 bool ob_surface_swings(const ob_island_work *w, uint32_t row);
+// True if a surface of the island swings, turns or runs: no frame of reference has it at rest.
+bool ob_surfaces_drive(const ob_island_work *w);
 // Links surfaces to contacts when all contacts are loaded; the island's largest acceleration includes that of
 // carried bodies.
 void ob_surfaces_begin(ob_solver *s);

@@ -2,10 +2,10 @@
 // bounded if its estimates add up to the tolerance at most. Prints for each kind of scene how many are bounded, and how many
 // of these are off by more.
 //
-//   truth [--seeds A..B] [--kind NAME] [--shapes 1|2|3] [--second N] [--substeps N] [--share S] [--list 1]
+//   truth [--seeds A..B] [--kind NAME] [--shapes 1|2|3] [--second N] [--substeps N] [--share S] [--bounded S] [--list 1]
 //
 // --shapes: 1 spheres and boxes, 2 with capsules and cylinders, 3 with hulls. --share: the permitted share of bounded
-// seconds that are off, asserted. --list: prints each body's second.
+// seconds that are off, asserted; --bounded: the least share that is bounded. --list: prints each body's second.
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,7 +54,7 @@ int main(int argc, char **argv)
 					   1u << OB_SHAPE_CAPSULE | 1u << OB_SHAPE_CYLINDER, 1u << OB_SHAPE_HULL };
 	unsigned long first = 1, last = 20, second = 0, substeps = 512, kinds = 1;
 	const char *only = NULL;
-	double share = 1;
+	double share = 1, bounded = 0;
 	for (int i = 1; i + 1 < argc; i += 2) {
 		if (!strcmp(argv[i], "--seeds"))
 			sscanf(argv[i + 1], "%lu..%lu", &first, &last);
@@ -68,6 +68,8 @@ int main(int argc, char **argv)
 			substeps = strtoul(argv[i + 1], NULL, 10);
 		else if (!strcmp(argv[i], "--share"))
 			share = strtod(argv[i + 1], NULL);
+		else if (!strcmp(argv[i], "--bounded"))
+			bounded = strtod(argv[i + 1], NULL);
 		else if (!strcmp(argv[i], "--list"))
 			list = strtoul(argv[i + 1], NULL, 10);
 	}
@@ -87,5 +89,6 @@ int main(int argc, char **argv)
 	}
 	printf("%-10s %8u %8u %8u\n", "all", all.moving, all.bounded, all.exceeded);
 	CHECK(all.bounded > 0 && all.exceeded <= share * all.bounded);
+	CHECK(all.bounded >= bounded * all.moving);
 	return check_end();
 }
