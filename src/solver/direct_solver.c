@@ -583,12 +583,15 @@ static bool is_worthwhile(const ob_solver *s, double residual)
 	return residual > enough * s->island.unit.speed || (!f->solves && creeps(&s->island));
 }
 
-// True if bodies move far more than any touches another: an island that sways as a whole. Iterations, each carrying an
-// impulse one pair further, feed the sway of a tower; nothing else need move for it to be solved to the end.
+// True if touching bodies move far more than any against another: an island that sways as a whole. Iterations, each
+// carrying an impulse one pair further, feed the sway of a tower; nothing else need move for it to be solved to the end.
+// Bodies in flight do not count: a ball that comes near a wall makes no wall sway.
 static bool sways(const ob_island_work *w)
 {
-	double sum;
-	return fastest_contact(w, w->v, &sum) < sway_share * ob_largest_speed(w);
+	double sum, fastest = 0;
+	for (uint32_t i = 1; i <= w->bodies; i++)
+		fastest = w->body[i].contacts ? ob_max(fastest, w->body[i].speed) : fastest;
+	return fastest_contact(w, w->v, &sum) < sway_share * fastest;
 }
 
 static void find_shape(ob_solver *s)

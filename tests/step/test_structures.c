@@ -153,8 +153,8 @@ static uint64_t direct_solves(const little_universe *l)
 	return sum.direct_solves;
 }
 
-// The bricks turn back now and then, each slow for a moment: a reversal is no rest. Only while the wall sways as a whole is
-// it solved to the end, in less than a quarter of its substeps.
+// The bricks turn back now and then, each slow for a moment: a reversal is no rest. Nor does the wall sway as a whole,
+// although the ball that flies beside it is faster than all that touch.
 static void test_wall_that_was_hit(void)
 {
 	little_scene *s = wall_to_be_hit();
@@ -166,7 +166,7 @@ static void test_wall_that_was_hit(void)
 	const uint64_t before = direct_solves(&l);
 	CHECK(before > 0);
 	little_run_to(&l, .4);
-	CHECK(direct_solves(&l) - before < 15 * OB_DEFAULT_SUBSTEPS / 4);
+	CHECK(direct_solves(&l) == before);
 	little_close(&l);
 	free(s);
 }
