@@ -26,6 +26,7 @@ static const double settled = 1e-10, sway_settled = 1e-7; // m/s: solved; enough
 static const double nearly_settled = 1e-6; // m/s: not given up
 static const int max_settling_rounds = 32; // in a partial substep
 static const uint32_t max_settling_iterations = 512, max_failures = 4; // iterations; failures of direct solves
+static const uint32_t max_sway_failures = 2; // the same while an island sways: it settles soon, or later
 
 static const double resting_gap = 1e-7; // m: a point that presses keeps its gap if that is smaller
 
@@ -186,6 +187,8 @@ static void settle(ob_solver *s, const ob_solver_iteration *last)
 		residual = converge(s, &iteration, iterations);
 		if (residual <= iteration.wake_threshold)
 			return;
+		if (failures == max_sway_failures && s->island.direct.shape == OB_DIRECT_SWAYING)
+			break;
 		if (failures == max_failures || !ob_direct_solve(s)) {
 			failures += failures < max_failures;
 			iterations = 2 * iterations + 6;
