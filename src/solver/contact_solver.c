@@ -22,11 +22,10 @@ static const int fine_block_sweeps = 8; // block sweeps for a converged solution
 static const double converged = 1e-12; // m/s: a block is solved once a sweep changes less
 
 // Bodies at rest.
-static const double settled = 1e-10, sway_settled = 1e-7; // m/s: solved; enough while an island sways
+static const double settled = 1e-10, high_settled = 1e-7; // m/s: solved; enough while a high island moves
 static const double nearly_settled = 1e-6; // m/s: not given up
 static const int max_settling_rounds = 32; // in a partial substep
 static const uint32_t max_settling_iterations = 512, max_failures = 4; // iterations; failures of direct solves
-static const uint32_t max_sway_failures = 2; // the same while an island sways: it settles soon, or later
 
 static const double resting_gap = 1e-7; // m: a point that presses keeps its gap if that is smaller
 
@@ -169,25 +168,25 @@ void ob_solver_converge(ob_solver *s, double enough, uint32_t max_iterations)
 	converge(s, &iteration, max_iterations);
 }
 
-// Solves cycles of contacts between bodies at rest, or that sway. Alternates direct solves with conjugate iterations,
+// Solves cycles of contacts between bodies at rest, or stacked high. Alternates direct solves with conjugate iterations,
 // more and more of them if a direct solve does not reduce the residual. Gives up for this step if the end is not in
-// sight.
+// sight; where bodies still move, as soon as a direct solve fails.
 static void settle(ob_solver *s, const ob_solver_iteration *last)
 {
 	ob_solver_iteration iteration = *last;
+	const bool moves = s->island.direct.shape == OB_DIRECT_HIGH;
 	uint32_t iterations = 1, made = 0, failures = 0;
 	double residual = INFINITY;
 	iteration.block_sweeps = fine_block_sweeps;
 	iteration.block_tolerance = 0;
-	iteration.wake_threshold =
-		(s->island.direct.shape == OB_DIRECT_SWAYING ? sway_settled : settled) * s->island.unit.speed;
+	iteration.wake_threshold = (moves ? high_settled : settled) * s->island.unit.speed;
 	for (int round = 0; round < max_settling_rounds && made < max_settling_iterations && !ob_budget_spent(s);
 	     round++) {
 		made += iterations;
 		residual = converge(s, &iteration, iterations);
 		if (residual <= iteration.wake_threshold)
 			return;
-		if (failures == max_sway_failures && s->island.direct.shape == OB_DIRECT_SWAYING)
+		if (moves && failures)
 			break;
 		if (failures == max_failures || !ob_direct_solve(s)) {
 			failures += failures < max_failures;

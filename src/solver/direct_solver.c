@@ -31,7 +31,7 @@ static const double creep_speed = 1e-4; // m/s: slower bodies whose contacts hol
 static const double neutral_speed = 1e-9; // m/s: a point that opens more slowly holds, even if it does not press
 static const double standing_speed = .02; // m/s: faster bodies fall or slide
 static const double rest_speed = 1e-3, min_rest_time = .25; // m/s, s: a body rests that has been slower for longer
-static const double sway_share = 1. / 5; // of the fastest body's speed, as that of contacts between more layers
+static const double landing_speed = 1; // m/s: an island in which no contact is faster may be solved to the end
 static const double unmoved_path = 2e-4; // m: or that has moved less since its start
 
 static ob_batch *batch_of(const ob_island_work *w, const ob_direct_contact *c)
@@ -532,12 +532,6 @@ static double fastest_contact(const ob_island_work *w, const ob_body_row *rows, 
 	return most;
 }
 
-static bool stands_still(const ob_island_work *w)
-{
-	double sum;
-	return fastest_contact(w, w->v, &sum) <= standing_speed * w->unit.speed;
-}
-
 // True if contacts close cycles: trees would load one contact with what several carry.
 static bool closes_cycles(const ob_island_work *w)
 {
@@ -583,27 +577,41 @@ static bool is_worthwhile(const ob_solver *s, double residual)
 	return residual > enough * s->island.unit.speed || (!f->solves && creeps(&s->island));
 }
 
-// True if touching bodies move far more than any against another: an island that sways as a whole. Iterations, each
-// carrying an impulse one pair further, feed the sway of a tower; nothing else need move for it to be solved to the end.
-// Bodies in flight do not count: a ball that comes near a wall makes no wall sway.
-static bool sways(const ob_island_work *w)
+// True if bodies are stacked so high that no iterations of a partial substep carry an impulse down from the top and back.
+static bool is_high(ob_solver *s)
 {
-	double sum, fastest = 0;
-	for (uint32_t i = 1; i <= w->bodies; i++)
-		fastest = w->body[i].contacts ? ob_max(fastest, w->body[i].speed) : fastest;
-	return fastest_contact(w, w->v, &sum) < sway_share * fastest;
+	ob_island_work *w = &s->island;
+	bool higher = true;
+	for (uint32_t row = 0; row < w->rows; row++)
+		w->body[row].height = row - 1 < w->bodies ? UINT32_MAX : 0;
+	for (uint32_t height = 0; higher; height++) {
+		if (2 * height > s->settings->iterations)
+			return true;
+		higher = false;
+		for (uint32_t i = 0; i < w->contacts; i++) {
+			ob_body *a = &w->body[w->contact[i].a], *b = &w->body[w->contact[i].b];
+			ob_body *upper = a->height == height ? b : b->height == height ? a : NULL;
+			if (w->contact[i].lane == OB_NO_LANE || !upper || upper->height <= height)
+				continue;
+			upper->height = height + 1;
+			higher = true;
+		}
+	}
+	return false;
 }
 
 static void find_shape(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	ob_direct_solver *f = &w->direct;
-	if (f->shape == OB_DIRECT_UNKNOWN)
-		f->shape = !stands_still(w)      ? OB_DIRECT_UNFIT
-			   : !closes_cycles(w)   ? OB_DIRECT_TREES
-			   : has_come_to_rest(w) ? OB_DIRECT_CYCLIC
-			   : sways(w)            ? OB_DIRECT_SWAYING
-						 : OB_DIRECT_UNFIT;
+	if (f->shape == OB_DIRECT_UNKNOWN) {
+		double sum, speed = fastest_contact(w, w->v, &sum) / w->unit.speed;
+		const bool slow = speed <= standing_speed, cyclic = closes_cycles(w);
+		f->shape = slow && !cyclic                                 ? OB_DIRECT_TREES
+			   : slow && has_come_to_rest(w)                   ? OB_DIRECT_CYCLIC
+			   : cyclic && speed < landing_speed && is_high(s) ? OB_DIRECT_HIGH
+									   : OB_DIRECT_UNFIT;
+	}
 	if (f->shape != OB_DIRECT_UNFIT)
 		reserve(f, w);
 }

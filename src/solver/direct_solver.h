@@ -11,14 +11,15 @@
 //
 //           [4]            cycles (walls, pyramids, towers of planks): there are more contacts
 //        [1][2][3]         than bodies. Solved after the iterations, in islands at rest, not
-//      ==============      yet moved, or that sway.
+//      ==============      yet moved, or stacked high.
 //
 // The solution of cycles must be found to the end. Each contact's error adds to a sway of the whole, in which no contact
 // has a residual that an iteration would see: a tower of planks of 16 layers creeps by what iterations leave. So direct
 // solves are repeated while they reduce the residual; when one does not, conjugate iterations (solver/conjugate.h) bring
-// the impulses nearer. An island sways if no contact moves as fast as a fifth of its fastest body that touches another:
-// more than five layers move as one. Iterations would keep a tower swaying for ever, as deeper points on one side let it
-// lean on. In other islands that move, no equilibrium exists, and iterations are used.
+// the impulses nearer. An island is stacked high if more than half as many contacts as a partial substep has iterations
+// lead from what stands to one of its bodies: no impulse gets down from there and back. Iterations would keep a tower that
+// lands swaying for ever, as deeper points on one side let it lean on; so it is solved so while it lands. In other islands
+// that move, no equilibrium exists, and iterations are used.
 //
 // The last iteration shows which rows hold. Normals hold that press, or are about to (lambda D > r, the active set of a
 // semismooth Newton step: Hintermueller, Ito and Kunisch 2003). Normals hold, too, that neither press nor open: before

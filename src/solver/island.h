@@ -43,6 +43,7 @@ typedef struct ob_body {
 	bool isotropic; // inertia is the same about all axes
 	bool moved_freely; // it touched nothing at any time in this step
 	uint32_t contacts; // number of those that touch
+	uint32_t height; // least number of contacts that lead to it from a row that stands (solver/direct_solver.h)
 	uint32_t in_reach; // number that may carry load in the running partial substep: 0, 1 or more
 	bool loaded; // its free motion within the partial substep includes the last one's contact forces
 	double hit; // s into the partial substep: its last impact; 0: none
@@ -118,8 +119,8 @@ typedef struct ob_direct_solver {
 		OB_DIRECT_UNFIT,
 		OB_DIRECT_TREES,
 		OB_DIRECT_CYCLIC,
-		OB_DIRECT_SWAYING
-	} shape; // class of the running partial substep's contacts: too fast, trees, with cycles at rest, and that sway
+		OB_DIRECT_HIGH
+	} shape; // class of the running partial substep's contacts: too fast, trees, with cycles at rest, and stacked high
 	bool used_last; // the last partial substep was solved directly
 	bool gave_up; // a solve in this step did not reduce the residual
 	int solves; // in the running partial substep
