@@ -104,26 +104,36 @@ ob_state ob_published_at(const ob_motion *m, const ob_passport *p, double t)
 	return ob_motion_at(m, p->inertia, t);
 }
 
-// Rotations that are computed side by side, as each takes longer than all else of a state.
-enum { TURNS = 16 };
-typedef struct turning {
-	uint32_t object[TURNS];
-	double s[TURNS]; // since the spin's instant
-	ob_spin spin[TURNS], *of[TURNS];
-	int n;
-} turning;
-
-static void end_turns(turning *t, ob_state *out)
+bool ob_turns_add(ob_turns *t, size_t row, const ob_motion *m, const ob_passport *p, double time)
 {
-	ob_spin_prepare(t->of, t->s, t->n);
-	for (int i = 0; i < t->n; i++)
-		ob_spin_at(t->of[i], t->s[i], &out[t->object[i]].pose.q, &out[t->object[i]].w);
+	const int k = t->n++;
+	t->row[k] = row, t->s[k] = time - m->t0, t->of[k] = &t->spin[k];
+	ob_spin_plan(t->of[k], m->q, m->w, p->inertia);
+	return t->n == OB_TURNS;
+}
+
+int ob_turns_find(ob_turns *t, ob_quat *q, ob_vec3 *w)
+{
+	const int n = t->n;
+	ob_spin_prepare(t->of, t->s, n);
+	for (int i = 0; i < n; i++)
+		ob_spin_at(t->of[i], t->s[i], &q[i], &w[i]);
 	t->n = 0;
+	return n;
+}
+
+static void end_turns(ob_turns *t, ob_state *out)
+{
+	ob_quat q[OB_TURNS];
+	ob_vec3 w[OB_TURNS];
+	const int n = ob_turns_find(t, q, w);
+	for (int i = 0; i < n; i++)
+		out[t->row[i]].pose.q = q[i], out[t->row[i]].w = w[i];
 }
 
 void ob_published_all(const ob_motion *m, const ob_passport *p, uint32_t n, double t, ob_state *out)
 {
-	turning all;
+	ob_turns all;
 	all.n = 0;
 	for (uint32_t i = 0; i < n; i++) {
 		if (ob_published_stands(&m[i], &p[i], t) || ob_norm2(m[i].w) == 0) {
@@ -132,10 +142,7 @@ void ob_published_all(const ob_motion *m, const ob_passport *p, uint32_t n, doub
 		}
 		out[i].pose.p = ob_centre_at(&m[i], t);
 		out[i].v = ob_velocity_at(&m[i], t);
-		const int k = all.n++;
-		all.object[k] = i, all.s[k] = t - m[i].t0, all.of[k] = &all.spin[k];
-		ob_spin_plan(all.of[k], m[i].q, m[i].w, p[i].inertia);
-		if (all.n == TURNS)
+		if (ob_turns_add(&all, i, &m[i], &p[i], t))
 			end_turns(&all, out);
 	}
 	end_turns(&all, out);

@@ -17,7 +17,23 @@ ob_vec3 ob_acceleration_at(const ob_motion *m, double t);
 bool ob_published_stands(const ob_motion *m, const ob_passport *p, double t);
 // State at time t: ob_motion_at, but with the published bits if the object rests.
 ob_state ob_published_at(const ob_motion *m, const ob_passport *p, double t);
-// The same of n objects, with their rotations side by side. Of one that is absent, all of it 0, the state is 0.
+
+// Rotations that are computed side by side, as each takes longer than all else of a state. n is 0 at first.
+enum { OB_TURNS = 16 };
+typedef struct ob_turns {
+	size_t row[OB_TURNS]; // the caller's
+	double s[OB_TURNS]; // since the motion's instant
+	ob_spin spin[OB_TURNS], *of[OB_TURNS];
+	int n;
+} ob_turns;
+
+// Adds the rotation of a motion, at a time (s). Returns true if there is room for no more before ob_turns_find.
+bool ob_turns_add(ob_turns *t, size_t row, const ob_motion *m, const ob_passport *p, double time);
+// Finds attitudes and rates (rad/s) of all that were added, and empties t; rows stay until the next is added. Returns their
+// number, OB_TURNS at most.
+int ob_turns_find(ob_turns *t, ob_quat *q, ob_vec3 *w);
+
+// ob_published_at of n objects, with their rotations side by side. Of one that is absent, all of it 0, the state is 0.
 void ob_published_all(const ob_motion *m, const ob_passport *p, uint32_t n, double t, ob_state *out);
 
 typedef struct ob_flier {

@@ -277,39 +277,22 @@ static void put_turn(const ob_state_arrays *out, size_t row, ob_quat q, ob_vec3 
 		memcpy(&out->attitude[4 * row], (double[4]){ q.w, q.x, q.y, q.z }, 4 * sizeof(double));
 }
 
-// Rotations that are evaluated side by side, as each of them takes longer than all else of a state.
-enum { TURNS = 16 };
-typedef struct turning {
-	size_t row[TURNS];
-	double s[TURNS]; // since the spin's instant
-	ob_spin spin[TURNS], *of[TURNS];
-	int n;
-} turning;
-
-static void put_turns(const ob_state_arrays *out, turning *t)
+static void put_turns(const ob_state_arrays *out, ob_turns *t)
 {
-	ob_quat q;
-	ob_vec3 w;
-	ob_spin_prepare(t->of, t->s, t->n);
-	for (int i = 0; i < t->n; i++) {
-		ob_spin_at(t->of[i], t->s[i], &q, &w);
-		put_turn(out, t->row[i], q, w);
-	}
-	t->n = 0;
+	ob_quat q[OB_TURNS];
+	ob_vec3 w[OB_TURNS];
+	const int n = ob_turns_find(t, q, w);
+	for (int i = 0; i < n; i++)
+		put_turn(out, t->row[i], q[i], w[i]);
 }
 
 // The attitude at time t, as ob_rotate_free has it: now, or with others.
 static void turn(const ob_state_arrays *out, size_t row, const ob_passport *p, const ob_motion *m, double t,
-		 turning *all)
+		 ob_turns *all)
 {
-	if (!(t > m->t0) || ob_norm2(m->w) == 0) {
+	if (!(t > m->t0) || ob_norm2(m->w) == 0)
 		put_turn(out, row, m->q, m->w);
-		return;
-	}
-	const int i = all->n++;
-	all->row[i] = row, all->s[i] = t - m->t0, all->of[i] = &all->spin[i];
-	ob_spin_plan(all->of[i], m->q, m->w, p->inertia);
-	if (all->n == TURNS)
+	else if (ob_turns_add(all, row, m, p, t))
 		put_turns(out, all);
 }
 
@@ -324,7 +307,7 @@ size_t ob_universe_get_states(const ob_universe *u, const ob_state_arrays *out, 
 	ob_universe_info info;
 	ob_passport p;
 	ob_motion m;
-	turning all;
+	ob_turns all;
 	size_t n = 0;
 	const bool turns = out->attitude || out->angular_velocity, body = turns || out->generation;
 	ob_universe_get_info(u, &info);
