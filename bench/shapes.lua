@@ -3,8 +3,8 @@
 --   -D points=8     of a hull; 0: boxes
 --   -D n=200        bodies
 --   -D upright=true boxes of half a metre, hardly turned, which fall into columns instead of a heap: for comparison
-local n = param("n", 200, { min = 1, max = 5000 })
-local count = param("points", 0, { min = 0, max = 64 })
+local n = param("n", 200, { whole = true, min = 1, max = 5000 })
+local count = param("points", 0, { whole = true, min = 0, max = 64 })
 local upright = param("upright", false)
 local radius = .3
 

@@ -1,5 +1,5 @@
 -- A suspension bridge of planks on hinges, and boxes that fall on it. Each plank is a simulator of its own.
-local planks = param("planks", 20)
+local planks = param("planks", 20, { whole = true })
 scene { title = "A bridge of planks", duration = 10 }
 sky { top = "#7fa8cf", horizon = "#eef0ee" }
 sun { towards = { .6, -.8, .8 } }

@@ -1,7 +1,7 @@
 -- A gantry crane carries stools to a stack. A stool is a compound of a seat and four legs; the grab's mast is on a slider whose
 -- motor lifts it, and its script joins it to a stool, and lets go: joints come and go while the universe runs.
 --   -D stools=4      1 to 4
-local stools = param("stools", 4, { min = 1, max = 4 })
+local stools = param("stools", 4, { whole = true, min = 1, max = 4 })
 
 local CYCLE <const> = 11 -- s, to carry a stool and come back
 scene { title = "Crane that stacks stools", duration = CYCLE * stools + 1, room = 1 }

@@ -2,7 +2,7 @@
 -- Islands come and go with it: obsim run dominoes --colour-by island --video dominoes.mp4
 --   -D n=400          how many
 --   -D gap=.105       m, from one to the next
-local n = param("n", 400, { min = 2, max = 5000 })
+local n = param("n", 400, { whole = true, min = 2, max = 5000 })
 local gap = param("gap", .105, { min = .03, max = .2 })
 local width, thick, height = .14, .035, .24
 

@@ -1,7 +1,7 @@
 -- Gas: balls and boxes fly about in a closed box, without gravity, and lose nothing when they hit. All moves for ever.
 --   -D n=200         how many
 --   -D speed=3       m/s
-local n = param("n", 200, { min = 2, max = 20000 })
+local n = param("n", 200, { whole = true, min = 2, max = 20000 })
 local speed = param("speed", 3.0, { min = 0, max = 100 })
 
 scene { title = "Gas", duration = 10, gravity = { 0, 0, 0 }, sleeping = false }

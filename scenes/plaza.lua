@@ -3,8 +3,8 @@
 -- `obsim serve plaza` gives each visitor a person to steer: W A S D, and E to greet.
 --   -D people=20
 --   -D crates=60
-local people = param("people", 20, { min = 0, max = 500 })
-local crates = param("crates", 60, { min = 0, max = 1000 })
+local people = param("people", 20, { whole = true, min = 0, max = 500 })
+local crates = param("crates", 60, { whole = true, min = 0, max = 1000 })
 
 scene { title = "A plaza", duration = 60, seed = 3 }
 ground { colour = "#c7b9a1" }

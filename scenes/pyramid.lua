@@ -1,6 +1,6 @@
 -- Pyramid: a wall of unit cubes, each row one shorter than the row below. It must stand.
 --   -D rows=10    rows; rows * (rows + 1) / 2 cubes
-local rows = param("rows", 10, { min = 1, max = 100 })
+local rows = param("rows", 10, { whole = true, min = 1, max = 100 })
 
 scene { title = "Pyramid of " .. rows .. " rows", duration = 20, sleeping = false }
 ground {}

@@ -50,7 +50,7 @@ local solids = {
 	{ "icosahedron", sized(cyclic(0, 1, f), .64), "#8d6a9f" },
 }
 
-for row = 0, param("rows", 3) - 1 do
+for row = 0, param("rows", 3, { whole = true }) - 1 do
 	for i, s in ipairs(solids) do
 		local turn = (i + 2 * row) % 5
 		hull {

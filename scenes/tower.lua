@@ -3,7 +3,7 @@
 -- With obsim serve tower --isolation process, pick a stone and kill its worker.
 --   -D rows=16        of stones
 --   -D speed=16       m/s, of the ball
-local rows = param("rows", 16, { min = 1, max = 60 })
+local rows = param("rows", 16, { whole = true, min = 1, max = 60 })
 local speed = param("speed", 24.0, { min = 1, max = 60 })
 local around, radius, height = 14, 1.7, .3
 

@@ -1,6 +1,6 @@
 -- A wrecking ball on a chain, and a wall of loose bricks. Each link is a simulator of its own.
-local links = param("links", 10)
-local rows = param("rows", 6)
+local links = param("links", 10, { whole = true })
+local rows = param("rows", 6, { whole = true })
 scene { title = "A wrecking ball", duration = 8 }
 sky { top = "#6f9fd0", horizon = "#e8ecef" }
 sun { towards = { -.5, -.8, .9 } }

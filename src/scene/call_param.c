@@ -1,5 +1,5 @@
-// param(name, default [, { min =, max =, unit =, choices = }]): a value that the command line may replace (-D name=value), by a
-// number or an expression with a number as result (-D name=1/3).
+// param(name, default [, { min =, max =, whole =, unit = } or { choices }]): a value that the command line may replace
+// (-D name=value), by a number or an expression with a number as result (-D name=1/3).
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,12 +15,14 @@
 
 typedef struct limits {
 	double min, max; // NaN: none
+	bool whole; // a count: fractions are refused
 	const char *unit;
 } limits;
 
 static const ob_field limit_fields[] = {
 	OB_FIELD(limits, min, .name = "min", .kind = OB_FIELD_NUMBER, .low = -INFINITY, .high = INFINITY),
 	OB_FIELD(limits, max, .name = "max", .kind = OB_FIELD_NUMBER, .low = -INFINITY, .high = INFINITY),
+	OB_FIELD(limits, whole, .name = "whole", .kind = OB_FIELD_BOOLEAN),
 	OB_FIELD(limits, unit, .name = "unit", .kind = OB_FIELD_TEXT, .high = sizeof((ob_param_def *)0)->unit - 1),
 };
 
@@ -82,30 +84,42 @@ static bool push_expression(lua_State *L, const char *text)
 	return lua_pcall(L, 0, 1, 0) == LUA_OK && lua_type(L, -1) == LUA_TNUMBER;
 }
 
-// Pushes the text of a -D in the type of the default at index 2.
-static void push_defined(lua_State *L, const char *name, const char *text)
+static limits read_limits(lua_State *L, const char *name)
 {
-	int type = lua_type(L, 2);
-	bool whole = lua_isinteger(L, 2);
-	if (type == LUA_TSTRING) {
-		lua_pushstring(L, text);
-		return;
-	}
-	if (type == LUA_TBOOLEAN) {
-		if (strcmp(text, "true") != 0 && strcmp(text, "false") != 0)
-			ob_sandbox_fail(L, "param.%s: expected true or false, got -D %s=%.80s", name, name, text);
-		lua_pushboolean(L, text[0] == 't');
-		return;
-	}
-	int is_whole = 0;
-	bool number = (lua_stringtonumber(L, text) || push_expression(L, text)) && isfinite(lua_tonumber(L, -1));
-	lua_Integer i = number ? lua_tointegerx(L, -1, &is_whole) : 0; // "1e3" is a whole number too
-	if (!number || (whole && !is_whole))
-		ob_sandbox_fail(L, "param.%s: expected a %s, got -D %s=%.80s", name,
-				whole ? "whole number (12, 3*4)" : "number (.5, 1/3, pi/6)", name, text);
-	if (whole)
+	char where[OB_NAME_MAX + 8];
+	snprintf(where, sizeof where, "param.%s", name);
+	limits l = { .min = NAN, .max = NAN };
+	if (!lua_isnil(L, 3))
+		ob_fields_read(L, 3, where, limit_fields, sizeof limit_fields / sizeof *limit_fields, &l);
+	return l;
+}
+
+// Replaces a whole number at the top, as 1e3 or 6/2 is one, by an integer of Lua; false: it has a fraction.
+static bool make_integer(lua_State *L)
+{
+	int is_whole;
+	const lua_Integer i = lua_tointegerx(L, -1, &is_whole);
+	if (is_whole)
 		lua_pushinteger(L, i);
-	else
+	return is_whole;
+}
+
+// Pushes the number of a -D's text, or the default at index 2. With a whole default, names and loops get integers as long
+// as the number is one.
+static void push_number(lua_State *L, const char *name, const char *text, bool whole)
+{
+	const char *expected =
+		whole ? "a whole number (12, 3*4), as the scene says whole = true" : "a number (.5, 1/3, pi/6)";
+	if (!text)
+		lua_pushvalue(L, 2);
+	else if (!(lua_stringtonumber(L, text) || push_expression(L, text)) || !isfinite(lua_tonumber(L, -1)))
+		ob_sandbox_fail(L, "param.%s: expected %s, got -D %s=%.80s", name, expected, name, text);
+	const bool integer = (whole || lua_isinteger(L, 2)) && make_integer(L);
+	if (whole && !integer && text)
+		ob_sandbox_fail(L, "param.%s: expected %s, got -D %s=%.80s", name, expected, name, text);
+	if (whole && !integer)
+		ob_fields_fail(L, "param", name, "a whole number as default, as it says whole = true", 2);
+	if (!integer)
 		lua_pushnumber(L, lua_tonumber(L, -1));
 }
 
@@ -120,32 +134,34 @@ static void offer(lua_State *L, ob_scene *s, const char *name, const limits *l)
 			ob_sandbox_fail(L, "param.%s: no memory left on this machine", name);
 		s->params++;
 	}
-	s->param[i] = (ob_param_def){
-		.value = lua_tonumber(L, -1), .min = l->min, .max = l->max, .whole = lua_isinteger(L, -1)
-	};
+	s->param[i] = (ob_param_def){ .value = lua_tonumber(L, -1), .min = l->min, .max = l->max, .whole = l->whole };
 	snprintf(s->param[i].name, sizeof s->param[i].name, "%s", name);
 	snprintf(s->param[i].unit, sizeof s->param[i].unit, "%s", l->unit ? l->unit : "");
 }
 
-// Checks the number at the top against { min =, max = } at index 3, and keeps one that has both.
-static void check_number(lua_State *L, const char *name)
+// Pushes the number within the limits at index 3, and keeps one that has both.
+static void take_number(lua_State *L, const char *name, const char *text)
 {
-	char where[OB_NAME_MAX + 8];
-	snprintf(where, sizeof where, "param.%s", name);
-	limits l = { NAN, NAN, NULL };
-	ob_fields_read(L, 3, where, limit_fields, sizeof limit_fields / sizeof *limit_fields, &l);
-	double x = lua_tonumber(L, -1);
+	const limits l = read_limits(L, name);
+	push_number(L, name, text, l.whole);
+	const double x = lua_tonumber(L, -1);
 	if (x < l.min)
-		ob_sandbox_fail(L, "%s: expected a number of at least %.10g, got %.10g", where, l.min, x);
+		ob_sandbox_fail(L, "param.%s: expected a number of at least %.10g, got %.10g", name, l.min, x);
 	if (x > l.max)
-		ob_sandbox_fail(L, "%s: expected a number of at most %.10g, got %.10g", where, l.max, x);
+		ob_sandbox_fail(L, "param.%s: expected a number of at most %.10g, got %.10g", name, l.max, x);
 	if (isfinite(l.min) && isfinite(l.max))
 		offer(L, ((ob_builder *)ob_sandbox_user(L))->scene, name, &l);
 }
 
-// Checks the text at the top against { "one", "two" } at index 3.
-static void check_choice(lua_State *L, const char *name)
+// Pushes the text, which is one of { "one", "two" } at index 3.
+static void take_text(lua_State *L, const char *name, const char *given)
 {
+	if (given)
+		lua_pushstring(L, given);
+	else
+		lua_pushvalue(L, 2);
+	if (lua_isnil(L, 3))
+		return;
 	char known[160] = "";
 	size_t n = 0, count = lua_istable(L, 3) ? lua_rawlen(L, 3) : 0;
 	const char *text = lua_tostring(L, -1);
@@ -162,6 +178,15 @@ static void check_choice(lua_State *L, const char *name)
 	ob_sandbox_fail(L, "param.%s: expected %s, got \"%.80s\"", name, known, text);
 }
 
+static void take_boolean(lua_State *L, const char *name, const char *text)
+{
+	if (text && strcmp(text, "true") != 0 && strcmp(text, "false") != 0)
+		ob_sandbox_fail(L, "param.%s: expected true or false, got -D %s=%.80s", name, name, text);
+	if (!lua_isnil(L, 3))
+		ob_sandbox_fail(L, "param.%s: expected no third value for true or false", name);
+	lua_pushboolean(L, text ? text[0] == 't' : lua_toboolean(L, 2));
+}
+
 int ob_scene_call_param(lua_State *L)
 {
 	ob_builder *b = ob_sandbox_user(L);
@@ -172,18 +197,12 @@ int ob_scene_call_param(lua_State *L)
 		ob_fields_fail(L, "param", name, "a default that is a number, text, true or false", 2);
 	remember(L, b, name);
 	const char *text = defined(b->options, name);
-	if (text)
-		push_defined(L, name, text);
-	else
-		lua_pushvalue(L, 2);
-	if (lua_isnil(L, 3))
-		return 1;
 	if (type == LUA_TNUMBER)
-		check_number(L, name);
+		take_number(L, name, text);
 	else if (type == LUA_TSTRING)
-		check_choice(L, name);
+		take_text(L, name, text);
 	else
-		ob_sandbox_fail(L, "param.%s: expected no third value for true or false", name);
+		take_boolean(L, name, text);
 	return 1;
 }
 

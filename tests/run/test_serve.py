@@ -355,7 +355,7 @@ box { name = "load", size = { .2, .2, .2 }, at = { 6, 0, 1.15 }, mass = 1 }
 		self.end(saying="was killed by SIGKILL")
 
 	AVATAR = """ground {}
-local n = param("n", 2, { min = 1, max = 9, unit = "boxes" })
+local n = param("n", 2, { whole = true, min = 1, max = 9, unit = "boxes" })
 for i = 1, n do box { size = { 1, 1, 1 }, at = { 3 * i, 0, .5 }, density = 50 } end
 sphere { avatar = true, name = "guest", radius = .4, at = { 0, 0, .4 }, script = [[
 function on_message(_, what, x, y)

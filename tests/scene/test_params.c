@@ -1,4 +1,5 @@
-// -D name=value reaches param(name, default) in the type of the default, or is refused with the names that exist.
+// -D name=value reaches param(name, default) in the type of the default, a number as any number unless the scene says
+// whole = true, or is refused with the names that exist.
 #include "check.h"
 #include "text.h"
 
@@ -25,11 +26,14 @@ static void refused(const char *text, const char *define, const char *expected)
 		fprintf(stderr, "  expected %s\n  got %s\n", expected, e.text);
 }
 
-static const char whole[] = "sphere { radius = param('n', 100), mass = 1 }";
+static const char whole[] = "sphere { radius = param('n', 100, { whole = true }), mass = 1 }";
+static const char number[] = "sphere { radius = param('p', 1), mass = 1 }";
 static const char real[] = "sphere { radius = param('r', .5, { min = .1, max = 1e6 }), mass = 1 }";
 static const char text[] = "sphere { radius = #param('t', 'ab') }";
 static const char flag[] = "sphere { radius = param('f', false) and 2 or 1 }";
 static const char choice[] = "sphere { radius = #param('c', 'one', { 'one', 'three' }) }";
+
+#define WHOLE_EXPECTED ":1: param.n: expected a whole number (12, 3*4), as the scene says whole = true, got "
 
 int main(void)
 {
@@ -42,6 +46,11 @@ int main(void)
 	CHECK(value(text, "t=1/3") == 3);
 	CHECK(value("sphere { radius = math.type(param('r', .5)) == 'float' and 1 or 2 }", "r=3") == 1);
 	CHECK(value("sphere { radius = math.type(param('r', 5)) == 'integer' and 1 or 2 }", "r=3e0") == 1);
+	CHECK(value("sphere { radius = math.type(param('r', 5)) == 'float' and 1 or 2 }", "r=.5") == 1);
+	CHECK(value("sphere { radius = math.type(param('r', 5., { whole = true })) == 'integer' and 1 or 2 }", "r=3") ==
+	      1);
+	CHECK(value(number, "p=.02") == .02 && value(number, "p=1/3") == 1. / 3 && value(number, "p=7") == 7);
+	CHECK(value("sphere { radius = param('p', 1, { min = 0, max = 2 }), mass = 1 }", "p=.5") == .5);
 	CHECK(value(text, "t=hello") == 5 && value(text, "t=a=b") == 3);
 	CHECK(value(flag, "f=true") == 2 && value(flag, "f=false") == 1);
 	CHECK(value(choice, "c=three") == 5);
@@ -51,9 +60,10 @@ int main(void)
 	CHECK(s && s->object[0].passport.size.x == 2);
 	ob_scene_free(s);
 
-	refused(whole, "n=2.5", ":1: param.n: expected a whole number (12, 3*4), got -D n=2.5");
-	refused(whole, "n=many", ":1: param.n: expected a whole number (12, 3*4), got -D n=many");
-	refused(whole, "n=", ":1: param.n: expected a whole number (12, 3*4), got -D n=");
+	refused(whole, "n=2.5", WHOLE_EXPECTED "-D n=2.5");
+	refused(whole, "n=many", WHOLE_EXPECTED "-D n=many");
+	refused(whole, "n=", WHOLE_EXPECTED "-D n=");
+	refused(number, "p=many", ":1: param.p: expected a number (.5, 1/3, pi/6), got -D p=many");
 	refused(real, "r=1e999", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=1e999");
 	refused(real, "r=nan", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=nan");
 	refused(real, "r=1/0", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=1/0");
@@ -62,7 +72,7 @@ int main(void)
 	refused(real, "r=1, 2", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=1, 2");
 	refused(real, "r=random()", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=random()");
 	refused(real, "r=sphere{}", ":1: param.r: expected a number (.5, 1/3, pi/6), got -D r=sphere{}");
-	refused(whole, "n=1/3", ":1: param.n: expected a whole number (12, 3*4), got -D n=1/3");
+	refused(whole, "n=1/3", WHOLE_EXPECTED "-D n=1/3");
 	refused(real, "r=(function() while true do end end)()", ":1: param.r: expected a number");
 	refused(real, "r=0", ":1: param.r: expected a number of at least 0.1, got 0");
 	refused(real, "r=1e7", ":1: param.r: expected a number of at most 1000000, got 10000000");
@@ -73,6 +83,6 @@ int main(void)
 	refused("sphere { radius = 1 }", "n=1", "-D n=1: unknown parameter; the scene has none");
 	refused(whole, "n", "-D n: expected name=value");
 	refused(whole, "=1", "-D =1: expected name=value");
-	refused(whole, "n=\n\n", ":1: param.n: expected a whole number (12, 3*4)");
+	refused(whole, "n=\n\n", WHOLE_EXPECTED);
 	return check_end();
 }
