@@ -63,13 +63,14 @@ static void explain_motion(const ob_explained *x, const traits *t, FILE *f)
 		line(f, "sleep", "none: no island was ever at rest for long enough");
 	if (c->gyroscopic_steps)
 		line(f, "gyroscope",
-		     "Euler's equations in %" PRIu64 " substeps of objects that turned while in contact",
+		     "Euler's equations in %" PRIu64
+		     " substeps of objects that turned while they touched or were joined",
 		     c->gyroscopic_steps);
 	else if (!exact)
 		line(f, "gyroscope", "ODE's own");
 	else
 		line(f, "gyroscope", "none: %s",
-		     t->round == t->bodies ? "all are spheres" : "nothing that touched turned");
+		     t->round == t->bodies ? "all are spheres" : "nothing that touched or was joined turned");
 	if (t->forced)
 		line(f, "forces", "constant ones on %" PRIu32 " objects", t->forced);
 	if (t->varying)

@@ -269,10 +269,17 @@ static bool may_have_landed(const ob_island_work *w, uint32_t row)
 	return false;
 }
 
+void ob_body_count_turn(ob_solver *s, uint32_t row)
+{
+	const ob_island_work *w = &s->island;
+	s->counters.gyroscopic_steps += !w->body[row].isotropic && ob_norm2(ob_row_angular(w->v[row])) > 0;
+}
+
 // Integrates from the midpoint (solver/midpoint.h) to the end of the partial substep. A jump of velocity counts as if it
 // had happened at the start.
-static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
+static void finish_halved(ob_solver *s, uint32_t row, double smooth)
 {
+	ob_island_work *w = &s->island;
 	ob_body *body = &w->body[row];
 	double *v = w->v[row], *d = w->d[row];
 	const double *u = w->u[row], h = .5 * w->h;
@@ -294,6 +301,7 @@ static void finish_halved(ob_island_work *w, uint32_t row, double smooth)
 	}
 	memcpy(v, u, sizeof *w->v);
 	set_rate(v, rate);
+	ob_body_count_turn(s, row);
 	memset(d, 0, sizeof *w->d);
 	ob_row_add(d, ob_add(way, ob_row_linear(body->first_half)), ob_small_turn(body->start_q, q));
 	update_gaps(w, row);
@@ -325,7 +333,7 @@ static void turn_body(ob_solver *s, uint32_t row, bool held)
 			ob_body_update_pose(w, row);
 		return;
 	}
-	s->counters.gyroscopic_steps++;
+	ob_body_count_turn(s, row);
 	drift_body(w, row, w->h, held && w->max_acceleration > 0);
 }
 
@@ -429,7 +437,7 @@ void ob_body_move(ob_solver *s, uint32_t row, double smooth)
 {
 	ob_island_work *w = &s->island;
 	if (w->body[row].halved) {
-		finish_halved(w, row, smooth);
+		finish_halved(s, row, smooth);
 		return;
 	}
 	const ob_vec3 before = ob_row_angular(w->v[row]);

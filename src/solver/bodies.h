@@ -17,6 +17,8 @@ uint32_t ob_bodies_add_row(ob_island_work *w);
 // Applies the displacement row to the pose, and updates the gaps of contacts that were computed for the old pose. The
 // angular velocity turns with the body, so its energy stays.
 void ob_body_update_pose(ob_island_work *w, uint32_t row);
+// Counts a substep in which the body turned by Euler's equations: equal moments need none.
+void ob_body_count_turn(ob_solver *s, uint32_t row);
 // Sets the pose; leaves the gaps.
 void ob_body_place(ob_body *body, ob_vec3 p, ob_quat q);
 // Sets v and the speed bound that follows from it. linear: m/s; angular: rad/s.

@@ -290,13 +290,15 @@ static void guess(ob_island_work *w, double ratio)
 			w->joints.joint[i].sum[r] *= ratio;
 }
 
-// Adds what the bodies have moved at most in h (s) to their paths.
-static void note_paths(ob_island_work *w, double h)
+// Adds what the bodies have moved at most in h (s) to their paths, and counts their turns.
+static void note_paths(ob_solver *s, double h)
 {
+	ob_island_work *w = &s->island;
 	for (uint32_t row = 1; row <= w->bodies; row++) {
 		const double before = w->body[row].speed;
 		ob_body_set_velocity(w, row, ob_row_linear(w->v[row]), ob_row_angular(w->v[row]));
 		w->body[row].path += h * ob_max(before, w->body[row].speed);
+		ob_body_count_turn(s, row);
 	}
 }
 
@@ -654,7 +656,7 @@ bool ob_joints_fly(ob_solver *s)
 	begin_flights(s);
 	for (uint32_t k = 0; k < d.parts && !w->joints.failed && !ob_budget_spent(s); k++) {
 		fly_and_break(s, &d, k);
-		note_paths(w, d.h);
+		note_paths(s, d.h);
 	}
 	w->time = s->settings->step_length;
 	return ob_joints_substeps(s) <= w->substeps && !w->joints.failed;

@@ -145,6 +145,12 @@ class Report(program.Case):
 				"recorder     none", "Lua          none", "tolerance    none"):
 			self.assertIn(line, cradle.stdout)
 		self.assertRegex(cradle.stdout, r"restitution  \d+ impacts")
+		wheel = self.path("wheel.lua")
+		with open(wheel, "w", encoding="utf-8") as f:
+			f.write("scene { duration = .2 }\ncylinder { name = 'wheel', radius = .3, length = .1, at = { 0, 0, 2 }, mass = 1, spin = { 0, 0, 12 } }\n"
+				"hinge { 'wheel', at = { 0, 0, 2 }, axis = { 0, 0, 1 } }\n")
+		for turning in ([wheel], [program.scene("hills"), "--duration", ".5"], [program.scene("tower"), "--duration", "1.5"]):
+			self.assertIn("gyroscope    Euler's equations in", program.call("run", *turning, "--explain").stdout, turning)
 		boxes = program.call("run", program.scene("falling_boxes"), "-D", "n=8", "--duration", "2", "--explain", "--json=-")
 		for line in "restitution  none: no object has any", "flight       closed form", "collision", "Coulomb's cone":
 			self.assertIn(line, boxes.stderr)
