@@ -14,6 +14,7 @@ u.name say which. Units are SI and radians, vectors are in the world frame (righ
 Arrays are copies. Not thread-safe: use one thread at a time for each universe.
 """
 import ctypes
+import difflib
 import itertools
 import os
 import subprocess
@@ -27,7 +28,7 @@ import numpy
 from obsim import _native
 from obsim._native import Error
 
-__all__ = ['Error', 'Joint', 'Object', 'Run', 'Universe', 'attach', 'names', 'run']
+__all__ = ['Error', 'Joint', 'Object', 'Run', 'Universe', 'Unknown', 'attach', 'names', 'run']
 
 CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
 CONTACT_EVENT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('step', 'u4'), ('begins', 'u4')])
@@ -35,7 +36,7 @@ CHANGE = numpy.dtype([('id', 'u4'), ('generation', 'u4'), ('value', 'f8', 13)])
 POINT = numpy.dtype([('time', 'f8'), ('position', 'f8', 3), ('attitude', 'f8', 4)])
 _PRESENT, _STATIC, _FROZEN, _KINEMATIC, _SENSOR = 1, 2, 4, 8, 64
 _WORLD = 0xffffffff
-_SAME = numpy.nan
+_SAME = object()
 _numbers = itertools.count()
 
 
@@ -52,7 +53,39 @@ def attach(name):
     return Universe(name)
 
 
-class Object:
+class Unknown(Error, KeyError, AttributeError):
+    """No object, joint or attribute has this name."""
+    __str__ = Exception.__str__
+
+
+def _unknown(what, name, known):
+    """The error, with the most similar of the known names."""
+    meant = difflib.get_close_matches(str(name), known, 1)
+    return Unknown(f'no {what} {name!r}' + (f', did you mean {meant[0]!r}?' if meant else ''))
+
+
+class _Strict:
+    """Takes no other attributes than it has: a misspelt one would set nothing."""
+
+    def _known(self):
+        return [name for name in dir(type(self)) if name[0] != '_']
+
+    def __getattr__(self, name):
+        raise _unknown('attribute', name, self._known())
+
+    def __setattr__(self, name, value):
+        if name[0] == '_':
+            object.__setattr__(self, name, value)
+            return
+        attribute = getattr(type(self), name, None)
+        if attribute is None:
+            raise _unknown('attribute', name, self._known())
+        if not isinstance(attribute, property) or not attribute.fset:
+            raise Error(f'{name} cannot be set')
+        attribute.fset(self, value)
+
+
+class Object(_Strict):
     """One object of a universe. Its values are read when they are asked for, and set at once."""
 
     def __init__(self, universe, passport):
@@ -145,7 +178,7 @@ class Object:
 
     @friction.setter
     def friction(self, coefficient):
-        self._universe.set_frictions([self._id], [[coefficient]])
+        self._universe.set_frictions([self._id], coefficient)
 
     def push(self, force, point=(0, 0, 0)):
         """A force (N) at a point of the body (m, from its centre of mass, body frame), until it is 0 or released."""
@@ -189,15 +222,18 @@ class Object:
         self._universe.remove([self._id])
 
 
-class Joint:
+class Joint(_Strict):
     """One joint of a universe. Its values are read when they are asked for; its motor's target is set at once."""
 
     def __init__(self, universe, number, passport):
         self._universe, self._number = universe, number
-        self.name, self.kind = passport.name.decode(), _native.library().ob_joint_kind_name(passport.kind).decode()
+        self._name, self._kind = passport.name.decode(), _native.library().ob_joint_kind_name(passport.kind).decode()
 
     def __repr__(self):
         return f'<{self.kind} {self._number} "{self.name}">'
+
+    name = property(lambda self: self._name, doc='As the scene has it.')
+    kind = property(lambda self: self._kind, doc='"hinge", for one.')
 
     def _passport(self):
         p = self._universe._joint(self._number)
@@ -245,11 +281,29 @@ class Joint:
         self._universe.unjoin([self])
 
 
+def _rows(column, n, width):
+    """n rows of so many numbers, from as many, from one row for all, or from _SAME."""
+    if column is _SAME:
+        return numpy.nan
+    try:
+        rows = numpy.asarray(column, float)
+    except (TypeError, ValueError):
+        rows = None
+    if rows is None or rows.shape not in ((width,), (n, width), *(((), (n,)) if width == 1 else ())):
+        raise Error(f'expected {width} number{"s" * (width > 1)} for each of {n} object{"s" * (n != 1)}, got {column!r:.80}')
+    return rows.reshape(-1, width)
+
+
 def _vector(v):
     return numpy.array([v.x, v.y, v.z])
 
 
-class Universe:
+class _Joints(dict):
+    def __missing__(self, name):
+        raise _unknown('joint', name, self)
+
+
+class Universe(_Strict):
     """A universe, read from shared memory: no request reaches its simulators."""
 
     def __init__(self, name):
@@ -342,19 +396,18 @@ class Universe:
     def joints(self):
         """Joints by name, of objects that exist."""
         found = ((n, self._joint(n)) for n in range(_native.library().ob_universe_joints(self._u)))
-        return {j.name.decode(): Joint(self, n, j) for n, j in found if j}
+        return _Joints({j.name.decode(): Joint(self, n, j) for n, j in found if j})
+
+    def _find(self, key):
+        if not isinstance(key, str):
+            return self._passport(int(key))
+        return next((p for p in map(self._passport, self.id.tolist()) if p and p.name.decode() == key), None)
 
     def __getitem__(self, key):
         """The object of this id or name."""
-        if isinstance(key, str):
-            for id_ in self.id.tolist():
-                p = self._passport(id_)
-                if p and p.name.decode() == key:
-                    return Object(self, p)
-            raise KeyError(f'no object "{key}"')
-        p = self._passport(int(key))
+        p = self._find(key)
         if not p:
-            raise KeyError(f'no object {key}')
+            raise _unknown('object', key, self.name if isinstance(key, str) else [])
         return Object(self, p)
 
     def __iter__(self):
@@ -362,11 +415,7 @@ class Universe:
         return (Object(self, p) for p in map(self._passport, self.id.tolist()) if p)
 
     def __contains__(self, key):
-        try:
-            self[key]
-        except KeyError:
-            return False
-        return True
+        return self._find(key) is not None
 
     def _refuse(self, *_arguments, **_named):
         raise Error('this universe is read only: obsim.run starts one that can be changed')
@@ -525,7 +574,7 @@ class Run(Universe):
         changes['id'] = ids
         at = 0
         for column, width in columns:
-            changes['value'][:, at:at + width] = numpy.broadcast_to(numpy.asarray(column, float), (len(ids), width))
+            changes['value'][:, at:at + width] = _rows(column, len(ids), width)
             at += width
         self._call(function, changes.ctypes.data, len(changes))
 
@@ -569,13 +618,13 @@ class Run(Universe):
         """Targets of the motors of joints: rates that they hold, or values that they pull to."""
         numbers = [[j._number] for j in joints]
         self._change('ob_controller_set_motors', [j._passport().object[0] for j in joints], (numbers, 1),
-                     (numpy.reshape(target, (-1, 1)), 1))
+                     (target, 1))
 
     def set_path(self, id_, times, positions, attitudes=None, loop=False):
         """Path of a kinematic object from now on: Object.follow has the arguments."""
         points = numpy.zeros(len(times), POINT)
-        points['time'], points['position'] = times, positions
-        points['attitude'] = (1, 0, 0, 0) if attitudes is None else attitudes
+        points['time'], points['position'] = times, _rows(positions, len(times), 3)
+        points['attitude'] = _rows((1, 0, 0, 0) if attitudes is None else attitudes, len(times), 4)
         self._call('ob_controller_set_path', id_, points.ctypes.data, len(points), attitudes is not None, loop)
 
     def kill(self, ids):

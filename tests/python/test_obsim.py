@@ -338,6 +338,37 @@ class Wrong(Case):
         u.close()
         self.says('closed', u.step)
 
+    def test_words(self):
+        """A misspelt name, and a number too few, set nothing, and what was meant is said."""
+        u = self.run_()
+        before, box = u.states(), u['box#3']
+        for what, name, meant in ((box, 'velocty', 'velocity'), (box, 'angular_velocty', 'angular_velocity'), (u, 'snapshots', 'snapshot'),
+                                  (u, 'steps_length', 'step_length')):
+            self.says(f"no attribute '{name}', did you mean '{meant}'?", setattr, what, name, (1, 2, 3))
+            self.says(f"no attribute '{name}', did you mean '{meant}'?", getattr, what, name)
+            self.assertFalse(hasattr(what, name))
+        for what, name in ((box, 'mass'), (box, 'kick'), (u, 'position'), (u, 'step')):
+            self.says(f'{name} cannot be set', setattr, what, name, 1)
+        for name in ('position', 'attitude', 'velocity', 'angular_velocity', 'force', 'torque', 'colour'):
+            for value in (1, (), (1, 2), (1, 2, 3, 4, 5), [[1, 2, 3], [1, 2, 3]], None, 'fast', {}, numpy.nan):
+                self.says(f'expected {4 if name in ("attitude", "colour") else 3} numbers for each of 1 object, got', setattr, box, name, value)
+        self.says('expected 1 number for each of 1 object, got (1, 2)', setattr, box, 'friction', (1, 2))
+        for function, arguments in ((u.set_forces, (1,)), (u.set_forces, ([[1, 2, 3]] * 3,)), (u.kick, ((1, 0, 0), 2)), (u.set_states, (7,)),
+                                    (u.set_states, ([[1, 2, 3]], 1)), (u.push, (3,)), (u.drag, ([1, 2],)), (u.set_frictions, ((.1, .2, .3),))):
+            self.says('for each of 2 objects, got', function, [2, 3], *arguments)
+        self.says('expected 3 numbers for each of 2 objects', u['lift'].follow, [1, 2], 5)
+        self.assertTrue(all((before[name] == now).all() for name, now in u.states().items()))
+        self.says("no object 'box#33', did you mean 'box#3'?", lambda: u['box#33'])
+        self.says("no object 99", lambda: u[99])
+        self.says("no joint 'elbow'", lambda: u.joints['elbow'])
+        self.assertTrue('box#3' in u and 3 in u and 'box#33' not in u and 99 not in u)
+        with self.assertRaises(KeyError): # as of other mappings
+            u['nobody']
+        u.set_frictions([2, 3], (.1, .2))
+        u.set_frictions([2, 3], .5)
+        u.set_forces([2, 3], (0, 0, 1))
+        u.set_forces([2, 3], [(0, 0, 1), (0, 0, 2)])
+
     def test_monolith(self):
         u = self.run_({'arch': 'monolith'})
         u.step(10)
