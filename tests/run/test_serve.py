@@ -236,6 +236,17 @@ box { name = "load", size = { .2, .2, .2 }, at = { 6, 0, 1.15 }, mass = 1 }
 		Viewer(self.port, headers=[f"Origin: http://127.0.0.1:{self.port}"]).close()
 		self.end()
 
+	@unittest.skipUnless(os.path.exists("/proc/net/tcp6"), "no IPv6 here")
+	def test_loopbacks(self):
+		"""Programs of the same user operate, by whichever kind of socket."""
+		for listen in "127.0.0.1", "[::1]", "[::ffff:127.0.0.1]":
+			self.serve_file(program.scene("stack"), "--listen", listen + ":0")
+			for address in ["::1"] if listen == "[::1]" else ["127.0.0.1", "::ffff:127.0.0.1"]:
+				with self.subTest(listen=listen, address=address):
+					v = self.viewer(address=address, headers=[f"Host: localhost:{self.port}"])
+					self.assertEqual(v.told["welcome"]["role"], "operate")
+			self.end()
+
 	@unittest.skipUnless(program.MESHES, "built without tinygltf")
 	def test_meshes(self):
 		"""A mesh is content under its hash, for holders of the token."""
