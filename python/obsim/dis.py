@@ -5,7 +5,8 @@
 An entity is sent when what receivers extrapolate (dead reckoning model 4: constant acceleration and spin, world coordinates) is
 off by a centimetre or a degree, every five seconds otherwise, and, when its object has gone, once more as deactivated. x is
 east, y north and z up at the origin (degrees, m above the ellipsoid WGS 84), and the front of an entity is its x axis. The
-number of an entity is 1 + the object's id. Planes are no entities. Reads the universe alone: no simulator waits for it.
+number of an entity is 1 + the object's id, in application 1; ids from 65,533 on begin anew at 1 in application 2, and so on.
+Planes are no entities. Reads the universe alone: no simulator waits for it.
 """
 import argparse
 import socket
@@ -16,10 +17,12 @@ import time
 import numpy
 
 import obsim
+from obsim import _native
 
 PDU = struct.Struct('>BBBBIHBB HHH BB BBHBBBB BBHBBBB 3f 3d 3f I B15s3f3f B11s I') # 144 bytes
 ENTITY_STATE, FAMILY, VERSION, MODEL_RVW, DEACTIVATED = 1, 1, 7, 4, 1 << 23
-SITE, APPLICATION, PORT = 1, 1, 3000
+SITE, PORT = 1, 3000
+NUMBERS = 65533 # of an application, from 1; 0 and what is left of 16 bits have meanings of their own
 NEAR, ALIKE, HEARTBEAT = .01, numpy.radians(1), 5. # m, rad, s
 PERIOD = 1 / 60 # s between two looks at the universe
 MAJOR, FLATTENING = 6378137., 1 / 298.257223563 # WGS 84
@@ -63,8 +66,8 @@ def product(a, b):
 class Entity:
     """An object as receivers know it."""
 
-    def __init__(self, generation, name):
-        self.generation, self.name, self.sent = generation, name, -numpy.inf
+    def __init__(self, name):
+        self.name, self.sent = name, -numpy.inf
         self.time = self.position = self.velocity = self.acceleration = self.attitude = self.spin = None
 
     def set(self, now, state, acceleration):
@@ -96,32 +99,38 @@ class Sender:
     def look(self):
         """Returns the number of PDUs sent."""
         now, states, sent = self._u.time, self._u.states(), 0
-        before, self._last = self._last, (now, dict(zip(states['id'].tolist(), states['velocity'])))
-        for i, id_ in enumerate(states['id'].tolist()):
-            entity = self._known.get(id_)
-            if not entity or entity.generation != states['generation'][i]:
-                o = self._u[id_]
-                if o.shape == 'plane':
-                    continue
-                entity = self._known[id_] = Entity(o.generation, o.name)
+        objects = list(zip(states['id'].tolist(), states['generation'].tolist()))
+        before, self._last = self._last, (now, dict(zip(objects, states['velocity'])))
+        for gone in set(self._known) - set(objects):
+            self._send(gone[0], self._known.pop(gone), DEACTIVATED)
+            sent += 1
+        for i, object_ in enumerate(objects):
+            entity = self._known.get(object_) or self._meet(*object_)
+            if not entity:
+                continue
             state = [states[name][i] for name in ('position', 'attitude', 'velocity', 'angular_velocity')]
             if entity.is_off(now, state):
-                acceleration = (state[2] - before[1][id_]) / (now - before[0]) if before and now > before[0] and \
-                    id_ in before[1] else numpy.zeros(3)
+                acceleration = (state[2] - before[1][object_]) / (now - before[0]) if before and now > before[0] and \
+                    object_ in before[1] else numpy.zeros(3)
                 entity.set(now, state, acceleration)
-                self._send(id_, entity, 0)
+                self._send(object_[0], entity, 0)
                 sent += 1
-        for id_ in set(self._known) - set(states['id'].tolist()):
-            self._send(id_, self._known.pop(id_), DEACTIVATED)
-            sent += 1
         return sent
+
+    def _meet(self, id_, generation):
+        """The entity of a new object; None: it is none, or has gone since its state was read."""
+        p = self._u._passport(id_)
+        if not p or p.generation != generation or _native.library().ob_shape_name(p.shape) == b'plane':
+            return None
+        entity = self._known[id_, generation] = Entity(p.name.decode())
+        return entity
 
     def _send(self, id_, e, appearance):
         stamp = int(e.time % 3600 / 3600 * 2 ** 31) << 1 # relative
         place, marking = self._place, e.name.encode('ascii', 'replace')[:11]
         self._socket.sendto(PDU.pack(
-            VERSION, self._exercise, ENTITY_STATE, FAMILY, stamp, PDU.size, 0, 0, SITE, APPLICATION, id_ + 1, 0, 0,
-            0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, *place.vector(e.velocity), *place.position(e.position),
+            VERSION, self._exercise, ENTITY_STATE, FAMILY, stamp, PDU.size, 0, 0, SITE, 1 + id_ // NUMBERS,
+            1 + id_ % NUMBERS, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, *place.vector(e.velocity), *place.position(e.position),
             *place.angles(e.attitude), appearance, MODEL_RVW, bytes(15), *place.vector(e.acceleration),
             *(matrix(e.attitude).T @ e.spin * [1, -1, -1]), 1, marking, 0), self._address)
 

@@ -3,6 +3,7 @@
 where receivers extrapolate them to be. Exit 77 (skipped) without NumPy.
 """
 import os
+import random
 import shutil
 import socket
 import struct
@@ -18,7 +19,7 @@ except ImportError:
     sys.exit(77)
 
 import obsim
-from obsim import dis
+from obsim import _native, dis
 
 SCENE = """scene { duration = 5, step = .01 }
 ground {}
@@ -26,6 +27,37 @@ box { name = "flier", size = { 1, .5, .2 }, at = { 10, 20, 30 }, velocity = { 3,
 sphere { name = "ball", radius = .1, at = { 0, 0, .1 } }
 """
 NEAR_PARIS = (48.85, 2.35, 35.)
+
+
+class Meanwhile:
+    """A universe in which something is done just after its states were read."""
+
+    def __init__(self, u):
+        self.u, self.deed = u, None
+
+    def __getattr__(self, name):
+        return getattr(self.u, name)
+
+    def __getitem__(self, key):
+        return self.u[key]
+
+    def states(self):
+        states, deed, self.deed = self.u.states(), self.deed, None
+        if deed:
+            deed()
+        return states
+
+
+def names_of(pdus, known=()):
+    """Markings of active entities by number, after these PDUs."""
+    known = dict(known)
+    for pdu in pdus:
+        number = struct.unpack_from('>HHH', pdu, 12)
+        if struct.unpack_from('>I', pdu, 84)[0] & dis.DEACTIVATED:
+            del known[number]
+        else:
+            known[number] = pdu[129:140].rstrip(b'\0').decode()
+    return known
 
 
 def receive(s):
@@ -105,6 +137,54 @@ class Dis(unittest.TestCase):
         gone = receive(self.s)[-1]
         self.assertEqual(struct.unpack_from('>H', gone, 16), (3,))
         self.assertTrue(struct.unpack_from('>I', gone, 84)[0] & 1 << 23)
+
+    def test_meanwhile(self):
+        """Objects come, go and take each other's numbers while the sender looks: receivers know those that there are."""
+        u, rng, known = Meanwhile(self.u), random.Random(1), {}
+        self.sender = dis.Sender(u, self.s.getsockname())
+        self.addCleanup(self.sender.close)
+
+        def change():
+            here = [o for o in self.u if o.shape != 'plane']
+            deed = rng.choice(['create', 'remove', 'replace', 'none'])
+            if here and deed in ('remove', 'replace'):
+                rng.choice(here).remove()
+            if deed in ('create', 'replace'):
+                self.u.create(f'sphere {{ name = "new {rng.randrange(10 ** 6)}", radius = .1, '
+                              f'at = {{ {rng.uniform(-9, 9)}, {rng.uniform(-9, 9)}, {rng.uniform(1, 9)} }} }}')
+
+        for _ in range(150):
+            u.deed = change
+            self.sender.look()
+            known = names_of(receive(self.s), known)
+            self.u.step()
+            self.sender.look()
+            known = names_of(receive(self.s), known)
+            self.assertEqual(known, {(1, 1, 1 + o.id): o.name for o in self.u if o.shape != 'plane'})
+
+    def test_numbers(self):
+        """Ids beyond the numbers of an application are those of the next one; none has a number with a meaning of its own."""
+        class Many:
+            time = 0.
+            ids = 0, 1, 65532, 65533, 65534, 65535, 131065, 131066, 1000063
+
+            def states(self):
+                n = len(self.ids)
+                return {'id': numpy.array(self.ids), 'generation': numpy.ones(n), 'attitude': numpy.tile([1., 0, 0, 0], (n, 1)),
+                        **{name: numpy.zeros((n, 3)) for name in ('position', 'velocity', 'angular_velocity')}}
+
+            def _passport(self, _):
+                p = _native.Passport()
+                p.generation = 1
+                return p
+
+        sender = dis.Sender(Many(), self.s.getsockname())
+        self.addCleanup(sender.close)
+        self.assertEqual(sender.look(), len(Many.ids))
+        numbers = [struct.unpack_from('>HHH', pdu, 12) for pdu in receive(self.s)]
+        self.assertEqual(len(set(numbers)), len(Many.ids))
+        self.assertEqual(numbers[:4], [(1, 1, 1), (1, 1, 2), (1, 1, 65533), (1, 2, 1)])
+        self.assertTrue(all(1 <= entity <= 65533 for _, _, entity in numbers), numbers)
 
     @unittest.skipUnless(shutil.which('tshark') and shutil.which('text2pcap'), 'tshark is not installed')
     def test_tshark(self):
