@@ -239,9 +239,9 @@ bool ob_universe_get_hull(const ob_universe *u, uint32_t hull, ob_hull *out)
 
 size_t ob_universe_get_terrains(const ob_universe *u, void *to, size_t room)
 {
-	const size_t bytes = u->header.sizes.terrain_bytes;
-	if (bytes)
-		memcpy(to, u->terrains, bytes < room ? bytes : room);
+	const size_t bytes = u->header.sizes.terrain_bytes, copied = bytes < room ? bytes : room;
+	if (copied)
+		memcpy(to, u->terrains, copied);
 	return bytes;
 }
 
