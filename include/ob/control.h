@@ -70,7 +70,7 @@ bool ob_controller_take_contacts(ob_controller *c, ob_contact_event *out, size_t
 
 // Changes n objects: constant external force from now on (value: x y z, N); impulse and angular impulse (N s, N m s);
 // state to go on from (position m, attitude w x y z, velocity m/s, angular velocity rad/s; a part whose first number is NaN
-// stays as it is), also of static and kinematic objects, whose path ends; colour (linear r g b a, 0 to 1).
+// stays as it is), also of static and kinematic objects, whose path ends; colour (linear r g b, 0 to 1, and 1: opaque).
 bool ob_controller_set_forces(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 bool ob_controller_kick(ob_controller *c, const ob_change *change, size_t n, ob_error *e);
 bool ob_controller_set_states(ob_controller *c, const ob_change *change, size_t n, ob_error *e);

@@ -82,7 +82,7 @@ typedef struct ob_passport {
 	ob_vec3 inertia; // kg m^2, principal moments in the body frame; 0 = static
 	double friction; // Coulomb coefficient; a pair uses sqrt(mu_a mu_b)
 	double restitution; // 0..1; a pair uses the larger of the two
-	float colour[4]; // linear RGB, alpha
+	float colour[4]; // linear RGB, alpha: 1
 	char name[OB_NAME_MAX];
 	union {
 		ob_vec3 force; // N, world frame: constant, acts at the centre

@@ -203,7 +203,7 @@ class Object(_Strict):
 
     @property
     def colour(self):
-        """Linear red, green, blue, alpha, each 0 to 1."""
+        """Linear red, green, blue, each 0 to 1, and alpha: 1."""
         return numpy.array(self._passport().colour)
 
     @colour.setter
@@ -637,7 +637,7 @@ class Run(Universe):
         self._change('ob_controller_set_states', ids, (position, 3), (attitude, 4), (velocity, 3), (angular_velocity, 3))
 
     def set_colours(self, ids, rgba):
-        """Linear red, green, blue and alpha, 0 to 1."""
+        """Linear red, green, blue, 0 to 1, and alpha: 1."""
         self._change('ob_controller_set_colours', ids, (rgba, 4))
 
     def remove(self, ids):

@@ -2,9 +2,11 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 #include "cli/command.h"
+#include "cli/output.h"
 #include "cli/request.h"
 #include "record/mcap.h"
 #include "serve/film.h"
@@ -18,7 +20,7 @@ static bool check_operands(const ob_arguments *a, ob_error *e)
 	if (stat(a->operands[0], &from) == 0 && stat(a->operands[1], &to) == 0 && from.st_dev == to.st_dev &&
 	    from.st_ino == to.st_ino)
 		return ob_fail(e, "%s: this would replace the record", a->operands[1]);
-	return true;
+	return ob_output_fits("export", a->operands[1], OB_OUTPUT_PAGE | OB_OUTPUT_MCAP, e);
 }
 
 // Makes the whole page in memory; NULL and e.
@@ -50,7 +52,7 @@ static bool write_page(const ob_message *page, const char *path, ob_error *e)
 static bool is_mcap(const char *path)
 {
 	const size_t n = strlen(path);
-	return n > 5 && strcmp(path + n - 5, ".mcap") == 0;
+	return n > 5 && strcasecmp(path + n - 5, ".mcap") == 0;
 }
 
 static int export_mcap(const ob_arguments *a, ob_error *e)

@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "base/spelling.h"
+#include "cli/output.h"
 #include "host/death.h"
 #include "measure/colouring.h"
 #include "settings/free.h"
@@ -245,7 +246,7 @@ static bool set(ob_arguments *a, ob_option_id id, const char *value, ob_error *e
 		return ob_fail(e, "--%s is given twice", o->name);
 	if (o->argument && !*value && !is_optional(o))
 		return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, o->argument);
-	if (!check_choice(o, &value, e))
+	if (!check_choice(o, &value, e) || !ob_output_check(id, o->name, value, e))
 		return false;
 	a->value[id] = value;
 	return true;

@@ -57,37 +57,6 @@ bool ob_number_real(const char *option, const char *text, double above, double m
 	return true;
 }
 
-bool ob_number_share(const char *option, const char *text, double most, double *out, ob_error *e)
-{
-	const char *at = text;
-	const double x = read_decimal(&at) / 100;
-	if (isnan(x) || strcmp(at, "%") != 0 || !(x > 0 && x <= most))
-		return ob_fail(e, "--%s %s: expected more than 0%%, at most %g%%, as .1%%", option, text, 100 * most);
-	*out = x;
-	return true;
-}
-
-bool ob_number_length(const char *option, const char *text, double least, double most, double *out, ob_error *e)
-{
-	static const struct {
-		const char *name;
-		double metres;
-	} units[] = { { "m", 1 }, { "mm", 1e-3 }, { "um", 1e-6 } };
-	const char *at = text;
-	if (!text)
-		return true;
-	double x = read_decimal(&at), metres = NAN;
-	for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-		if (strcmp(at, units[i].name) == 0)
-			metres = units[i].metres;
-	if (isnan(x * metres))
-		return ob_fail(e, "--%s %s: expected a length with its unit (m, mm, um), as .5mm", option, text);
-	if (!(x * metres >= least && x * metres <= most))
-		return ob_fail(e, "--%s %s: expected %gm to %gm", option, text, least, most);
-	*out = x * metres;
-	return true;
-}
-
 const char *ob_quantity_text(ob_quantity *q, double value, const char *unit)
 {
 	static const char *const prefixes[] = { "p", "n", "u", "m", "", "k", "M", "G", "T" };

@@ -12,10 +12,6 @@
 bool ob_number_count(const char *option, const char *text, uint64_t least, uint64_t most, uint64_t *out, ob_error *e);
 // Takes fractions, too: "1/60". above < value <= most.
 bool ob_number_real(const char *option, const char *text, double above, double most, double *out, ob_error *e);
-// A share as .1%, of 1. 0 < value <= most.
-bool ob_number_share(const char *option, const char *text, double most, double *out, ob_error *e);
-// A length with its unit, m, mm or um, in m. least <= value <= most.
-bool ob_number_length(const char *option, const char *text, double least, double most, double *out, ob_error *e);
 
 typedef struct ob_quantity {
 	char text[32];

@@ -15,6 +15,7 @@
 #include "cli/shipped.h"
 #include "cli/version.h"
 #include "plot/plot.h"
+#include "settings/length.h"
 
 enum { WORKERS_MAX = 65536, SIZE_MIN = 16, SIZE_MAX_PIXELS = 16384 };
 
@@ -341,8 +342,7 @@ static bool read_setting(ob_run_settings *to, const ob_setting *s, const char *t
 	uint64_t n = 0;
 	switch (s->kind) {
 	case OB_SETTING_REAL:
-		return s->unit[0] == 'm' ? ob_number_length(s->name, text, s->least, s->most, at, e)
-					 : ob_number_real(s->name, text, s->least, s->most, at, e);
+		return ob_number_real(s->name, text, s->least, s->most, at, e);
 	case OB_SETTING_COUNT:
 		if (!ob_number_count(s->name, text, (uint64_t)s->least, (uint64_t)s->most, &n, e))
 			return false;
@@ -354,6 +354,19 @@ static bool read_setting(ob_run_settings *to, const ob_setting *s, const char *t
 		       ob_fail(e, "--%s %s: expected one of %s", s->name, text, s->names);
 	}
 	return false;
+}
+
+static bool read_tolerance(ob_run_request *r, const char *text, ob_error *e)
+{
+	const ob_setting *s = &ob_setting_table[OB_SETTING_TOLERANCE];
+	ob_length l;
+	if (!ob_length_read(text, &l))
+		return ob_fail(e, "--tolerance %s: expected %s", text, OB_LENGTH_FORMS);
+	if (!(l.share > 0) && !(l.m >= s->least && l.m <= s->most))
+		return ob_fail(e, "--tolerance %s: expected %gm to %gm", text, s->least, s->most);
+	r->tolerance_share = l.share;
+	r->asked.tolerance = l.share > 0 ? OB_DEFAULT_TOLERANCE : l.m; // of a share, until the scene is known
+	return true;
 }
 
 static bool read_settings(ob_run_request *r, const ob_arguments *a, ob_error *e)
@@ -374,13 +387,10 @@ static bool read_settings(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	r->asked = ob_run_settings_unset();
 	for (int i = 0; i < OB_SETTINGS; i++) {
 		const char *text = a->value[option[i]];
-		if (i == OB_SETTING_TOLERANCE && text && strchr(text, '%')) {
-			if (!ob_number_share("tolerance", text, 1, &r->tolerance_share, e))
-				return false;
-			r->asked.tolerance = OB_DEFAULT_TOLERANCE; // until the scene is known
-			continue;
-		}
-		if (text && !read_setting(&r->asked, &ob_setting_table[i], text, e))
+		bool fine =
+			!text || (i == OB_SETTING_TOLERANCE ? read_tolerance(r, text, e)
+							    : read_setting(&r->asked, &ob_setting_table[i], text, e));
+		if (!fine)
 			return false;
 	}
 	if (a->value[OB_OPTION_TOLERANCE] && a->value[OB_OPTION_SUBSTEPS])

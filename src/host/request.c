@@ -15,7 +15,7 @@ static bool is_colour(const float *c)
 	for (int i = 0; i < 4; i++)
 		if (!(c[i] >= 0 && c[i] <= 1))
 			return false;
-	return true;
+	return c[3] == 1;
 }
 
 static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
@@ -170,7 +170,7 @@ bool ob_request_check(const ob_host *h, ob_request *r, ob_error *e)
 	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)
 		return ob_fail(e, "the object has gone");
 	if (r->kind == OB_REQUEST_COLOUR && !is_colour(r->colour))
-		return ob_fail(e, "a colour has parts from 0 to 1");
+		return ob_fail(e, "a colour has parts from 0 to 1, and is opaque: alpha is 1");
 	if (r->kind == OB_REQUEST_MESSAGE && (r->bytes > sizeof r->values || !ob_script_turn_of(h->u, r->id)))
 		return ob_fail(e, "object %u (%.*s) has no script to send a message to", r->id, OB_NAME_MAX, p.name);
 	if (r->kind == OB_REQUEST_MOVE)

@@ -4,27 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "settings/length.h"
+
 enum { SUBSTEPS_MAX = 1024, ITERATIONS_MAX = 100000, LAG_MAX = 64 };
 
-static const struct {
-	const char *unit;
-	double metres;
-} lengths[] = { { "nm", 1e-9 }, { "um", 1e-6 }, { "mm", 1e-3 }, { "cm", 1e-2 }, { "m", 1 } };
-
-// Reads "5mm", ".5 mm", "1e-4m".
 static bool read_length(const char *text, double *out, ob_error *e)
 {
-	char *end;
-	double v = strtod(text, &end);
-	while (*end == ' ')
-		end++;
-	for (size_t i = 0; end > text && i < sizeof lengths / sizeof *lengths; i++) {
-		if (strcmp(end, lengths[i].unit) == 0 && v > 0 && v * lengths[i].metres <= 1) {
-			*out = v * lengths[i].metres;
-			return true;
-		}
-	}
-	return ob_fail(e, "--sweep tolerance=%s: expected a length with its unit, at most 1 m, as in .5mm", text);
+	ob_length l;
+	if (!ob_length_read(text, &l) || !(l.m > 0 && l.m <= 1))
+		return ob_fail(e, "--sweep tolerance=%s: expected a length above 0, at most 1 m, as .5mm", text);
+	*out = l.m;
+	return true;
 }
 
 static bool read_count(const char *knob, const char *text, uint32_t least, uint32_t most, uint32_t *out, ob_error *e)

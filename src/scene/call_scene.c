@@ -5,6 +5,7 @@
 
 #include "scene/builder.h"
 #include "scene/sandbox.h"
+#include "settings/length.h"
 
 typedef struct scene_fields {
 	const char *title;

@@ -17,6 +17,7 @@
 #include "scene/sandbox.h"
 #include "scene/scene.h"
 #include "scene/text.h"
+#include "settings/length.h"
 #include "settings/settings.h"
 
 // Reader of one field, whose value is at the top of the stack.
@@ -267,7 +268,7 @@ bool ob_colour_from_hex(const char *text, float linear[4])
 		rgba[i / 2] = (16 * hex_digit(text[i]) + hex_digit(text[i + 1])) / 255.;
 	}
 	ob_colour_from_srgb(rgba, linear);
-	return true;
+	return rgba[3] == 1;
 }
 
 bool ob_scene_read_colour(const char *text, float linear[4])
@@ -283,8 +284,8 @@ static void read_colour(const reader *r)
 	bool good = list(r->L, 3, rgba) || list(r->L, 4, rgba);
 	for (int i = 0; i < 4 && good; i++)
 		good = rgba[i] >= 0 && rgba[i] <= 1;
-	if (!good)
-		fail(r, "a colour {r, g, b} of numbers from 0 to 1, or \"#rrggbb\"");
+	if (!good || rgba[3] != 1)
+		fail(r, "a colour {r, g, b} of numbers from 0 to 1, or \"#rrggbb\", opaque as all that is drawn");
 	ob_colour_from_srgb(rgba, r->to);
 }
 
@@ -308,21 +309,14 @@ static void read_source(const reader *r)
 	*(const char **)r->to = text;
 }
 
-// Reads a share as ".1%": digits and a point, above 0, up to 100%. Returns 0 if it is none.
-static double share_of(const char *text)
-{
-	char *end = NULL;
-	const double percent = strspn(text, ".0123456789") == strcspn(text, "%") ? strtod(text, &end) : 0;
-	return percent > 0 && percent <= 100 && strcmp(end, "%") == 0 ? percent / 100 : 0;
-}
-
 static void read_length(const reader *r)
 {
 	ob_length *to = r->to;
 	if (lua_type(r->L, -1) == LUA_TSTRING) {
-		to->share = share_of(lua_tostring(r->L, -1));
-		if (!(to->share > 0))
-			fail_range(r, "a share above 0%, up to 100%, as \".1%\", or a number");
+		if (!ob_length_read(lua_tostring(r->L, -1), to))
+			fail(r, OB_LENGTH_FORMS);
+		if (!(to->share > 0) && !fits(r->field, to->m))
+			fail_range(r, "a length (m)");
 	} else {
 		reader number = *r;
 		number.to = &to->m;

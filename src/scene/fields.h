@@ -31,8 +31,8 @@ typedef enum ob_field_kind {
 	OB_FIELD_TABLE, // bool: it is present; the caller reads its contents
 	OB_FIELD_FUNCTION, // bool: it is present; the caller calls it
 	OB_FIELD_POINTS, // ob_points from {{x, y, z}, ..}, each within low..high
-	OB_FIELD_LENGTH, // ob_length: a number within low..high (m), or a share as ".1%", up to 100%
-	OB_FIELD_COLOUR, // float[4], linear, from {r, g, b [, a]} or "#rrggbb[aa]" (sRGB)
+	OB_FIELD_LENGTH, // ob_length: a number within low..high (m), or text (settings/length.h)
+	OB_FIELD_COLOUR, // float[4], linear and opaque, from {r, g, b [, 1]} or "#rrggbb[ff]" (sRGB)
 } ob_field_kind;
 
 // Valid until the next list of points is read.
@@ -40,11 +40,6 @@ typedef struct ob_points {
 	const ob_vec3 *at;
 	uint32_t count;
 } ob_points;
-
-// One of the two is above 0: a length (m), or a share of another length. Neither: not set.
-typedef struct ob_length {
-	double m, share;
-} ob_length;
 
 enum { OB_FIELD_POINTS_MAX = 4096 };
 
@@ -71,7 +66,7 @@ _Noreturn void ob_fields_fail(lua_State *L, const char *where, const char *field
 
 // Converts sRGB components (0..1), as people write colours, to the linear RGB used inside; alpha stays.
 void ob_colour_from_srgb(const double rgba[4], float linear[4]);
-// "#rrggbb" or "#rrggbbaa"; false: another format.
+// "#rrggbb", or "#rrggbbff"; false: another format, or not opaque.
 bool ob_colour_from_hex(const char *text, float linear[4]);
 
 #endif

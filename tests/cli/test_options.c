@@ -38,6 +38,69 @@ static void check_refused(ob_command_bit command, const char *line, const char *
 	ob_options_finish(&a);
 }
 
+// Accepted ends of names of the files that an option writes; NULL: it reads. Ends of all others are refused.
+static const struct {
+	ob_option_id option;
+	const char *ends;
+} files[] = {
+	{ OB_OPTION_RECORD, ".h5 .hdf5" },
+	{ OB_OPTION_VIDEO, ".mp4 .webm .mkv .mov .avi .gif .webp" },
+	{ OB_OPTION_JSON, ".json" },
+	{ OB_OPTION_SERIES, ".csv" },
+	{ OB_OPTION_TRACE, ".json" },
+	{ OB_OPTION_CHECKPOINT, "" },
+	{ OB_OPTION_LOG_REQUESTS, "" },
+	{ OB_OPTION_RECORD_SCHEDULE, "" },
+	{ OB_OPTION_RAW, "" },
+	{ OB_OPTION_FRAMES, "" },
+	{ OB_OPTION_OUT, "" },
+	{ OB_OPTION_RESUME, NULL },
+	{ OB_OPTION_REPLAY, NULL },
+	{ OB_OPTION_REPLAY_SCHEDULE, NULL },
+	{ OB_OPTION_REPLAY_REQUESTS, NULL },
+};
+enum { FILES = sizeof files / sizeof *files };
+
+static void check_name(ob_command_bit command, const char *option, const char *end, bool fits)
+{
+	char line[128], copy[256], part[32];
+	ob_arguments a;
+	ob_error e;
+	snprintf(line, sizeof line, "--%s boxes%s", option, end);
+	snprintf(part, sizeof part, "%s is the end of", end);
+	const bool taken = parse(&a, command, line, copy, &e);
+	CHECK(taken == fits && (fits || strstr(e.text, part)));
+	if (taken != fits)
+		fprintf(stderr, "  %s: %s\n", line, taken ? "taken" : e.text);
+	ob_options_finish(&a);
+}
+
+// A file's name does not end as those of another kind do: for each option that writes one.
+static void test_outputs(void)
+{
+	static const char *const ends[] = { ".h5",   ".hdf5", ".mp4",  ".webm", ".mkv",  ".mov",
+					    ".avi",  ".gif",  ".webp", ".png",  ".jpg",  ".jpeg",
+					    ".json", ".csv",  ".html", ".htm",  ".mcap", ".lua" };
+	for (int id = 0; id < OB_OPTIONS; id++) {
+		const ob_option *o = &ob_option_table[id];
+		int k = 0;
+		while (k < FILES && files[k].option != (ob_option_id)id)
+			k++;
+		const bool names_file =
+			o->argument && (strcmp(o->argument, "FILE") == 0 || strcmp(o->argument, "DIR") == 0);
+		CHECK(names_file == (k < FILES));
+		for (size_t i = 0; k < FILES && i < sizeof ends / sizeof *ends; i++) {
+			const char *found = files[k].ends ? strstr(files[k].ends, ends[i]) : NULL;
+			const bool fits = !files[k].ends || (found && strcspn(found, " ") == strlen(ends[i]));
+			check_name((ob_command_bit)(o->commands & -o->commands), o->name, ends[i], fits);
+		}
+		if (k < FILES)
+			check_name((ob_command_bit)(o->commands & -o->commands), o->name, ".of.mine", true);
+	}
+	check_refused(OB_COMMAND_RUN, "s.lua --record a.MP4", "is the end of the name of a video, which --video");
+	check_refused(OB_COMMAND_RUN, "s.lua --series s.lua", "is the end of the name of a scene");
+}
+
 static void test_taken(void)
 {
 	ob_arguments a;
@@ -132,6 +195,7 @@ static void test_table(void)
 
 int main(void)
 {
+	test_outputs();
 	test_taken();
 	test_refused();
 	test_defines_apart();

@@ -53,10 +53,12 @@ static void test_refused(void)
 	check_refused("s --workers 0", "expected 1 to");
 	check_refused("s --arch monolith --workers 2", "one worker");
 	check_refused("s --arch monolith --workers objects", "one worker");
-	check_refused("s --tolerance 1", "a length with its unit");
-	check_refused("s --tolerance mm", "a length with its unit");
-	check_refused("s --tolerance 1mmm", "a length with its unit");
-	check_refused("s --tolerance nanm", "a length with its unit");
+	check_refused("s --tolerance mm", "a length, as .5mm or .0005 (m), or a share");
+	check_refused("s --tolerance 1mmm", "a length, as .5mm or .0005 (m), or a share");
+	check_refused("s --tolerance nanm", "a length, as .5mm or .0005 (m), or a share");
+	check_refused("s --tolerance 0x1p-9", "a length, as .5mm or .0005 (m), or a share");
+	check_refused("s --tolerance -1mm", "a length, as .5mm or .0005 (m), or a share");
+	check_refused("s --tolerance 0", "expected 1e-06m to 1m");
 	check_refused("s --tolerance 0mm", "expected 1e-06m to 1m");
 	check_refused("s --tolerance 2m", "expected 1e-06m to 1m");
 	check_refused("s --tolerance 1mm --substeps 4", "expected one of them");
@@ -106,6 +108,7 @@ static void test_taken(void)
 	CHECK_NEAR(r.asked.tolerance, .5e-3, 1e-18);
 	CHECK(r.explain && r.asked.iterations == 20 && !ob_setting_is_set(&r.asked, OB_SETTING_SUBSTEPS));
 	CHECK(read_line("s --tolerance 1e-3m", &r, &e) && r.asked.tolerance == 1e-3 && !r.explain);
+	CHECK(read_line("s --tolerance .001", &r, &e) && r.asked.tolerance == 1e-3);
 	CHECK(read_line("s --tolerance 20um", &r, &e));
 	CHECK_NEAR(r.asked.tolerance, 20e-6, 1e-18);
 	CHECK(!r.harden && read_line("s --harden --isolation process", &r, &e) && r.harden == OB_HARDEN_ALL);

@@ -82,10 +82,9 @@ static void test_refused(void)
 	refuse("substeps=1,two", "whole number");
 	refuse("substeps=4294967297", "whole number");
 	refuse("passes=1", "there are substeps");
-	refuse("tolerance=5", "with its unit");
-	refuse("tolerance=5mm,mm", "with its unit");
-	refuse("tolerance=-5mm", "with its unit");
-	refuse("tolerance=5km", "with its unit");
+	refuse("tolerance=5mm,mm", "expected a length above 0, at most 1 m");
+	refuse("tolerance=-5mm", "expected a length above 0, at most 1 m");
+	refuse("tolerance=5km", "expected a length above 0, at most 1 m");
 	refuse("lag=1,2,65", "from 0 to 64");
 	refuse("lag=1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1", "at most 16");
 }

@@ -184,6 +184,8 @@ class Steps(Case):
         other.step(40)
         self.assertTrue(all((v == other.states()[k]).all() for k, v in u.states().items()))
         self.says('No such file', u.save, '/nowhere/x.ck')
+        self.says('is the end of the name of a record', u.save, 'x.h5')
+        self.says('opaque', setattr, u['ball'], 'colour', (1, 0, 0, .5))
 
     def test_contact_events(self):
         """A ball touches the ground once, leaves it when it is lifted, and events of a future that was undone stay away."""

@@ -125,6 +125,9 @@ class Served(Case):
 		self.refuse("export", self.record, "a.html", "b.html", saying="unexpected 'b.html'")
 		self.refuse("export", self.record, self.record, saying="would replace the record")
 		self.refuse("export", self.scene, "a.html", saying="no HDF5 file")
+		for name in "a.mp4", "a.PNG", "a.h5", "a.json", "a.csv", "a.lua":
+			self.refuse("export", self.record, name, saying="is the end of the name of")
+			self.assertFalse(os.path.exists(self.path(name)))
 		for words in ("export", self.record, self.path("page.html")), ("serve", "--replay", self.record):
 			self.refuse(*words, "--patience", "1e-5", saying="takes more than 1e-05 s of CPU to show it in a browser: --patience")
 		self.refuse("export", self.record, self.path("no/a.html"), saying="No such file or directory", code=1)

@@ -118,7 +118,7 @@ class Report(program.Case):
 		for key in "tolerance", "state_hash", "iterations", "error_reached":
 			self.assertEqual(share[key], length[key], key)
 		for share in "0%", "101%", "1%x", "%":
-			self.refuse("run", disk, "--tolerance", share, saying="expected more than 0%")
+			self.refuse("run", disk, "--tolerance", share, saying="a share above 0%, up to 100%")
 		self.refuse("run", disk, "-D", "radius=.01", "--tolerance", ".1%", saying="thinnest")
 		coarse, fine = (program.call("run", disk, "--tolerance", t, "--duration", ".1") for t in ("1mm", "20%"))
 		self.assertEqual((coarse.returncode, fine.returncode, fine.stderr), (0, 0, ""))

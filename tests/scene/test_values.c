@@ -273,6 +273,12 @@ static void check_share(void)
 	CHECK(s && s->run.substeps == 1);
 	CHECK_NEAR(s->run.tolerance, .1, 1e-12);
 	ob_scene_free(s);
+	s = load_good("scene { tolerance = '.5mm' }\nground {}");
+	CHECK(s && s->run.tolerance == .5e-3);
+	ob_scene_free(s);
+	s = load_good("scene { tolerance = '.002' }\nground {}");
+	CHECK(s && s->run.tolerance == .002);
+	ob_scene_free(s);
 	s = load_good("scene { tolerance = '.1%' }\nground {}");
 	CHECK(s && s->run.tolerance == 1e-3);
 	ob_scene_free(s);
@@ -358,7 +364,7 @@ static void check_materials(void)
 		"material 'wood' { friction = .25, density = 600, colour = '#ff8000' }\n"
 		"box { size = { 1, 1, 1 }, material = 'wood' }\n"
 		"box { size = { 1, 1, 1 }, material = 'wood', density = 1, friction = .75, restitution = .5,\n"
-		"      colour = { 0, 0, 1, .5 } }\n"
+		"      colour = { 0, 0, 1, 1 } }\n"
 		"box { size = { 1, 1, 1 }, material = 'wood', mass = 3 }");
 	CHECK(s && s->objects == 3);
 	if (!s)
@@ -368,7 +374,7 @@ static void check_materials(void)
 	CHECK(a->colour[0] == 1 && a->colour[2] == 0 && a->colour[3] == 1);
 	CHECK_NEAR(a->colour[1], .215861, 1e-6); // 128/255 in sRGB, linear (IEC 61966-2-1)
 	CHECK(b->friction == .75 && b->restitution == .5 && b->mass == 1);
-	CHECK(b->colour[2] == 1 && b->colour[3] == .5f);
+	CHECK(b->colour[2] == 1 && b->colour[3] == 1);
 	CHECK(s->object[2].passport.mass == 3);
 	ob_scene_free(s);
 }

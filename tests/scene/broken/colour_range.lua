@@ -1,2 +1,2 @@
--- expect: :2: sphere.colour: expected a colour {r, g, b} of numbers from 0 to 1, or "#rrggbb", got {255, 0, 0}
+-- expect: :2: sphere.colour: expected a colour {r, g, b} of numbers from 0 to 1, or "#rrggbb", opaque as all that is drawn, got {255, 0, 0}
 sphere { radius = 1, colour = { 255, 0, 0 } }
