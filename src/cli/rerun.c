@@ -85,7 +85,7 @@ static bool prepare(const ob_arguments *a, ob_run_request *q, ob_scene **scene, 
 	*scene = ob_scene_load(q->scene, &q->scene_options, e);
 	if (!*scene || !ob_request_resolve(q, *scene, e))
 		return false;
-	q->on_death = l->head.on_death <= OB_ON_DEATH_ABORT ? (ob_on_death)l->head.on_death : q->on_death;
+	q->on_death = l->head.on_death <= OB_ON_DEATH_KEEP ? (ob_on_death)l->head.on_death : q->on_death;
 	const ob_request_log_head own = ob_rerun_head(q, *scene, l->head.spare);
 	return memcmp(&own, &l->head, sizeof own) == 0 ||
 	       ob_fail(e, "%s: it is of another scene, seed, -D or settings: give those of the run that was logged",

@@ -88,6 +88,8 @@ static bool load(serving *s, ob_error *e)
 	s->last = UINT32_MAX - 2;
 	if (!s->scene || !ob_request_resolve(q, s->scene, e))
 		return false;
+	if (!s->a->value[OB_OPTION_ON_DEATH] && !q->run.monolith && !q->is_free) // none can be frozen
+		q->on_death = OB_ON_DEATH_KEEP;
 	if (s->a->value[OB_OPTION_DURATION])
 		s->last = ob_request_steps(q->duration, q->run.step_length);
 	else
@@ -106,9 +108,6 @@ static bool start(serving *s, ob_error *e)
 {
 	const ob_run_request *q = &s->q.run;
 	ob_host_config config = ob_request_host(q);
-	if (!s->a->value[OB_OPTION_ON_DEATH] && !config.run.monolith && !s->scene->scripts &&
-	    !q->is_free) // none can be frozen
-		config.on_death = OB_ON_DEATH_KEEP;
 	config.free_window = free_window;
 	config.spare = s->q.room;
 	config.returns = !q->record;

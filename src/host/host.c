@@ -84,8 +84,6 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "on death: a monolith is one simulator, without which there is nothing to go on");
 	if (c->limit.deaths > OB_RESTART_LIMIT_MAX || (c->limit.deaths && !(c->limit.seconds > 0)))
 		return ob_fail(e, "restart limit: expected at most %d deaths in some seconds", OB_RESTART_LIMIT_MAX);
-	if (scene->scripts && ob_on_death_freezes_failed(c->on_death))
-		return ob_fail(e, "on death: the scene has scripts, whose objects cannot be frozen");
 	if (r->monolith && scene->hulls > 0) // few of ODE's convex geometries collide with each other
 		return ob_fail(e, "arch: the one ODE world has no hulls, as this scene has: take object simulators");
 	if (!check_joints(scene, c, e) || (r->monolith && !check_ode_joints(scene, e)))

@@ -25,12 +25,6 @@ typedef struct ob_interval {
 	uint64_t most; // end at its beginning: no step goes beyond
 } ob_interval;
 
-// An object to freeze when that number of steps is complete.
-typedef struct ob_freeze {
-	uint64_t step;
-	uint32_t id, generation;
-} ob_freeze;
-
 // See restart.h.
 typedef struct ob_restart_state {
 	ob_checkpoint *checkpoint; // NULL: the death of a worker is a failure
@@ -44,7 +38,7 @@ typedef struct ob_restart_state {
 	uint64_t half_way; // steps: half the progress before the last death
 	ob_death last[OB_DEATHS_KEPT]; // the latest is last[(deaths - 1) % OB_DEATHS_KEPT]; under failure_lock
 	double *when; // [limit.deaths]: s, wall, of the last deaths, in turn; NULL = no limit
-	ob_freeze *freeze; // [freezes]: objects to freeze; by id within a step
+	ob_freeze *freeze; // [freezes]: objects to freeze; by id within a place
 	uint32_t freezes, freezes_max, frozen; // frozen: so far
 	_Atomic uint64_t cpu; // ns, of workers that have ended
 	uint64_t switches; // theirs

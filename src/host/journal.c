@@ -5,6 +5,13 @@
 
 #include "base/allocate.h"
 
+ob_journal_place ob_journal_here(const ob_universe *u)
+{
+	const ob_script_counts *scripts = ob_universe_step_data(u)->script_counts;
+	const uint64_t step = ob_step_count(u);
+	return (ob_journal_place){ step, scripts && scripts->ran_for == step + 1 };
+}
+
 void ob_journal_finish(ob_journal *j)
 {
 	free(j->entry);
@@ -42,9 +49,9 @@ void ob_journal_rewind(ob_journal *j)
 	j->next = 0;
 }
 
-uint64_t ob_journal_next_step(const ob_journal *j)
+ob_journal_place ob_journal_next(const ob_journal *j)
 {
-	return j->next < j->count ? j->entry[j->next].at.step : UINT64_MAX;
+	return j->next < j->count ? j->entry[j->next].at : (ob_journal_place){ .step = UINT64_MAX };
 }
 
 const ob_request *ob_journal_again(ob_journal *j, const ob_journal_place *at)

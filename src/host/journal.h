@@ -12,11 +12,26 @@
 #define OB_HOST_JOURNAL_H
 
 #include "host/request.h"
+#include "table/table.h"
 
 typedef struct ob_journal_place {
 	uint64_t step; // number of complete steps
 	uint32_t after_scripts; // 1 = scripts have run before the coming step, and the pause is theirs
 } ob_journal_place;
+
+// Returns the place where a universe stands, paused.
+ob_journal_place ob_journal_here(const ob_universe *u);
+// True if a place is the one once the scripts before the coming step have run, which they have not.
+static inline bool ob_journal_is_after_scripts(ob_journal_place at, ob_journal_place here)
+{
+	return at.step == here.step && at.after_scripts > here.after_scripts;
+}
+
+// An object to freeze there, after all requests.
+typedef struct ob_freeze {
+	ob_journal_place at;
+	uint32_t id, generation;
+} ob_freeze;
 
 typedef struct ob_journal_entry {
 	ob_journal_place at;
@@ -38,8 +53,8 @@ bool ob_journal_load(ob_journal *j, const ob_journal_entry *entry, size_t count)
 void ob_journal_clear(ob_journal *j);
 // Starts over: the run begins again from the checkpoint.
 void ob_journal_rewind(ob_journal *j);
-// Step of the next entry to carry out again; UINT64_MAX: none.
-uint64_t ob_journal_next_step(const ob_journal *j);
+// Place of the next entry to carry out again; step UINT64_MAX: none.
+ob_journal_place ob_journal_next(const ob_journal *j);
 // Next entry to carry out again in this place; NULL: none.
 const ob_request *ob_journal_again(ob_journal *j, const ob_journal_place *at);
 // Notes a request when it is carried out for the first time; none may be left to carry out again.

@@ -591,10 +591,9 @@ static void carry_out_request(ob_population *p, const ob_request *r)
 
 // Carries out requests. After a restart, first those that were carried out before, in the same places; new ones wait until
 // the run is again where it was, as viewers have seen its states.
-static void carry_out_requests(ob_population *p, uint64_t step, ob_requests *q)
+static void carry_out_requests(ob_population *p, ob_requests *q)
 {
-	const ob_script_counts *scripts = ob_universe_step_data(p->u)->script_counts;
-	const ob_journal_place at = { step, scripts && scripts->ran_for == step + 1 };
+	const ob_journal_place at = ob_journal_here(p->u);
 	const ob_request *again;
 	ob_request r;
 	while ((again = ob_journal_again(&p->journal, &at)))
@@ -640,7 +639,7 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 			remove_scheduled(p, due->id);
 	}
 	carry_out_scripts(p);
-	carry_out_requests(p, step, q);
+	carry_out_requests(p, q);
 	bool changed = p->changed;
 	prescribe_all(p);
 	if (changed)
@@ -732,7 +731,7 @@ void ob_population_put_back(ob_population *p, uint64_t reached)
 
 bool ob_population_is_behind(const ob_population *p)
 {
-	return ob_journal_next_step(&p->journal) < UINT64_MAX || ob_step_count(p->u) < p->reached;
+	return ob_journal_next(&p->journal).step < UINT64_MAX || ob_step_count(p->u) < p->reached;
 }
 
 void ob_population_restore(ob_population *p, const ob_kept_population *k)
@@ -743,10 +742,15 @@ void ob_population_restore(ob_population *p, const ob_kept_population *k)
 	put_back(p, k);
 }
 
+bool ob_population_is_due_after_scripts(const ob_population *p)
+{
+	return ob_journal_is_after_scripts(ob_journal_next(&p->journal), ob_journal_here(p->u));
+}
+
 uint64_t ob_population_next_step(const ob_population *p)
 {
 	const uint64_t timetable = p->next < p->event_count ? p->events[p->next].step : UINT64_MAX,
-		       again = ob_journal_next_step(&p->journal),
+		       again = ob_population_is_due_after_scripts(p) ? UINT64_MAX : ob_journal_next(&p->journal).step,
 		       first = timetable < p->next_prescribed ? timetable : p->next_prescribed;
 	// requests may wait for it
 	const uint64_t reached = p->reached > ob_step_count(p->u) ? p->reached : UINT64_MAX,

@@ -58,7 +58,9 @@ void ob_population_put_back(ob_population *p, uint64_t reached);
 bool ob_population_is_behind(const ob_population *p);
 // True if another checkpoint is due: much would be repeated, or there was no memory to note it.
 bool ob_population_is_checkpoint_due(const ob_population *p);
-// The next step at which something is due; UINT64_MAX: never.
+// True if a request is to be carried out again once the scripts before the coming step have run.
+bool ob_population_is_due_after_scripts(const ob_population *p);
+// The next step at whose beginning something is due; UINT64_MAX: never.
 uint64_t ob_population_next_step(const ob_population *p);
 
 // Saved state of a slot, beside universe and scene: 8 bytes.

@@ -19,7 +19,7 @@ typedef enum record_kind { A_REQUEST, A_FREEZE, A_STATE } record_kind;
 typedef struct record {
 	uint32_t kind, id, generation, zero;
 	uint64_t hash;
-	ob_journal_entry entry; // a freeze and a state use its step alone
+	ob_journal_entry entry; // a freeze uses its place alone, a state its step
 } record;
 
 typedef struct file_head {
@@ -67,11 +67,11 @@ void ob_request_log_request(ob_request_log *l, const ob_journal_place *at, const
 	append(l, &x, sizeof x);
 }
 
-void ob_request_log_freeze(ob_request_log *l, uint64_t step, uint32_t id, uint32_t generation)
+void ob_request_log_freeze(ob_request_log *l, const ob_freeze *f)
 {
 	if (!l)
 		return;
-	const record x = { .kind = A_FREEZE, .id = id, .generation = generation, .entry.at.step = step };
+	const record x = { .kind = A_FREEZE, .id = f->id, .generation = f->generation, .entry.at = f->at };
 	append(l, &x, sizeof x);
 }
 
@@ -127,7 +127,7 @@ static bool take(ob_logged_requests *l, const record *x)
 	case A_FREEZE:
 		if (!OB_GROW(l->freeze, (size_t)l->freezes + 1))
 			return false;
-		l->freeze[l->freezes++] = (ob_logged_freeze){ step, x->id, x->generation };
+		l->freeze[l->freezes++] = (ob_freeze){ x->entry.at, x->id, x->generation };
 		return true;
 	case A_STATE:
 		if (!OB_GROW(l->state, (size_t)l->states + 1))

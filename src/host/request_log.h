@@ -25,7 +25,7 @@ typedef struct ob_request_log ob_request_log;
 ob_request_log *ob_request_log_create(const char *path, const ob_request_log_head *head, ob_error *e);
 // Each is NULL-safe and appends a record. Write errors are reported once, by close.
 void ob_request_log_request(ob_request_log *l, const ob_journal_place *at, const ob_request *r);
-void ob_request_log_freeze(ob_request_log *l, uint64_t step, uint32_t id, uint32_t generation);
+void ob_request_log_freeze(ob_request_log *l, const ob_freeze *f);
 void ob_request_log_state(ob_request_log *l, uint64_t step, uint64_t hash);
 void ob_request_log_flush(ob_request_log *l);
 // false and e: the file is not whole. NULL: true
@@ -35,16 +35,11 @@ typedef struct ob_logged_state {
 	uint64_t step, hash;
 } ob_logged_state;
 
-typedef struct ob_logged_freeze {
-	uint64_t step;
-	uint32_t id, generation;
-} ob_logged_freeze;
-
 // Contents of a log, checked like requests from outside: steps ascend, definitions are valid.
 typedef struct ob_logged_requests {
 	ob_request_log_head head;
 	ob_journal_entry *request; // [requests]
-	ob_logged_freeze *freeze; // [freezes]
+	ob_freeze *freeze; // [freezes]
 	ob_logged_state *state; // [states]
 	uint32_t requests, freezes, states;
 } ob_logged_requests;

@@ -45,10 +45,21 @@ void ob_restart_finish(ob_host *h)
 uint64_t ob_restart_next_step(const ob_host *h)
 {
 	const ob_restart_state *r = &h->restart;
+	const ob_journal_place here = ob_journal_here(h->u);
 	uint64_t next = r->checkpoint && r->attempts > 0 ? ob_checkpoint_step(r->checkpoint) + r->half_way : UINT64_MAX;
 	for (uint32_t i = 0; i < r->freezes; i++)
-		next = r->freeze[i].step < next ? r->freeze[i].step : next;
+		if (r->freeze[i].at.step < next && !ob_journal_is_after_scripts(r->freeze[i].at, here))
+			next = r->freeze[i].at.step;
 	return next;
+}
+
+bool ob_restart_is_due_after_scripts(const ob_host *h)
+{
+	const ob_journal_place here = ob_journal_here(h->u);
+	for (uint32_t i = 0; i < h->restart.freezes; i++)
+		if (ob_journal_is_after_scripts(h->restart.freeze[i].at, here))
+			return true;
+	return ob_population_is_due_after_scripts(h->population);
 }
 
 bool ob_restart_checkpoint_due(const ob_host *h)
@@ -213,6 +224,8 @@ static bool plan_freeze(ob_host *h, ob_error *text)
 	const uint32_t most = ob_universe_ids(h->u);
 	uint32_t *ids = malloc((most + 1) * sizeof *ids), n = 0, frozen = 0;
 	ob_death *d = latest(r);
+	ob_journal_place place = ob_journal_here(h->u);
+	place.after_scripts &= ob_gate_phase(h->u) != OB_PHASE_SCRIPTS; // they ran
 	const bool alone = d->foreign || (ob_universe_settings(h->u)->one_per_object && d->cause != OB_DEATH_FAILURE);
 	if (ids && d->object < most)
 		n = alone ? 1 : ob_sim_failed_objects(h->u, d->object, ids, most);
@@ -221,7 +234,7 @@ static bool plan_freeze(ob_host *h, ob_error *text)
 	for (uint32_t i = 0; i < n && i < most; i++) {
 		ob_passport p;
 		if (ids[i] >= most || !ob_universe_get_passport(h->u, ids[i], &p) || p.flags & OB_OBJECT_STATIC ||
-		    !add_freeze(r, (ob_freeze){ ob_step_count(h->u), ids[i], p.generation }))
+		    !add_freeze(r, (ob_freeze){ place, ids[i], p.generation }))
 			continue;
 		size_t at = strlen(text->text);
 		if (frozen++ < SHOWN)
@@ -242,9 +255,7 @@ static bool plan_freeze(ob_host *h, ob_error *text)
 bool ob_restart_replay(ob_host *h, const ob_logged_requests *l)
 {
 	for (uint32_t i = 0; i < l->freezes; i++)
-		if (l->freeze[i].id >= ob_universe_capacity(h->u) ||
-		    !add_freeze(&h->restart,
-				(ob_freeze){ l->freeze[i].step, l->freeze[i].id, l->freeze[i].generation }))
+		if (l->freeze[i].id >= ob_universe_capacity(h->u) || !add_freeze(&h->restart, l->freeze[i]))
 			return false;
 	return true;
 }
@@ -252,15 +263,15 @@ bool ob_restart_replay(ob_host *h, const ob_logged_requests *l)
 bool ob_restart_freeze(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
-	const uint64_t step = ob_step_count(h->u);
+	const ob_journal_place here = ob_journal_here(h->u);
 	uint32_t left = 0, frozen = 0;
 	for (uint32_t i = 0; i < r->freezes; i++) {
 		const ob_freeze f = r->freeze[i];
-		if (f.step > step || ob_population_next_step(h->population) <= step) // it may not be there again yet
+		if (f.at.step > here.step || ob_journal_is_after_scripts(f.at, here))
 			r->freeze[left++] = f;
 		else if (ob_passport_of(h->u, f.id)->generation == f.generation && ob_sim_freeze(h->u, f.id)) {
 			ob_script_stop(h->u, f.id);
-			ob_request_log_freeze(h->log, step, f.id, f.generation);
+			ob_request_log_freeze(h->log, &f);
 			frozen++;
 		}
 	}

@@ -18,9 +18,10 @@
 // changes by timetable, scripts and requests are done again, in the same pauses (journal.h). A stall (host.h) requests
 // a restart, too.
 //
-// Freezing (ob_on_death): the dead simulator's objects, or those of the island that failed, are noted with the number
-// of complete steps. Then the restart goes as above; the run pauses where that many steps are complete again, the
-// objects become static, and a checkpoint is taken. So they stay where they were when their simulator died, wherever
+// Freezing (ob_on_death): the dead simulator's objects, or those of the island that failed, are noted with their place
+// (journal.h): the number of complete steps, and whether the scripts before the coming step had run. Then the restart
+// goes as above; the run pauses in that place again, the objects become static, their scripts stop, and a checkpoint is
+// taken. So they stay where they were when their simulator died, wherever
 // the checkpoint was. If it dies in the same step of every run, all runs end in the same bits. Threads restart, too,
 // once they have left, which they do unless they hang.
 //
@@ -45,6 +46,8 @@ void ob_restart_prepare(ob_host *h);
 void ob_restart_checkpoint(ob_host *h, bool frozen);
 // Step at which the run pauses for a checkpoint in any case; UINT64_MAX: none.
 uint64_t ob_restart_next_step(const ob_host *h);
+// True if objects are to be frozen, or requests to be carried out again, once the scripts before the coming step have run.
+bool ob_restart_is_due_after_scripts(const ob_host *h);
 // True if a pause for a checkpoint is due.
 bool ob_restart_checkpoint_due(const ob_host *h);
 // Requests a restart: a worker has died, or is stalled. The first request counts until ob_restart.
@@ -55,7 +58,7 @@ void ob_restart_worker(ob_host *h, const ob_death *d);
 void ob_restart_add_words(ob_host *h, const ob_worker_end *end);
 // Before the first step: plans to freeze the objects that a log lists as frozen. false: no memory.
 bool ob_restart_replay(ob_host *h, const ob_logged_requests *l);
-// At a pause: freezes the objects noted for this step. true: there were some.
+// At a pause: freezes the objects noted for this place. true: there were some.
 bool ob_restart_freeze(ob_host *h);
 // After a request: restarts all workers; they then stand at the gate, the universe at a pause. false: the run has failed,
 // or another worker died in the meantime, which is a request again.

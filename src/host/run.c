@@ -37,6 +37,7 @@ static void begin_interval(ob_host *h)
 	if (!ob_host_free_is_ahead(h))
 		ob_population_update(h->population, step, h->requests);
 	ob_restart_checkpoint(h, ob_restart_freeze(h));
+	ob_sim_pause_after_scripts(h->u, ob_restart_is_due_after_scripts(h));
 	ob_host_log_scripts(h);
 	if (is_called(h) && step < h->target && !ob_population_is_behind(h->population))
 		h->target = step;

@@ -16,6 +16,11 @@
 
 // ---- scripts that run
 
+static bool pauses_after(const ob_script_counts *count)
+{
+	return count->pause_for > 0 && count->pause_for == count->ran_for;
+}
+
 bool ob_scripts_due(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
@@ -28,7 +33,7 @@ bool ob_scripts_due(ob_universe *u)
 	for (uint32_t i = 0; i < count->cells && i < data->script_cells; i++)
 		if (ob_script_is_due(&data->script_turn[i], step))
 			data->script_due[count->due++] = i;
-	return count->due > 0;
+	return count->due > 0 || pauses_after(count);
 }
 
 static uint64_t run(ob_sim *s, uint32_t cell)
@@ -75,7 +80,14 @@ bool ob_sim_awaits_requests(const ob_universe *u)
 bool ob_scripts_have_requests(const ob_universe *u)
 {
 	const ob_script_counts *count = ob_universe_step_data(u)->script_counts;
-	return count && count->requests > 0;
+	return count && (count->requests > 0 || pauses_after(count));
+}
+
+void ob_sim_pause_after_scripts(ob_universe *u, bool wanted)
+{
+	ob_script_counts *count = ob_universe_step_data(u)->script_counts;
+	if (count)
+		count->pause_for = wanted ? (uint32_t)ob_step_count(u) + 1 : 0;
 }
 
 // ---- requests

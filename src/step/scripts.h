@@ -10,11 +10,11 @@
 #include "step/state.h"
 
 // Lists the scripts due before the coming step, once for each step; the scheduling worker calls it. true: there are
-// some.
+// some, or the host wants a pause when they have run.
 bool ob_scripts_due(ob_universe *u);
 // Carries out the scripts' requests after they have run. true: the motion of an object changes, now or later.
 bool ob_scripts_carry_out(ob_sim *s);
-// True if the host has creations and removals to carry out now.
+// True if the host has creations and removals to carry out now, or wants the pause.
 bool ob_scripts_have_requests(const ob_universe *u);
 
 // Runs this worker's share of the list.

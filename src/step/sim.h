@@ -80,6 +80,8 @@ void ob_sim_resume(ob_universe *u);
 // Host, paused: true if scripts have caused the pause: the host carries out their creations and removals
 // (ob_script_requests) before the step goes on.
 bool ob_sim_awaits_requests(const ob_universe *u);
+// Host, paused before the scripts of a step: the run pauses once they have run, too, even if none is due.
+void ob_sim_pause_after_scripts(ob_universe *u, bool wanted);
 
 // Host, paused: returns the reason why the run cannot go on, as one line that holds until the thread's next call; NULL
 // if it can. A failed run pauses at once.

@@ -130,6 +130,8 @@ static bool open_scripts(const scheduler *c, ob_phase phase)
 {
 	const ob_step_data *data = c->data;
 	const uint32_t due = data->script_counts->due;
+	if (!due)
+		return false;
 	if (!c->settings->one_per_object) {
 		open_tasks(c, phase, due, 1 + due / SCRIPTS_PER_WORKER);
 		return true;

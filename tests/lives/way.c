@@ -102,16 +102,18 @@ static void say(run *r, uint64_t *seed, ob_request_kind kind)
 	ob_host_request(r->h, &q, &r->e);
 }
 
-// Freezes one as a simulator's failure would, when this step is complete.
+// Freezes one as a simulator's failure would, before or after the scripts of the coming step.
 static void freeze_any(run *r, uint64_t *seed)
 {
 	ob_restart_state *x = &r->h->restart;
 	ob_passport p;
 	if (!draw_object(r, seed, &p))
 		return;
+	const bool scripts = ob_universe_step_data(universe(r))->script_counts;
+	const ob_journal_place place = { ob_step_count(universe(r)), scripts && ob_splitmix(seed) % 2 };
 	if (x->freezes == x->freezes_max)
 		x->freeze = realloc(x->freeze, (x->freezes_max = 2 * x->freezes_max + 4) * sizeof *x->freeze);
-	x->freeze[x->freezes++] = (ob_freeze){ ob_step_count(universe(r)), p.id, p.generation };
+	x->freeze[x->freezes++] = (ob_freeze){ place, p.id, p.generation };
 }
 
 static bool stand_at(run *r, uint64_t step)

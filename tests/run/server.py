@@ -99,11 +99,13 @@ class Viewer:
 		for _ in range(created):
 			i, generation, shape, what, name, _ = struct.unpack_from("<IIBBBB", m, at)
 			at += 48
-			if shape == HULL:
-				corners, faces = m[at], m[at + 1]
-				at += 4 + 12 * corners
+			hulls = int(shape == HULL)
+			while hulls:
+				corners, faces, parts = m[at:at + 3]
+				at += 5 + 12 * corners
 				for _ in range(faces):
 					at += 1 + m[at]
+				hulls += parts - 1
 			mesh = 0
 			if what & 4:
 				mesh, at = m[at], at + 1
