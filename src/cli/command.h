@@ -25,6 +25,8 @@ int ob_command_control(const ob_arguments *a);
 int ob_command_scenes(const ob_arguments *a);
 int ob_command_import(const ob_arguments *a);
 int ob_command_send(const ob_arguments *a);
+// Lists all requests, for the help.
+void ob_send_help(FILE *f);
 int ob_command_export(const ob_arguments *a);
 int ob_command_draw_replay(const ob_arguments *a); // run with --replay: draws a record instead of a scene
 int ob_command_rerun(const ob_arguments *a); // run with --replay-requests

@@ -66,6 +66,13 @@ static int close_output(int code)
 	return code ? code : ob_command_fail(OB_EXIT_FAILED, e.text);
 }
 
+static void print_help(ob_command_bit command)
+{
+	ob_options_help(stdout, command);
+	if (command == OB_COMMAND_SEND)
+		ob_send_help(stdout);
+}
+
 static int carry_out(int argc, char **argv)
 {
 	const char *word = argc > 1 ? argv[1] : NULL;
@@ -80,7 +87,7 @@ static int carry_out(int argc, char **argv)
 	if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0) {
 		int topic = argc > 2 ? find(argv[2]) : -1;
 		if (topic >= 0)
-			ob_options_help(stdout, commands[topic].bit);
+			print_help(commands[topic].bit);
 		else if (argc > 2)
 			return unknown_command(argv[2]);
 		else
@@ -97,7 +104,7 @@ static int carry_out(int argc, char **argv)
 	if (!ob_options_parse(&a, commands[command].bit, argc - 2, argv + 2, &e))
 		code = ob_command_fail(OB_EXIT_USAGE, e.text);
 	else if (a.value[OB_OPTION_HELP])
-		ob_options_help(stdout, commands[command].bit);
+		print_help(commands[command].bit);
 	else
 		code = commands[command].main(&a);
 	ob_options_finish(&a);

@@ -69,18 +69,18 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_NARROW] = { NULL, "narrow", OB_NARROW_PHASE_NAMES,
 			       "objects touch as they are, or as boxes along the axes (obb)", STEPPED | COMPARE, 0 },
 	[OB_OPTION_LOAD] = { NULL, "load", "N", "add up 1 to N in each test of two boxes (0)", STEPPED | COMPARE, 0 },
-	[OB_OPTION_PATIENCE] = { NULL, "patience", "S",
-				 "seconds that a step may take until it counts as stalled (60), a page to make (10)",
+	[OB_OPTION_PATIENCE] = { NULL, "patience", "S", "seconds that a step may take until it counts as stalled (60)",
 				 STEPPED | EXPORT, 0 },
 	[OB_OPTION_ON_DEATH] = { NULL, "on-death", OB_ON_DEATH_NAMES,
-				 "what a death or failure does: restart, freeze, or end (restart; serve: keep)",
+				 "what a death or failure does: restart, freeze, end, or keep what can be "
+				 "(restart)",
 				 STEPPED, 0 },
 	[OB_OPTION_RESTARTS] = { NULL, "restarts", "N/S",
 				 "end the run at more than N deaths within S seconds (no limit)", STEPPED, 0 },
 	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", STEPPED, 0 },
 
-	[OB_OPTION_PACE] = { NULL, "pace", "realtime|RATE|max",
-			     "simulated seconds a second of the clock (run: max; serve: realtime)", RUN | SERVE, 0 },
+	[OB_OPTION_PACE] = { NULL, "pace", "realtime|RATE|max", "simulated seconds a second of the clock (max)",
+			     RUN | SERVE, 0 },
 
 	[OB_OPTION_SYNC] = { NULL, "sync", OB_SYNC_NAMES "|lockstep,free",
 			     "all step together, or each at its own times (the scene's)", RUN | SERVE | COMPARE, 0 },
@@ -103,8 +103,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_PAUSED] = { NULL, "paused", NULL, "stand still until a viewer lets it run", SERVE, 0 },
 	[OB_OPTION_READONLY] = { NULL, "readonly", NULL, "viewers may look, and change nothing", SERVE, 0 },
 	[OB_OPTION_VIEWERS] = { NULL, "viewers", "N", "viewers at a time (64)", SERVE, 0 },
-	[OB_OPTION_ROOM] = { NULL, "room", "N", "objects that viewers, or a program, may add (1000)", SERVE | CONTROL,
-			     0 },
+	[OB_OPTION_ROOM] = { NULL, "room", "N", "objects that viewers may add (1000)", SERVE | CONTROL, 0 },
 
 	[OB_OPTION_FRAMES] = { "Frames", "frames", "DIR", "write DIR/frame-000000.png and so on", RUN, 0 },
 	[OB_OPTION_VIDEO] = { NULL, "video", "FILE", "write a video through ffmpeg", RUN, 0 },
@@ -127,6 +126,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_RECORD] = { "What is kept", "record", "FILE",
 			       "trajectories, and all that it takes to draw them again, as HDF5", RUN | SERVE, 0 },
 	[OB_OPTION_SERIES] = { NULL, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN, 0 },
+	[OB_OPTION_REPORT] = { NULL, "report", "short|full", "five lines, or all that was measured (short)", RUN, 0 },
 	[OB_OPTION_JSON] = { NULL, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE, 0 },
 	[OB_OPTION_MEASURE] = { NULL, "measure", "step|profile|end",
 				"each step, where the time goes, or neither (step)", RUN, 0 },
@@ -135,9 +135,7 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_TRACE] = { NULL, "trace", "FILE", "what each worker did when, for ui.perfetto.dev", RUN, 0 },
 
 	[OB_OPTION_CHECKPOINT] = { NULL, "checkpoint", "FILE",
-				   "what the run needs to go on, replaced as it goes, and at its end (serve: on "
-				   "request)",
-				   RUN | SERVE, 0 },
+				   "what the run needs to go on, replaced as it goes, and at its end", RUN | SERVE, 0 },
 	[OB_OPTION_EVERY] = { NULL, "every", "S", "simulated seconds from one checkpoint to the next (1)", RUN, 0 },
 	[OB_OPTION_RESUME] = { NULL, "resume", "FILE", "go on from a checkpoint, instead of a scene", RUN | CONTROL,
 			       0 },
@@ -162,13 +160,11 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 			      "as substeps=1,2,4,tolerance=5mm,.5mm (what suits each engine)", LAB, 0 },
 	[OB_OPTION_AUDIT] = { NULL, "audit", NULL, "whether obsim's errors fall with its tolerance and its substeps",
 			      LAB, 0 },
-	[OB_OPTION_REPEATS] = { NULL, "repeats", "N",
-				"runs of each; times are their medians (1; compare: 3; paper: 15)",
+	[OB_OPTION_REPEATS] = { NULL, "repeats", "N", "runs of each; times are their medians (1)",
 				LAB | COMPARE | PAPER, 0 },
 	[OB_OPTION_SEEDS] = { NULL, "seeds", "N", "seeds, from the scene's on; repeats of each (1)", COMPARE, 0 },
 	[OB_OPTION_LIMIT] = { NULL, "limit", "S", "seconds of CPU that a run may take (150)", LAB, 0 },
-	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR",
-			    "results, diagrams, report (obsim-lab; obsim-paper; compare: none); a scene",
+	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR", "folder for results, diagrams, report (none)",
 			    LAB | PAPER | COMPARE | IMPORT, 0 },
 	[OB_OPTION_FRESH] = { NULL, "fresh", NULL, "run again what DIR has already", LAB | PAPER | COMPARE, 0 },
 	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print it as JSON", LAB | PAPER | INSPECT, 0 },
@@ -394,6 +390,32 @@ static const struct {
 	  "Repeats the experiment of the paper behind obsim, and judges its claims." },
 };
 
+// Meanings of an option to one command, where another has it with other words.
+static const struct {
+	ob_option_id id;
+	unsigned command;
+	const char *help;
+} own_help[] = {
+	{ OB_OPTION_PATIENCE, EXPORT, "seconds that the page may take to make (10)" },
+	{ OB_OPTION_PACE, SERVE, "simulated seconds a second of the clock (realtime)" },
+	{ OB_OPTION_ON_DEATH, SERVE, "what a death or failure does: restart, freeze, end, or keep what can be (keep)" },
+	{ OB_OPTION_CHECKPOINT, SERVE, "where operators save what the run needs to go on" },
+	{ OB_OPTION_ROOM, CONTROL, "objects that the program may add (1000)" },
+	{ OB_OPTION_REPEATS, COMPARE, "runs of each; times are their medians (3)" },
+	{ OB_OPTION_REPEATS, PAPER, "runs of each; times are their medians (15)" },
+	{ OB_OPTION_OUT, LAB, "folder for results, diagrams, report (obsim-lab)" },
+	{ OB_OPTION_OUT, PAPER, "folder for results, diagrams, report (obsim-paper)" },
+	{ OB_OPTION_OUT, IMPORT, "folder for the scene and its looks (the scene alone, to standard output)" },
+};
+
+static const char *help_of(ob_option_id id, ob_command_bit command)
+{
+	for (size_t i = 0; i < sizeof own_help / sizeof *own_help; i++)
+		if (own_help[i].id == id && own_help[i].command == command)
+			return own_help[i].help;
+	return ob_option_table[id].help;
+}
+
 void ob_options_help(FILE *f, ob_command_bit command)
 {
 	for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) {
@@ -409,10 +431,12 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		if (group != shown)
 			fprintf(f, "\n%s:\n", group);
 		shown = group;
-		char left[64];
-		snprintf(left, sizeof left, "%s%c%s--%s%s%s", o->letter ? "-" : " ", o->letter ? o->letter : ' ',
-			 o->letter ? ", " : "  ", o->name, is_optional(o) ? "" : " ", o->argument ? o->argument : "");
-		fprintf(f, "  %-32s %s\n", left, o->help);
+		char left[128];
+		const int width = snprintf(left, sizeof left, "%s%c%s--%s%s%s", o->letter ? "-" : " ",
+					   o->letter ? o->letter : ' ', o->letter ? ", " : "  ", o->name,
+					   is_optional(o) ? "" : " ", o->argument ? o->argument : "");
+		fprintf(f, "  %-32s%s%s\n", left, width > 32 ? "\n                                   " : " ",
+			help_of((ob_option_id)i, command));
 	}
 	if (command == OB_COMMAND_TOP)
 		fputs("\nKeys: q quits, w shows workers or objects, s sorts by id or speed, arrows and page keys "
@@ -422,24 +446,6 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		fputs("\nobsim run --resume FILE [OPTION ...] goes on with the scene and the settings of the "
 		      "checkpoint.\nobsim run --replay FILE.h5 --frames DIR draws what was recorded, with the options "
 		      "under Frames.\n",
-		      f);
-	if (command == OB_COMMAND_SEND)
-		fputs("\nobsim send NAME create 'sphere { radius = .3, at = { 0, 0, 5 } }'   as a scene says it\n"
-		      "obsim send NAME remove OBJECT                                        by its name or number\n"
-		      "obsim send NAME colour OBJECT '#rrggbb'\n"
-		      "obsim send NAME message OBJECT VALUE ...                             for its on_message\n"
-		      "obsim send NAME move OBJECT WORKER                                   its simulator, to another "
-		      "worker\n"
-		      "obsim send NAME drag|push OBJECT X Y Z [PX PY PZ]                    to a place (m), by a force "
-		      "(N), at "
-		      "a point of it\n"
-		      "obsim send NAME torque|force|kick|place|velocity OBJECT X Y Z        N m, N, N s, m, m/s\n"
-		      "obsim send NAME release|kill OBJECT                                  ends drag, push and "
-		      "torque; its "
-		      "simulator\n"
-		      "obsim send NAME friction OBJECT NUMBER\n"
-		      "obsim send NAME keep|return|restart                                  a served universe, to a "
-		      "snapshot\n",
 		      f);
 	if (command == OB_COMMAND_SERVE)
 		fputs("\nobsim serve --replay FILE.h5 [--listen ADDR:PORT] shows what was recorded, to each viewer at "

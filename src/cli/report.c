@@ -107,6 +107,11 @@ static double error_quantile(const uint32_t bin[OB_ERROR_BINS], double share, do
 	return all ? fmin(largest, ldexp(1, OB_ERROR_LEAST_EXPONENT + i + 1)) : NAN;
 }
 
+static bool is_monolith(const ob_report *r)
+{
+	return strcmp(r->arch, "monolith") == 0;
+}
+
 // Share of the errors of a second that are certainly below the tolerance.
 static double share_below(const uint32_t bin[OB_ERROR_BINS], double tolerance)
 {
@@ -176,16 +181,27 @@ void ob_report_count(ob_report *r, const ob_counters *c, bool timed)
 	r->islands_redone = c->islands_redone;
 	r->islands_over = c->islands_over;
 	count_verified(r, c);
-	r->energy_recovered = strcmp(r->arch, "monolith") == 0 ? NAN : c->recovered;
+	r->energy_recovered = is_monolith(r) ? NAN : c->recovered;
 	r->box_tests = c->box_tests;
 	r->work_s = timed ? work_of(c) : NAN;
 	r->held_s = timed ? 1e-9 * (double)c->held_ns : NAN;
 	r->gate_cpu_s = timed ? 1e-9 * (double)c->gate_cpu_ns : NAN;
 }
 
-static void print_simulators(const ob_report *r, const char *plural, FILE *f)
+static bool is_free(const ob_report *r)
 {
-	fprintf(f, "  simulators   one per object in %" PRIu64 " %s%s; ", r->workers, r->isolation, plural);
+	return strcmp(r->sync, "free") == 0;
+}
+
+static const char *plural_of_workers(const ob_report *r)
+{
+	return r->workers == 1 ? "" : r->isolation[0] == 't' ? "s" : "es";
+}
+
+static void print_simulators(const ob_report *r, FILE *f)
+{
+	fprintf(f, "  simulators   one per object in %" PRIu64 " %s%s; ", r->workers, r->isolation,
+		plural_of_workers(r));
 	if (r->tolerance > 0)
 		fprintf(f, "substeps as needed, of up to %" PRIu64 " iterations", r->iterations);
 	else
@@ -225,19 +241,26 @@ static void print_motion(const ob_report *r, FILE *f)
 	fputc('\n', f);
 }
 
-static void print_tolerance(const ob_report *r, FILE *f)
+// The verdict, which the short and the full report begin with.
+static void print_verdict(const ob_report *r, FILE *f)
 {
 	ob_quantity a, b;
-	if (!(r->tolerance > 0))
-		return;
-	fprintf(f, "  tolerance    %s %s, the largest error was %s%s; ", ob_quantity_text(&a, r->tolerance, "m"),
+	fprintf(f, "%s %s, the largest error was %s%s", ob_quantity_text(&a, r->tolerance, "m"),
 		ob_report_missed_tolerance(r) ? "MISSED" : "kept", ob_quantity_text(&b, r->error_reached, "m"),
 		cause_of(r));
+}
+
+static void print_tolerance(const ob_report *r, FILE *f)
+{
+	if (!(r->tolerance > 0))
+		return;
+	fputs("  tolerance    ", f);
+	print_verdict(r, f);
 	if (r->substeps_max)
-		fprintf(f, "%" PRIu64 " to %" PRIu64 " substeps, %" PRIu64 " in the median; %" PRIu64 " solved again",
+		fprintf(f, "; %" PRIu64 " to %" PRIu64 " substeps, %" PRIu64 " in the median; %" PRIu64 " solved again",
 			r->substeps_min, r->substeps_max, r->substeps_median, r->islands_redone);
 	else
-		fputs("nothing touched", f);
+		fputs("; nothing touched", f);
 	if (r->islands_over)
 		fprintf(f, ", %" PRIu64 " above it all the same", r->islands_over);
 	fputc('\n', f);
@@ -261,9 +284,8 @@ static void print_verified(const ob_report *r, FILE *f)
 	fputc('\n', f);
 }
 
-static void print_setup(const ob_report *r, FILE *f)
+static void print_run(const ob_report *r, FILE *f)
 {
-	const char *plural = r->workers == 1 ? "" : r->isolation[0] == 't' ? "s" : "es";
 	char scene[sizeof r->scene];
 	memcpy(scene, r->scene, sizeof scene);
 	ob_utf8_make_plain(scene); // a file's name may hold any bytes
@@ -272,11 +294,15 @@ static void print_setup(const ob_report *r, FILE *f)
 	if (!isnan(r->resumed_s))
 		fprintf(f, ", resumed at %g s", r->resumed_s);
 	fprintf(f, strcmp(r->outcome, "finished") == 0 ? "\n" : " (%s)\n", r->outcome);
-	if (strcmp(r->arch, "monolith") == 0)
+}
+
+static void print_setup(const ob_report *r, FILE *f)
+{
+	if (is_monolith(r))
 		fprintf(f, "  simulators   one ODE world in a %s, %" PRIu64 " substep%s a step\n", r->isolation,
 			r->substeps, r->substeps == 1 ? "" : "s");
 	else
-		print_simulators(r, plural, f);
+		print_simulators(r, f);
 }
 
 // Time (s) that this process simulated
@@ -307,14 +333,32 @@ static void print_cost(const ob_report *r, FILE *f)
 			ob_quantity_text(&a, r->step_p50_s, "s"), ob_quantity_text(&b, r->step_p99_s, "s"),
 			ob_quantity_text(&c, r->startup_s, "s"));
 	fprintf(f, "  memory       %s\n", ob_quantity_text(&a, (double)r->memory_bytes, "B"));
+}
+
+// Lines of what a run should not have: deaths, injected faults, scripts that stopped, lost events; and of --verify.
+static void print_exceptions(const ob_report *r, FILE *f)
+{
+	print_verified(r, f);
 	if (r->frozen > 0)
 		fprintf(f, "  deaths       %" PRIu64 "; %" PRIu64 " object%s frozen since then\n", r->deaths, r->frozen,
 			r->frozen == 1 ? "" : "s");
 	else if (r->deaths > 0)
 		fprintf(f, "  deaths       %" PRIu64 "%s\n", r->deaths,
 			strcmp(r->outcome, "failed") == 0 ? ""
-			: strcmp(r->sync, "free") == 0    ? "; each simulator went on where it had published"
+			: is_free(r)                      ? "; each simulator went on where it had published"
 							  : "; the state is as it would be without");
+	if (r->faults > 0 || r->faults_overwritten > 0)
+		fprintf(f, "  faults       %s%" PRIu64 " injected%s%s%s\n", r->faults_overwritten ? "at least " : "",
+			r->faults, *r->fault_kinds ? ": " : "", r->fault_kinds,
+			r->faults_overwritten ? "; simulators have written over other counters of them" : "");
+	if (r->scripts_stopped + r->scripts_warned > 0)
+		fprintf(f, "  scripts      %" PRIu64 " stopped by an error, %" PRIu64 " with something in vain\n",
+			r->scripts_stopped, r->scripts_warned);
+	if (r->trace_lost > 0)
+		fprintf(f,
+			"  trace        %" PRIu64 " of %" PRIu64
+			" events LOST, for they came faster than they could be written\n",
+			r->trace_lost, r->trace_events);
 }
 
 static void print_quality(const ob_report *r, FILE *f)
@@ -337,7 +381,7 @@ static void print_quality(const ob_report *r, FILE *f)
 		fprintf(f, "; largest gain %.2g", r->energy_gain_max);
 	if (!isnan(r->momentum_error))
 		fprintf(f, "; momentum error %.2g", r->momentum_error);
-	fprintf(f, "\n  state        %s\n", r->state_hash);
+	fputc('\n', f);
 }
 
 static void print_free(const ob_report *r, FILE *f)
@@ -350,23 +394,41 @@ static void print_free(const ob_report *r, FILE *f)
 		ob_quantity_text(&c, r->wait_s, "s"));
 }
 
-void ob_report_print(const ob_report *r, FILE *f)
+// One line each: the error, the speed, the simulators.
+static void print_short(const ob_report *r, FILE *f)
 {
-	print_setup(r, f);
-	if (strcmp(r->sync, "free") == 0)
-		print_free(r, f);
+	ob_quantity a;
+	fputs("  error        ", f);
+	if (r->tolerance > 0)
+		print_verdict(r, f);
+	else if (isnan(r->worst_penetration_m))
+		fputs("no tolerance, and penetration was not measured", f);
+	else
+		fprintf(f, "no tolerance; the worst penetration was %s",
+			ob_quantity_text(&a, r->worst_penetration_m, "m"));
+	if (r->tolerance > 0 && !isnan(r->bounded_share))
+		fprintf(f, "; that of motion is within it in %.3g %% of body-time", 100 * r->bounded_share);
+	if (own_time(r) > 0 && r->wall_s > 0)
+		fprintf(f, "\n  speed        %.3g x real time", own_time(r) / r->wall_s);
+	if (own_time(r) > 0 && isfinite(r->body_step_cpu_us))
+		fprintf(f, ", %s of CPU per body and step", ob_quantity_text(&a, 1e-6 * r->body_step_cpu_us, "s"));
+	if (is_monolith(r))
+		fprintf(f, "\n  simulators   none: one ODE world in a %s\n", r->isolation);
+	else
+		fprintf(f, "\n  simulators   %" PRIu64 ", one per object that moves, in %" PRIu64 " %s%s%s\n",
+			r->bodies, r->workers, r->isolation, plural_of_workers(r), is_free(r) ? ", free" : "");
+}
+
+static void print_full(const ob_report *r, FILE *f)
+{
+	ob_quantity bytes, held;
 	print_tolerance(r, f);
 	print_motion(r, f);
-	print_verified(r, f);
+	print_setup(r, f);
+	if (is_free(r))
+		print_free(r, f);
 	if (own_time(r) > 0)
 		print_cost(r, f);
-	if (r->faults > 0 || r->faults_overwritten > 0)
-		fprintf(f, "  faults       %s%" PRIu64 " injected%s%s%s\n", r->faults_overwritten ? "at least " : "",
-			r->faults, *r->fault_kinds ? ": " : "", r->fault_kinds,
-			r->faults_overwritten ? "; simulators have written over other counters of them" : "");
-	if (r->scripts_stopped + r->scripts_warned > 0)
-		fprintf(f, "  scripts      %" PRIu64 " stopped by an error, %" PRIu64 " with something in vain\n",
-			r->scripts_stopped, r->scripts_warned);
 	print_quality(r, f);
 	if (r->frame_rate > 0) {
 		fprintf(f, "  frames       %" PRIu64, r->frames);
@@ -374,17 +436,18 @@ void ob_report_print(const ob_report *r, FILE *f)
 			fprintf(f, ", %.3g per second", r->fps);
 		fputc('\n', f);
 	}
-	if (r->checkpoints > 0) {
-		ob_quantity bytes, held;
+	if (r->checkpoints > 0)
 		fprintf(f, "  checkpoints  %" PRIu64 " of %s; they held the run up for %s\n", r->checkpoints,
 			ob_quantity_text(&bytes, (double)r->checkpoint_bytes, "B"),
 			ob_quantity_text(&held, r->checkpoint_s, "s"));
-	}
-	if (r->trace_events > 0) {
-		fprintf(f, "  trace        %" PRIu64 " events", r->trace_events);
-		if (r->trace_lost > 0)
-			fprintf(f, ", %" PRIu64 " of them LOST, for they came faster than they could be written",
-				r->trace_lost);
-		fputc('\n', f);
-	}
+	if (r->trace_events > 0)
+		fprintf(f, "  trace        %" PRIu64 " events\n", r->trace_events);
+}
+
+void ob_report_print(const ob_report *r, bool full, FILE *f)
+{
+	print_run(r, f);
+	(full ? print_full : print_short)(r, f);
+	print_exceptions(r, f);
+	fprintf(f, "  state        %s\n", r->state_hash);
 }

@@ -83,8 +83,8 @@ typedef struct ob_report {
 
 void ob_report_write_json(const ob_report *r, FILE *f);
 
-// Prints some aligned lines for a person.
-void ob_report_print(const ob_report *r, FILE *f);
+// Prints some aligned lines for a person: five, and one for each thing that a run should not have; or all.
+void ob_report_print(const ob_report *r, bool full, FILE *f);
 
 // Writes only the members, into an object that the caller has opened.
 void ob_report_write_members(const ob_report *r, ob_json *j);

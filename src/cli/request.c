@@ -365,7 +365,7 @@ static bool read_tolerance(ob_run_request *r, const char *text, ob_error *e)
 	if (!(l.share > 0) && !(l.m >= s->least && l.m <= s->most))
 		return ob_fail(e, "--tolerance %s: expected %gm to %gm", text, s->least, s->most);
 	r->tolerance_share = l.share;
-	r->asked.tolerance = l.share > 0 ? OB_DEFAULT_TOLERANCE : l.m; // of a share, until the scene is known
+	r->asked.tolerance = l.share > 0 ? OB_DEFAULT_TOLERANCE : l.m; // the default, until the scene is known
 	return true;
 }
 
@@ -520,6 +520,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		.series = a->value[OB_OPTION_SERIES],
 		.trace = a->value[OB_OPTION_TRACE],
 		.json = a->value[OB_OPTION_JSON],
+		.full_report = a->value[OB_OPTION_REPORT] && strcmp(a->value[OB_OPTION_REPORT], "full") == 0,
 	};
 	r->scene_options.has_seed = a->value[OB_OPTION_SEED] != NULL;
 	if (r->measure != OB_MEASURE_STEPS && r->series)

@@ -54,6 +54,7 @@ typedef struct ob_run_request {
 	ob_measure_when measure;
 	ob_frames_request frames;
 	double pace; // simulated seconds a second; OB_PACE_MAX
+	bool full_report; // for people
 	const char *record, *series, *trace, *json; // paths; NULL = not requested; json "-" = standard output
 	const char *checkpoint, *resume; // paths; NULL = not requested
 	double every; // s, simulated, between checkpoints

@@ -65,10 +65,11 @@ static bool compare_states(ob_host *h, const ob_logged_requests *l, ob_error *e)
 // Refuses options without effect: a replay ends with the log, and writes no files.
 static bool check_options(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id useless[] = { OB_OPTION_DURATION, OB_OPTION_FRAMES,     OB_OPTION_VIDEO,
-						OB_OPTION_RAW,      OB_OPTION_RECORD,     OB_OPTION_SERIES,
-						OB_OPTION_JSON,     OB_OPTION_TRACE,      OB_OPTION_EXPLAIN,
-						OB_OPTION_RESUME,   OB_OPTION_CHECKPOINT, OB_OPTION_ON_DEATH };
+	static const ob_option_id useless[] = { OB_OPTION_DURATION, OB_OPTION_FRAMES, OB_OPTION_VIDEO,
+						OB_OPTION_RAW,      OB_OPTION_RECORD, OB_OPTION_SERIES,
+						OB_OPTION_JSON,     OB_OPTION_REPORT, OB_OPTION_TRACE,
+						OB_OPTION_EXPLAIN,  OB_OPTION_RESUME, OB_OPTION_CHECKPOINT,
+						OB_OPTION_ON_DEATH };
 	for (size_t i = 0; i < sizeof useless / sizeof *useless; i++)
 		if (a->value[useless[i]])
 			return ob_fail(

@@ -452,7 +452,7 @@ static bool write_report(const run *r, const ob_report *p, ob_error *e)
 	bool json_out = q->json && strcmp(q->json, "-") == 0,
 	     raw_out = q->frames.raw && strcmp(q->frames.raw, "-") == 0;
 	FILE *people = json_out || raw_out ? stderr : stdout;
-	ob_report_print(p, people);
+	ob_report_print(p, q->full_report, people);
 	if (q->explain && p->steps > 0)
 		explain(r, p, people);
 	return !q->json || write_json(q->json, p, e);

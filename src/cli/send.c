@@ -356,50 +356,67 @@ static bool read_worker(sending *s, ob_error *e)
 }
 
 static const struct verb {
-	const char *name, *usage;
+	const char *name, *usage, *what;
 	int words; // at least
 	int more; // than these, at most
 	ob_request_kind kind; // OB_REQUEST_KINDS: none
 	bool (*find)(sending *s, const char *word, ob_error *e); // whom the first word names; NULL: nobody
 	bool (*read)(sending *s, ob_error *e); // the other words; NULL: there are none. Without a kind it does all
 } verbs[] = {
-	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", 1, 0, OB_REQUEST_KINDS, NULL, create },
-	{ "remove", "remove OBJECT", 1, 0, OB_REQUEST_REMOVE, find_object, NULL },
-	{ "colour", "colour OBJECT '#rrggbb'", 2, 0, OB_REQUEST_COLOUR, find_object, read_colour },
-	{ "message", "message OBJECT VALUE ...", 1, INT_MAX - 1, OB_REQUEST_MESSAGE, find_object, read_values },
-	{ "force", "force OBJECT X Y Z", 4, 0, OB_REQUEST_FORCE, find_object, read_force },
-	{ "kick", "kick OBJECT X Y Z", 4, 0, OB_REQUEST_KICK, find_object, read_force },
-	{ "torque", "torque OBJECT X Y Z", 4, 0, OB_REQUEST_TORQUE, find_object, read_twist },
-	{ "push", "push OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", 4, 3, OB_REQUEST_PUSH, find_object, read_force },
-	{ "drag", "drag OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", 4, 3, OB_REQUEST_DRAG, find_object, read_target },
-	{ "release", "release OBJECT", 1, 0, OB_REQUEST_RELEASE, find_object, NULL },
-	{ "place", "place OBJECT X Y Z", 4, 0, OB_REQUEST_STATE, find_object, read_place },
-	{ "velocity", "velocity OBJECT X Y Z", 4, 0, OB_REQUEST_STATE, find_object, read_velocity },
-	{ "attitude", "attitude OBJECT W X Y Z", 5, 0, OB_REQUEST_STATE, find_object, read_attitude },
-	{ "spin", "spin OBJECT X Y Z", 4, 0, OB_REQUEST_STATE, find_object, read_spin },
-	{ "surface", "surface OBJECT X Y Z", 4, 0, OB_REQUEST_SURFACE, find_object, read_surface },
-	{ "path", "path OBJECT 'T X Y Z [QW QX QY QZ]' ... [loop]", 2, INT_MAX - 2, OB_REQUEST_PATH, find_object,
-	  read_path },
-	{ "friction", "friction OBJECT NUMBER", 2, 0, OB_REQUEST_FRICTION, find_object, read_friction },
-	{ "motor", "motor JOINT TARGET", 2, 0, OB_REQUEST_MOTOR, find_joint, read_motor },
-	{ "unjoin", "unjoin JOINT", 1, 0, OB_REQUEST_UNJOIN, find_joint, NULL },
-	{ "move", "move OBJECT WORKER", 2, 0, OB_REQUEST_MOVE, find_object, read_worker },
-	{ "kill", "kill OBJECT", 1, 0, OB_REQUEST_KILL, find_object, NULL },
-	{ "keep", "keep", 0, 0, OB_REQUEST_KEEP, NULL, NULL },
-	{ "return", "return", 0, 0, OB_REQUEST_RETURN, NULL, NULL },
-	{ "restart", "restart", 0, 0, OB_REQUEST_RESTART, NULL, NULL },
-	{ "set", "set PARAMETER NUMBER", 2, 0, OB_REQUEST_SET, NULL, read_parameter },
-	{ "seed", "seed NUMBER", 1, 0, OB_REQUEST_SEED, NULL, read_seed },
-	{ "save", "save FILE", 1, 0, OB_REQUEST_KINDS, NULL, save },
-	{ "wait", "wait STEP", 1, 0, OB_REQUEST_KINDS, NULL, await_step },
-	{ "contacts", "contacts [OBJECT]", 0, 1, OB_REQUEST_KINDS, NULL, print_contacts },
-	{ "pause", "pause", 0, 0, OB_REQUEST_PAUSE, NULL, NULL },
-	{ "resume", "resume", 0, 0, OB_REQUEST_RESUME, NULL, NULL },
-	{ "step", "step [STEPS]", 0, 1, OB_REQUEST_STEP, NULL, read_steps },
-	{ "until", "until SECONDS", 1, 0, OB_REQUEST_UNTIL, NULL, read_until },
-	{ "rate", "rate NUMBER", 1, 0, OB_REQUEST_RATE, NULL, read_rate },
+	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", "as a scene says it", 1, 0, OB_REQUEST_KINDS,
+	  NULL, create },
+	{ "remove", "remove OBJECT", "by its name or number", 1, 0, OB_REQUEST_REMOVE, find_object, NULL },
+	{ "colour", "colour OBJECT '#rrggbb'", "", 2, 0, OB_REQUEST_COLOUR, find_object, read_colour },
+	{ "message", "message OBJECT VALUE ...", "for its on_message", 1, INT_MAX - 1, OB_REQUEST_MESSAGE, find_object,
+	  read_values },
+	{ "force", "force OBJECT X Y Z", "N, from now on", 4, 0, OB_REQUEST_FORCE, find_object, read_force },
+	{ "kick", "kick OBJECT X Y Z", "N s", 4, 0, OB_REQUEST_KICK, find_object, read_force },
+	{ "torque", "torque OBJECT X Y Z", "N m, from now on", 4, 0, OB_REQUEST_TORQUE, find_object, read_twist },
+	{ "push", "push OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", "N, at a point of it (m)", 4, 3, OB_REQUEST_PUSH,
+	  find_object, read_force },
+	{ "drag", "drag OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", "to a place (m), by a point of it", 4, 3,
+	  OB_REQUEST_DRAG, find_object, read_target },
+	{ "release", "release OBJECT", "ends torque, push and drag", 1, 0, OB_REQUEST_RELEASE, find_object, NULL },
+	{ "place", "place OBJECT X Y Z", "m", 4, 0, OB_REQUEST_STATE, find_object, read_place },
+	{ "velocity", "velocity OBJECT X Y Z", "m/s", 4, 0, OB_REQUEST_STATE, find_object, read_velocity },
+	{ "attitude", "attitude OBJECT W X Y Z", "a unit quaternion", 5, 0, OB_REQUEST_STATE, find_object,
+	  read_attitude },
+	{ "spin", "spin OBJECT X Y Z", "rad/s", 4, 0, OB_REQUEST_STATE, find_object, read_spin },
+	{ "surface", "surface OBJECT X Y Z", "m/s, of a belt", 4, 0, OB_REQUEST_SURFACE, find_object, read_surface },
+	{ "path", "path OBJECT 'T X Y Z [QW QX QY QZ]' ... [loop]", "of a kinematic object: s from now on, m", 2,
+	  INT_MAX - 2, OB_REQUEST_PATH, find_object, read_path },
+	{ "friction", "friction OBJECT NUMBER", "", 2, 0, OB_REQUEST_FRICTION, find_object, read_friction },
+	{ "motor", "motor JOINT TARGET", "of a joint, by its name", 2, 0, OB_REQUEST_MOTOR, find_joint, read_motor },
+	{ "unjoin", "unjoin JOINT", "removes a joint", 1, 0, OB_REQUEST_UNJOIN, find_joint, NULL },
+	{ "move", "move OBJECT WORKER", "its simulator, to another worker", 2, 0, OB_REQUEST_MOVE, find_object,
+	  read_worker },
+	{ "kill", "kill OBJECT", "its simulator", 1, 0, OB_REQUEST_KILL, find_object, NULL },
+	{ "keep", "keep", "a snapshot of a served universe", 0, 0, OB_REQUEST_KEEP, NULL, NULL },
+	{ "return", "return", "to that snapshot, or to the start", 0, 0, OB_REQUEST_RETURN, NULL, NULL },
+	{ "restart", "restart", "to the start", 0, 0, OB_REQUEST_RESTART, NULL, NULL },
+	{ "set", "set PARAMETER NUMBER", "starts anew with another parameter", 2, 0, OB_REQUEST_SET, NULL,
+	  read_parameter },
+	{ "seed", "seed NUMBER", "starts anew with another seed", 1, 0, OB_REQUEST_SEED, NULL, read_seed },
+	{ "save", "save FILE", "a served universe, as a checkpoint", 1, 0, OB_REQUEST_KINDS, NULL, save },
+	{ "wait", "wait STEP", "until so many steps are complete", 1, 0, OB_REQUEST_KINDS, NULL, await_step },
+	{ "contacts", "contacts [OBJECT]", "prints those of the last step", 0, 1, OB_REQUEST_KINDS, NULL,
+	  print_contacts },
+	{ "pause", "pause", "a served universe", 0, 0, OB_REQUEST_PAUSE, NULL, NULL },
+	{ "resume", "resume", "", 0, 0, OB_REQUEST_RESUME, NULL, NULL },
+	{ "step", "step [STEPS]", "while time stands (1)", 0, 1, OB_REQUEST_STEP, NULL, read_steps },
+	{ "until", "until SECONDS", "this simulated time, and stands", 1, 0, OB_REQUEST_UNTIL, NULL, read_until },
+	{ "rate", "rate NUMBER", "simulated seconds a second; 0: as fast as it can", 1, 0, OB_REQUEST_RATE, NULL,
+	  read_rate },
 };
 enum { VERBS = sizeof verbs / sizeof *verbs };
+
+void ob_send_help(FILE *f)
+{
+	fputs("\nRequests:\n", f);
+	for (int i = 0; i < VERBS; i++)
+		fprintf(f, *verbs[i].what ? "  obsim send NAME %-50s %s\n" : "  obsim send NAME %s%s\n", verbs[i].usage,
+			verbs[i].what);
+}
 
 // Lists all requests.
 static void refuse_all(ob_error *e)

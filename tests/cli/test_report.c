@@ -76,11 +76,12 @@ static void test_tolerance_in_words(void)
 	static ob_report a = { .tolerance = 1e-3, .error_reached = .5e-3, .substeps_max = 8 };
 	char *text = NULL;
 	size_t length;
-	for (int missed = 0; missed < 2; missed++) {
+	for (int k = 0; k < 4; k++) {
+		const int missed = k & 1;
 		a.islands_over = (uint64_t)missed;
 		a.error_reached = missed ? 2e-3 : .5e-3;
 		FILE *f = open_memstream(&text, &length);
-		ob_report_print(&a, f);
+		ob_report_print(&a, k > 1, f);
 		fclose(f);
 		CHECK(ob_report_missed_tolerance(&a) == missed);
 		CHECK(strstr(text, missed ? "1.00 mm MISSED, the largest error was 2.00 mm"

@@ -46,7 +46,7 @@ class Free(program.Case):
 			self.assertEqual(r["sync"], "free")
 
 	def test_scene_key_and_report(self):
-		done = program.call("run", self.scene(STACK), "--json", self.path("r.json"))
+		done = program.call("run", self.scene(STACK), "--json", self.path("r.json"), "--report", "full")
 		self.assertEqual(done.returncode, 0, done.stderr)
 		self.assertRegex(done.stdout, r"free +500 Hz, coupling own")
 		with open(self.path("r.json")) as f:

@@ -136,7 +136,24 @@ class Report(program.Case):
 		done = program.call("run", disk, "-D", "radius=1", "--strict")
 		self.assertEqual(done.returncode, 1)
 		self.assertRegex(done.stderr, r"^obsim: warning: errors of motion may exceed 1.00 mm a second in \d+ steps of objects; .*\n$")
-		self.assertIn("motion       errors of a second within 1.00 mm in 0 % of body-time", done.stdout)
+		self.assertIn("that of motion is within it in 0 % of body-time", done.stdout)
+		full = program.call("run", disk, "-D", "radius=1", "--report", "full")
+		self.assertIn("motion       errors of a second within 1.00 mm in 0 % of body-time", full.stdout)
+
+	def test_five_lines(self):
+		"""The short report has the run, the verdict, speed, simulators, hash; a full report begins and ends with the same."""
+		for words in ([], ["--isolation", "process"], ["--substeps", "4"], ["--arch", "monolith"], ["--sync", "free"], ["--measure", "end"]):
+			short, full = (program.call("run", program.scene("stack"), "--duration", ".2", *words, *more).stdout.splitlines()
+				for more in ([], ["--report", "full"]))
+			self.assertEqual([line.split()[0] for line in short[1:]], ["error", "speed", "simulators", "state"], short)
+			self.assertGreater(len(full), len(short) + 3)
+			if "free" not in words:
+				self.assertEqual((short[0], short[-1]), (full[0], full[-1]))
+			if not words:
+				self.assertEqual(full[1].split()[:4], ["tolerance", *short[1].split()[1:4]])
+		killed = program.call("run", program.scene("stack"), "--duration", "1", "--isolation", "process", "--fault", "kill:p=.1,seed=1")
+		self.assertEqual([line.split()[0] for line in killed.stdout.splitlines()[1:]], ["error", "speed", "simulators", "deaths", "faults", "state"])
+		self.refuse("run", program.scene("stack"), "--report", "long", saying="--report long: expected one of short|full")
 
 	def test_explain(self):
 		cradle = program.call("run", program.scene("cradle"), "--substeps", "8", "--explain")

@@ -130,7 +130,7 @@ class Trace(program.Case):
 
 	def test_explained(self):
 		"""Both read the clock at the same places."""
-		done = program.call("run", program.scene("pile"), "--duration", ".5", "--explain", "--trace", self.path("t.json"))
+		done = program.call("run", program.scene("pile"), "--duration", ".5", "--explain", "--report", "full", "--trace", self.path("t.json"))
 		self.assertEqual((done.returncode, done.stderr), (0, ""))
 		self.check(self.path("t.json"), 1000)
 		self.assertRegex(done.stdout, r"trace +\d+ events\n")

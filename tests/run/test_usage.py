@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import resource
 import subprocess
 import unittest
@@ -77,6 +78,23 @@ class Usage(program.Case):
 		done = program.call("run", self.path("deep.lua"), "--duration", ".1")
 		self.assertEqual(done.returncode, 0)
 		self.assertRegex(done.stderr, r'^[^\n]*"b1" \(object 0\) and "b2" \(object 1\) begin 800 mm inside each other')
+
+	def test_help_is_of_its_command(self):
+		"""No help has the words of another command, none is cut off, and that of send has all requests."""
+		commands = re.findall(r"^  obsim (\w+)", program.call("--help").stdout, re.M)
+		self.assertGreater(len(commands), 11)
+		for command in commands:
+			text = program.call(command, "--help").stdout
+			self.assertNotRegex(text, rf"[(;] ?(?!{command}\b)({'|'.join(commands)}):")
+			for other in {"lab", "paper"} - {command}:
+				self.assertNotIn("obsim-" + other, text)
+			for line in text.splitlines():
+				self.assertEqual(line, line.rstrip())
+		requests = re.search(r"with one of (.*)", program.call("send", "none").stderr)[1].split(", ")
+		self.assertGreater(len(requests), 30)
+		self.assertEqual(re.findall(r"^  obsim send NAME (\w+)", program.call("send", "--help").stdout, re.M), requests)
+		keys = "own|simulator|worker|process|rank|island|rest|cost|lag"
+		self.assertIn(f"--colour-by {keys}\n", program.call("run", "--help").stdout)
 
 	def test_static_objects_alone(self):
 		"""Nothing moves: there is no cost per body, in the text as in JSON."""

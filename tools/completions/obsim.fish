@@ -81,6 +81,7 @@ complete -c obsim -n $run -l replay-schedule -r -F -d 'repeat a recorded free ru
 complete -c obsim -n $run -l jitter -x -a '.1 .3' -d 'share by which lengths of steps vary'
 complete -c obsim -n $run -l delay -x -a '.001 .01' -d 'seconds until a publication is seen'
 complete -c obsim -n '__fish_seen_subcommand_from run compare' -l json -r -F -d 'the report as JSON'
+complete -c obsim -n $run -l report -x -a 'short full' -d 'five lines, or all that was measured'
 complete -c obsim -n $run -l explain -d 'what was modelled, what not, and what it cost'
 complete -c obsim -n $run -l trace -r -F -d 'what each worker did when, for ui.perfetto.dev'
 complete -c obsim -n $run -l checkpoint -r -F -d 'what the run needs to go on'
