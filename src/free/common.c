@@ -6,7 +6,9 @@
 //   boundaries      |     |     |     |     |
 //                             common
 #include <math.h>
+#include <string.h>
 
+#include "base/clock.h"
 #include "free/free.h"
 #include "free/view.h"
 #include "motion/flight.h"
@@ -139,6 +141,31 @@ uint64_t ob_free_complete(ob_universe *u, uint64_t until)
 		ob_step_complete(u, simulated, 0, 0);
 	}
 	return ob_step_count(u);
+}
+
+// True if the simulator of an object waits for a neighbour that is behind: never the earliest of all.
+static bool waits(const ob_universe *u, uint32_t id)
+{
+	uint32_t blocker;
+	return ob_free_blocker(u, id, &blocker) && ob_free_kind_of(u, blocker, NULL) == OB_FREE_SIMULATED &&
+	       ob_free_time(u, blocker) < ob_free_time(u, id);
+}
+
+void ob_free_find_parts(const ob_universe *u, unsigned char *part)
+{
+	const uint64_t next = ob_step_count(u) + 1, until = ob_free_until(u), now = ob_clock_ns();
+	const double t = (double)(next < until ? next : until) * ob_universe_settings(u)->step_length - instant;
+	memset(part, OB_FREE_DONE, ob_universe_workers(u));
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		if (ob_free_kind_of(u, id, NULL) != OB_FREE_SIMULATED || ob_free_time(u, id) >= t ||
+		    ob_free_due_ns(u, ob_free_time(u, id)) > now)
+			continue;
+		unsigned char *its = &part[ob_free_worker_of(u, id)];
+		if (waits(u, id)) // it waits for one at a time, when none of its simulators may step
+			*its = OB_FREE_WAITS;
+		else if (*its == OB_FREE_DONE)
+			*its = OB_FREE_HOLDS;
+	}
 }
 
 void ob_free_sum(const ob_universe *u, ob_free_sums *out)

@@ -23,6 +23,15 @@ void ob_free_enter_objects(ob_universe *u);
 // Returns the number of complete steps.
 uint64_t ob_free_complete(ob_universe *u, uint64_t step);
 
+// A worker, as far as the common time is concerned.
+typedef enum ob_free_part {
+	OB_FREE_DONE, // all of its simulators have passed the next boundary, or are not due by the clock or the host
+	OB_FREE_WAITS, // for a neighbour that is behind
+	OB_FREE_HOLDS, // it has to go on, and all others may wait for it: the worker of the earliest simulator does, for one
+} ob_free_part;
+// Host: finds the part of each worker: part[workers].
+void ob_free_find_parts(const ob_universe *u, unsigned char *part);
+
 // Sums over all objects for the report.
 typedef struct ob_free_sums {
 	ob_free_counts counts;

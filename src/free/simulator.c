@@ -26,7 +26,8 @@ bool ob_free_sim_begin(ob_free_sim *s, ob_universe *u, uint32_t id)
 	const uint32_t max = s->neighbours_max;
 	if (!group)
 		return false;
-	ob_free_call(u, id); // its predecessor may have slept
+	ob_free_end_wait(u, id);
+	ob_free_call(u, id); // its predecessor may have slept, or waited
 	sleep_in_flight(u, id);
 	*s = (ob_free_sim){
 		.id = id, .group = group, .neighbour = neighbour, .neighbours_max = max, .blocker = OB_NO_OBJECT

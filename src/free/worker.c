@@ -19,6 +19,8 @@ typedef struct worker {
 	double *time; // [sims] their own times, side by side for the search; infinity: absent, or failed
 	ob_free_scratch scratch;
 	uint32_t until; // as of the last look
+	uint32_t
+		waits; // object whose simulator waits for a neighbour, until the worker does something else; OB_NO_OBJECT
 	uint64_t fault_chances;
 	ob_trace_event span; // of the trace, as it goes on; kind NONE: none
 } worker;
@@ -59,7 +61,7 @@ static bool adopt(worker *w)
 
 static bool begin(worker *w, ob_universe *u, uint32_t number)
 {
-	*w = (worker){ .u = u, .worker = number };
+	*w = (worker){ .u = u, .worker = number, .waits = OB_NO_OBJECT };
 	const uint32_t capacity = ob_universe_capacity(u);
 	for (uint32_t id = 0; id < capacity; id++)
 		w->sims += ob_free_worker_of(u, id) == number;
@@ -132,9 +134,18 @@ static bool wait_for_clock(worker *w, const ob_free_sim *s)
 	return true;
 }
 
+// Notes that a simulator waits for a neighbour, or none (OB_NO_OBJECT).
+static void note_wait(worker *w, uint32_t id)
+{
+	if (w->waits != OB_NO_OBJECT && w->waits != id)
+		ob_free_end_wait(w->u, w->waits);
+	w->waits = id;
+}
+
 static void work(worker *w)
 {
 	ob_free_sim *blocked, *s = earliest(w, &blocked);
+	note_wait(w, !s && blocked ? blocked->id : OB_NO_OBJECT);
 	if (!s && blocked) {
 		turn_to(w, OB_TRACE_LAG, blocked->id, blocked->blocker);
 		blocked->counts.waits++;

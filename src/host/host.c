@@ -252,7 +252,9 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_confi
 	h->requests = ob_requests_create();
 	h->operations = ob_requests_create();
 	h->wishes = ob_requests_create();
-	if (!h->requests || !h->operations || !h->wishes || !h->roster)
+	h->blocks = calloc(h->workers, sizeof *h->blocks);
+	h->restart.stalled = calloc(h->workers, sizeof *h->restart.stalled);
+	if (!h->requests || !h->operations || !h->wishes || !h->roster || !h->blocks || !h->restart.stalled)
 		return ob_fail(e, "out of memory");
 	h->population = ob_population_create(scene, h->u, h->roster, e);
 	if (!h->population)
@@ -478,5 +480,6 @@ void ob_host_stop(ob_host *h)
 	ob_roster_destroy(h->roster);
 	pthread_mutex_destroy(&h->failure_lock);
 	pthread_mutex_destroy(&h->interval.lock);
+	free(h->blocks);
 	free(h);
 }

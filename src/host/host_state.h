@@ -42,6 +42,8 @@ typedef struct ob_restart_state {
 	uint32_t freezes, freezes_max, frozen; // frozen: so far
 	_Atomic uint64_t cpu; // ns, of workers that have ended
 	uint64_t switches; // theirs
+	uint64_t stalled_step; // of a free run, whose stall the host ends by kills; under failure_lock, as the next
+	char *stalled; // [workers]: the kernel's letter for the state in which a worker was found and killed; 0: it was not
 } ob_restart_state;
 
 struct ob_host {
@@ -91,6 +93,7 @@ struct ob_host {
 	uint64_t free_stands;
 	atomic_bool free_hold; // simulators of a free run are to stop and wait where they may run to now
 	bool started; // the gate was opened once
+	unsigned char *blocks; // [workers]: those that block the step, as of the last look (stall.h)
 	double patience; // s
 	bool saved; // see ob_host_config
 	ob_on_death on_death;

@@ -13,6 +13,7 @@
 #include "host/accounting.h"
 #include "host/host_state.h"
 #include "step/sim.h"
+#include "table/free.h"
 
 enum { QUICK_ATTEMPTS = 3 }; // without progress are made at once
 static const double faults_timeout = 10; // s, for further attempts after the first fault
@@ -36,6 +37,7 @@ void ob_restart_prepare(ob_host *h)
 void ob_restart_finish(ob_host *h)
 {
 	ob_checkpoint_destroy(h->restart.checkpoint);
+	free(h->restart.stalled);
 	free(h->restart.when);
 	free(h->restart.freeze);
 }
@@ -154,23 +156,61 @@ static bool is_hopeless(ob_host *h)
 	return ++r->attempts > QUICK_ATTEMPTS && now - r->progress_at > fmax(faults_timeout, h->patience);
 }
 
-void ob_restart_worker(ob_host *h, const ob_death *d)
+bool ob_restart_stalled(ob_host *h, const ob_death *d)
+{
+	ob_restart_state *r = &h->restart;
+	ob_worker_info info;
+	if (!ob_free_settings_of(h->u) || !h->spawn->kill || h->on_death == OB_ON_DEATH_ABORT)
+		return false;
+	pthread_mutex_lock(&h->failure_lock);
+	const bool hopeless = is_hopeless(h);
+	r->stalled_step = d->step;
+	for (uint32_t w = 0; w < h->workers && !hopeless; w++)
+		if (h->blocks[w] && ob_universe_get_worker(h->u, w, &info))
+			r->stalled[w] = ob_state_of_thread(info.pid, info.tid);
+	pthread_mutex_unlock(&h->failure_lock);
+	for (uint32_t w = 0; w < h->workers && !hopeless; w++)
+		if (h->blocks[w])
+			h->spawn->kill(h->group, w);
+	return !hopeless;
+}
+
+// Describes the death of a worker that the host has killed because it blocked the run.
+static void name_stall(const ob_host *h, ob_death *d)
+{
+	const ob_restart_state *r = &h->restart;
+	const bool own = d->object == d->worker;
+	d->cause = OB_DEATH_STALL;
+	d->signal = 0;
+	d->step = r->stalled_step;
+	snprintf(d->text, sizeof d->text,
+		 "step %llu was not complete after %g s; waiting for simulator %u (%s%.*s%sprocess %d, %s)",
+		 (unsigned long long)d->step, h->patience, d->worker, own ? "object \"" : "", own ? OB_NAME_MAX : 0,
+		 d->name, own ? "\", " : "", d->pid, ob_state_word(r->stalled[d->worker]));
+}
+
+void ob_restart_worker(ob_host *h, const ob_death *death)
 {
 	ob_restart_state *r = &h->restart;
 	ob_worker_info info;
 	ob_error text;
-	ob_death_print(d, text.text, sizeof text.text);
+	ob_death d = *death;
 	pthread_mutex_lock(&h->failure_lock);
+	const bool stalled = r->stalled[d.worker];
+	if (stalled)
+		name_stall(h, &d);
+	r->stalled[d.worker] = 0;
+	ob_death_print(&d, text.text, sizeof text.text);
 	r->deaths++;
-	*latest(r) = *d;
+	*latest(r) = d;
 	latest(r)->when = ob_clock_ns();
-	const bool over = h->on_death == OB_ON_DEATH_ABORT || is_over_limit(h) || is_hopeless(h);
+	const bool over = h->on_death == OB_ON_DEATH_ABORT || is_over_limit(h) || (!stalled && is_hopeless(h));
 	pthread_mutex_unlock(&h->failure_lock);
 	ob_universe_note_death(h->u, text.text);
-	if (ob_universe_get_worker(h->u, d->worker, &info))
+	if (ob_universe_get_worker(h->u, d.worker, &info))
 		r->cpu += info.cpu_ns;
-	ob_worker_set_cpu(h->u, d->worker, 0);
-	if (over || !h->spawn->revive || !h->spawn->revive(h->group, d->worker)) {
+	ob_worker_set_cpu(h->u, d.worker, 0);
+	if (over || !h->spawn->revive || !h->spawn->revive(h->group, d.worker)) {
 		ob_host_set_failure(h, "%s%s", text.text, over ? "; giving up" : "");
 		return;
 	}

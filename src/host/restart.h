@@ -50,10 +50,14 @@ uint64_t ob_restart_next_step(const ob_host *h);
 bool ob_restart_is_due_after_scripts(const ob_host *h);
 // True if a pause for a checkpoint is due.
 bool ob_restart_checkpoint_due(const ob_host *h);
-// Requests a restart: a worker has died, or is stalled. The first request counts until ob_restart.
+// Requests a restart: a worker has died, or is stalled. The first request counts until ob_restart. In a free run, which has
+// no checkpoint, it ends the run.
 void ob_restart_request(ob_host *h, const ob_death *d);
 // In a free run: starts one worker again, whose simulators go on where they had published. The supervisor calls it.
 void ob_restart_worker(ob_host *h, const ob_death *d);
+// In a free run: kills the workers that block it (h->blocks), to start each again with this death, a stall. false: that is
+// impossible, or useless.
+bool ob_restart_stalled(ob_host *h, const ob_death *d);
 // Adds the last words of a worker that has ended, if it is the one of the request.
 void ob_restart_add_words(ob_host *h, const ob_worker_end *end);
 // Before the first step: plans to freeze the objects that a log lists as frozen. false: no memory.

@@ -103,15 +103,16 @@ static void restart_interval(ob_host *h)
 static void report_stall(ob_host *h, uint64_t step)
 {
 	char blocking[300];
-	ob_stall_describe(h, blocking, sizeof blocking);
-	ob_death d = { .cause = OB_DEATH_STALL, .worker = ob_stall_first(h), .step = step + 1 };
+	ob_death d = { .cause = OB_DEATH_STALL, .step = step + 1 };
+	d.worker = ob_stall_describe(h, blocking, sizeof blocking);
 	ob_worker_info info = { 0 };
 	if (ob_universe_get_worker(h->u, d.worker, &info))
 		d.pid = info.pid;
 	ob_death_find_object(&d, h->u);
 	snprintf(d.text, sizeof d.text, "step %llu was not complete after %g s; waiting for %s",
 		 (unsigned long long)step + 1, h->patience, blocking);
-	ob_restart_request(h, &d);
+	if (!ob_restart_stalled(h, &d))
+		ob_restart_request(h, &d);
 }
 
 // Between pauses: detects a stall, and ends the interval early if a thread waits for a pause. false: interrupted, and
@@ -121,8 +122,10 @@ static bool check_progress(ob_host *h, ob_stall_watch *stall, double *interrupte
 	double now = ob_clock_wall();
 	if (ob_universe_ranks(h->u) > 1)
 		ob_universe_look_for_readers(h->u);
-	if (ob_stall_watch_look(stall, h))
+	if (ob_stall_watch_look(stall, h)) {
 		report_stall(h, stall->step);
+		*stall = ob_stall_watch_start(h);
+	}
 	if (h->interrupted && *interrupted_at == 0)
 		*interrupted_at = now;
 	if (h->interrupted || is_called(h) || ob_requests_waiting(h->requests) || ob_restart_checkpoint_due(h))

@@ -3,32 +3,63 @@
 #include <stdio.h>
 #include <time.h>
 
+#include "free/free.h"
 #include "host/accounting.h"
 #include "host/host_state.h"
 
 enum { SHOWN = 4, MOST_FACTOR = 10 }; // MOST_FACTOR: times patience, limit for simulators that get no core
 
-// Workers that block the step: those that the gate waits for or, if it waits for none, the one that schedules.
+// Workers that block the step.
 typedef struct blockers {
 	uint32_t worker[SHOWN], shown, more;
 } blockers;
 
-static blockers find_blockers(const ob_host *h)
+static char state_of(const ob_host *h, uint32_t worker)
 {
-	blockers b = { .shown = 0 };
+	ob_worker_info info;
+	return ob_universe_get_worker(h->u, worker, &info) ? ob_state_of_thread(info.pid, info.tid) : 0;
+}
+
+// Finds those that the gate waits for or, if it waits for none, the one that schedules.
+static void find_at_gate(ob_host *h)
+{
 	uint32_t scheduler = ob_step_scheduler(h->u);
 	bool waits = false; // else all have arrived, and the last has not yet opened the gate again
 	for (uint32_t w = 0; w < h->workers && !waits; w++)
 		waits = ob_gate_waits_for(h->u, w);
+	for (uint32_t w = 0; w < h->workers; w++)
+		h->blocks[w] = waits ? ob_gate_waits_for(h->u, w) : w == scheduler;
+}
+
+// Finds those that hold the common time back, and those that would do so next, for they were stopped while they waited.
+static void find_in_free_run(ob_host *h)
+{
+	ob_free_find_parts(h->u, h->blocks);
+	for (uint32_t w = 0; w < h->workers; w++)
+		h->blocks[w] =
+			h->blocks[w] == OB_FREE_HOLDS || (h->blocks[w] == OB_FREE_WAITS && state_of(h, w) == 'T');
+}
+
+static blockers find_blockers(ob_host *h)
+{
+	blockers b = { .shown = 0 };
+	if (ob_free_settings_of(h->u))
+		find_in_free_run(h);
+	else
+		find_at_gate(h);
 	for (uint32_t w = 0; w < h->workers; w++) {
-		if (waits ? !ob_gate_waits_for(h->u, w) : w != scheduler)
-			continue;
-		if (b.shown < SHOWN)
+		if (h->blocks[w] && b.shown < SHOWN)
 			b.worker[b.shown++] = w;
-		else
+		else if (h->blocks[w])
 			b.more++;
 	}
 	return b;
+}
+
+// True if a step is due: all simulators of a free run may wait for the clock.
+static bool is_due(ob_host *h)
+{
+	return !ob_free_settings_of(h->u) || find_blockers(h).shown > 0;
 }
 
 // ---- the watch
@@ -47,14 +78,12 @@ ob_stall_watch ob_stall_watch_start(const ob_host *h)
 	return (ob_stall_watch){ .step = ob_step_count(h->u), .shares = shares_of(h), .clock = ob_hang_clock_start() };
 }
 
-static bool one_is_runnable(const ob_host *h)
+static bool one_is_runnable(ob_host *h)
 {
 	blockers b = find_blockers(h);
-	ob_worker_info info;
 	bool found = false;
 	for (uint32_t i = 0; i < b.shown && !found; i++)
-		found = ob_universe_get_worker(h->u, b.worker[i], &info) &&
-			ob_state_of_thread(info.pid, info.tid) == 'R';
+		found = state_of(h, b.worker[i]) == 'R';
 	return found;
 }
 
@@ -62,7 +91,7 @@ bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h)
 {
 	static const double busy = .02; // of a core: below that nothing computes
 	uint64_t step = ob_step_count(h->u);
-	if (step != s->step || shares_of(h) != s->shares) {
+	if (step != s->step || shares_of(h) != s->shares || !is_due(h)) {
 		*s = ob_stall_watch_start(h);
 		return false;
 	}
@@ -80,13 +109,7 @@ bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h)
 
 // ---- blocking workers
 
-uint32_t ob_stall_first(const ob_host *h)
-{
-	const blockers b = find_blockers(h);
-	return b.shown ? b.worker[0] : UINT32_MAX;
-}
-
-void ob_stall_describe(const ob_host *h, char *text, size_t size)
+uint32_t ob_stall_describe(ob_host *h, char *text, size_t size)
 {
 	const uint64_t busy_ns = 10000000; // with more CPU time than this within the tenth of a second, it computes
 	blockers b = find_blockers(h);
@@ -107,4 +130,5 @@ void ob_stall_describe(const ob_host *h, char *text, size_t size)
 	}
 	if (b.more && n < size)
 		snprintf(text + n, size - n, " and %u more", b.more);
+	return b.shown ? b.worker[0] : OB_NO_WORKER;
 }

@@ -295,8 +295,12 @@ uint64_t ob_free_wait_for(ob_universe *u, uint32_t id, uint32_t neighbour, doubl
 	const uint32_t seen = __atomic_load_n(&c->moved, __ATOMIC_SEQ_CST);
 	if (ob_free_time(u, neighbour) < time && __atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST) <= needed)
 		ob_futex_wait_ms(&c->moved, seen, NEIGHBOUR_WAIT_MS);
-	__atomic_store_n(&cell_of(u, id)->blocker, 0, __ATOMIC_RELAXED);
 	return ob_clock_ns() - began;
+}
+
+void ob_free_end_wait(ob_universe *u, uint32_t id)
+{
+	__atomic_store_n(&cell_of(u, id)->blocker, 0, __ATOMIC_RELAXED);
 }
 
 bool ob_free_blocker(const ob_universe *u, uint32_t id, uint32_t *blocker)

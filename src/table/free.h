@@ -187,9 +187,10 @@ void ob_free_fall_asleep(ob_universe *u, uint32_t id, double holds);
 bool ob_free_sleep(const ob_universe *u, uint32_t id);
 // Has the simulator of an object woken before anybody passes `until`, if it sleeps in flight.
 void ob_free_call(ob_universe *u, uint32_t id);
-// Sleeps until the neighbour has reached `time`, or some time has passed. id: the object whose simulator waits. Returns
-// the time slept, ns.
+// Sleeps until the neighbour has reached `time`, or some time has passed. id: the object whose simulator waits: it counts as
+// waiting until ob_free_end_wait. Returns the time slept, ns.
 uint64_t ob_free_wait_for(ob_universe *u, uint32_t id, uint32_t neighbour, double time);
+void ob_free_end_wait(ob_universe *u, uint32_t id);
 // Sleeps until the host moves `until` away from this step, or some time has passed.
 void ob_free_wait_for_host(const ob_universe *u, uint32_t step);
 

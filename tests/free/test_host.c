@@ -9,24 +9,35 @@
 
 #include "base/clock.h"
 #include "free/free.h"
+#include "host/free_run.h"
+#include "host/host_state.h"
+#include "host/stall.h"
 
-static ob_host *start(const ob_scene *s, ob_isolation isolation, uint32_t workers, double lag)
+static ob_host *start_with(const ob_scene *s, ob_isolation isolation, uint32_t workers, double lag, double pace,
+			   double patience, ob_on_death policy)
 {
 	ob_error e = { "" };
-	const ob_free_settings f = { .update_rate = 200,
-				     .rate_most = 200,
-				     .max_lag = lag,
-				     .jitter = .2,
-				     .pace = INFINITY,
-				     .end = 1e3,
-				     .seed = 1 };
-	ob_host_config c = { .isolation = isolation, .workers = workers, .spare = 2, .run = s->run, .free = &f };
+	const ob_free_settings f = {
+		.update_rate = 200, .rate_most = 200, .max_lag = lag, .jitter = .2, .pace = pace, .end = 1e3, .seed = 1
+	};
+	ob_host_config c = { .isolation = isolation,
+			     .workers = workers,
+			     .spare = 2,
+			     .run = s->run,
+			     .free = &f,
+			     .patience = patience,
+			     .on_death = policy };
 	c.run.substeps = 1;
 	c.run.iterations = 16;
 	ob_host *h = ob_host_start(s, &c, &e);
 	if (!h)
 		fprintf(stderr, "start: %s\n", e.text);
 	return h;
+}
+
+static ob_host *start(const ob_scene *s, ob_isolation isolation, uint32_t workers, double lag)
+{
+	return start_with(s, isolation, workers, lag, INFINITY, 0, OB_ON_DEATH_RESTART);
 }
 
 static bool reach(ob_host *h, uint64_t step)
@@ -116,6 +127,90 @@ static void test_kills(void)
 	free(s.object);
 }
 
+static int32_t pid_of(const ob_host *h, uint32_t worker)
+{
+	ob_worker_info w;
+	CHECK(ob_universe_get_worker(ob_host_universe(h), worker, &w) && w.pid > 1);
+	return w.pid;
+}
+
+// Workers (bits) that are stopped for longer than the run's patience are killed, named, and go on where they had published;
+// others are left alone. Meanwhile some of them touch each other, so the wait for the stopped ones is a chain.
+static void test_stops(uint32_t workers, uint32_t stopped)
+{
+	enum { BALLS = 6, MOST = BALLS + 1 };
+	ob_scene s = busy_heap(BALLS);
+	ob_host *h = start_with(&s, OB_ISOLATION_PROCESS, workers, .01, INFINITY, 1, OB_ON_DEATH_RESTART);
+	int32_t before[MOST] = { 0 };
+	ob_death death[OB_DEATHS_KEPT];
+	const uint32_t first = !workers, end = workers ? workers : MOST; // object 0 is the ground
+	CHECK(h && reach(h, 1));
+	for (uint32_t w = first; h && w < end; w++)
+		before[w] = pid_of(h, w);
+	for (uint32_t w = first; h && w < end; w++)
+		if (stopped >> w & 1)
+			CHECK(kill(before[w], SIGSTOP) == 0);
+	CHECK(h && reach(h, 120));
+	for (uint32_t w = first; h && w < end; w++)
+		CHECK((pid_of(h, w) == before[w]) == !(stopped >> w & 1));
+	const uint32_t n = h ? ob_host_get_deaths(h, death) : 0;
+	CHECK(n == (uint32_t)__builtin_popcount(stopped));
+	for (uint32_t i = 0; i < n; i++) {
+		CHECK(death[i].cause == OB_DEATH_STALL && stopped >> death[i].worker & 1);
+		CHECK(death[i].pid == before[death[i].worker] && strstr(death[i].text, "stopped by a signal"));
+	}
+	ob_host_stop(h);
+	free(s.object);
+}
+
+// A stop that is shorter than the run's patience kills nothing. One that may not be mended ends the run, which names it.
+static void test_other_stops(void)
+{
+	ob_scene s = busy_heap(6);
+	ob_host *h = start(&s, OB_ISOLATION_PROCESS, 0, .01);
+	ob_host_times t = { 0 };
+	ob_error e = { "" };
+	CHECK(h && reach(h, 1));
+	if (h) {
+		const int32_t pid = pid_of(h, 2);
+		CHECK(kill(pid, SIGSTOP) == 0);
+		nanosleep(&(struct timespec){ .tv_nsec = 300000000 }, NULL);
+		CHECK(kill(pid, SIGCONT) == 0 && reach(h, 60));
+		ob_host_get_times(h, &t);
+		CHECK(t.deaths == 0 && pid_of(h, 2) == pid);
+	}
+	ob_host_stop(h);
+	h = start_with(&s, OB_ISOLATION_PROCESS, 0, .01, INFINITY, 1, OB_ON_DEATH_ABORT);
+	CHECK(h && reach(h, 1));
+	if (h) {
+		CHECK(kill(pid_of(h, 3), SIGSTOP) == 0);
+		ob_host_go(h, 120);
+		CHECK(!ob_host_wait(h, &e) && strstr(e.text, "waiting for simulator 3 (") &&
+		      strstr(e.text, "stopped by"));
+	}
+	ob_host_stop(h);
+	free(s.object);
+}
+
+// A slow clock that all wait for is no stall.
+static void test_slow_clock(ob_isolation isolation)
+{
+	ob_scene s = busy_heap(6);
+	ob_host *h = start_with(&s, isolation, 2, .01, 1e-6, 0, OB_ON_DEATH_RESTART);
+	CHECK(h != NULL);
+	if (!h)
+		return;
+	ob_host_go(h, 1);
+	for (uint32_t id = 1; id <= 6; id++)
+		while (ob_free_time(h->u, id) <= 0) // it may begin at once
+			CHECK(ob_host_free_wait(h, .01) == false);
+	ob_stall_watch watch = ob_stall_watch_start(h);
+	watch.counted = 61; // s
+	CHECK(!ob_stall_watch_look(&watch, h) && watch.counted == 0);
+	ob_host_stop(h);
+	free(s.object);
+}
+
 int main(int argc, char **argv)
 {
 	const bool processes = argc > 1 && strcmp(argv[1], "process") == 0;
@@ -124,7 +219,15 @@ int main(int argc, char **argv)
 	test_heap(isolation, 3, INFINITY);
 	test_heap(isolation, 0, .002);
 	test_requests(isolation);
-	if (processes)
+	test_slow_clock(isolation);
+	if (processes) {
 		test_kills();
+		test_stops(0, 1 << 3);
+		test_stops(0, 1 << 1 | 1 << 2 | 1 << 3 | 1 << 4 | 1 << 5 | 1 << 6);
+		test_stops(0, 1 << 2 | 1 << 3 | 1 << 5);
+		test_stops(2, 1 << 1);
+		test_stops(3, 1 << 0 | 1 << 2);
+		test_other_stops();
+	}
 	return check_end();
 }
