@@ -46,6 +46,16 @@ static void write_death(const ob_death *d, ob_json *j)
 	ob_json_close(j);
 }
 
+static void write_script_error(const ob_script_error *e, ob_json *j)
+{
+	ob_json_open(j, NULL);
+	ob_json_count(j, "step", e->step);
+	ob_json_count(j, "object", e->object);
+	ob_json_string(j, "name", e->name);
+	ob_json_string(j, "what", e->text);
+	ob_json_close(j);
+}
+
 void ob_report_write_members(const ob_report *r, ob_json *j)
 {
 	for (int i = 0; i < FIELDS; i++) {
@@ -58,12 +68,18 @@ void ob_report_write_members(const ob_report *r, ob_json *j)
 		else
 			ob_json_number(j, f->key, *(const double *)at);
 	}
-	if (!r->deaths_told)
-		return;
-	ob_json_open_list(j, "death_list");
-	for (uint32_t i = 0; i < r->deaths_told; i++)
-		write_death(&r->death[i], j);
-	ob_json_close_list(j);
+	if (r->deaths_told) {
+		ob_json_open_list(j, "death_list");
+		for (uint32_t i = 0; i < r->deaths_told; i++)
+			write_death(&r->death[i], j);
+		ob_json_close_list(j);
+	}
+	if (r->script_errors_told) {
+		ob_json_open_list(j, "script_errors");
+		for (uint32_t i = 0; i < r->script_errors_told; i++)
+			write_script_error(&r->script_error[i], j);
+		ob_json_close_list(j);
+	}
 }
 
 void ob_report_write_json(const ob_report *r, FILE *f)
@@ -335,6 +351,22 @@ static void print_cost(const ob_report *r, FILE *f)
 	fprintf(f, "  memory       %s\n", ob_quantity_text(&a, (double)r->memory_bytes, "B"));
 }
 
+static void print_scripts(const ob_report *r, FILE *f)
+{
+	enum { SHOWN = 4 };
+	if (r->scripts_stopped + r->scripts_warned == 0)
+		return;
+	fprintf(f, "  scripts      %" PRIu64 " stopped by an error, %" PRIu64 " with something in vain\n",
+		r->scripts_stopped, r->scripts_warned);
+	for (uint32_t i = 0; i < r->script_errors_told && i < SHOWN; i++) {
+		const ob_script_error *e = &r->script_error[i];
+		fprintf(f, "               object %u (%s) in step %" PRIu64 ": %s\n", e->object, e->name, e->step,
+			e->text);
+	}
+	if (r->script_errors_told && r->scripts_stopped > SHOWN)
+		fprintf(f, "               and %" PRIu64 " more\n", r->scripts_stopped - SHOWN);
+}
+
 // Lines of what a run should not have: deaths, injected faults, scripts that stopped, lost events; and of --verify.
 static void print_exceptions(const ob_report *r, FILE *f)
 {
@@ -351,9 +383,7 @@ static void print_exceptions(const ob_report *r, FILE *f)
 		fprintf(f, "  faults       %s%" PRIu64 " injected%s%s%s\n", r->faults_overwritten ? "at least " : "",
 			r->faults, *r->fault_kinds ? ": " : "", r->fault_kinds,
 			r->faults_overwritten ? "; simulators have written over other counters of them" : "");
-	if (r->scripts_stopped + r->scripts_warned > 0)
-		fprintf(f, "  scripts      %" PRIu64 " stopped by an error, %" PRIu64 " with something in vain\n",
-			r->scripts_stopped, r->scripts_warned);
+	print_scripts(r, f);
 	if (r->trace_lost > 0)
 		fprintf(f,
 			"  trace        %" PRIu64 " of %" PRIu64

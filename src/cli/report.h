@@ -49,7 +49,7 @@
 	REAL(host_cpu_s) REAL(renderer_cpu_s) \
 	COUNT(switches) \
 	COUNT(deaths) COUNT(frozen) /* frozen: objects, because of deaths */ \
-	COUNT(scripts_stopped) COUNT(scripts_warned) /* objects at the end: failed; something in vain */ \
+	COUNT(scripts_stopped) COUNT(scripts_warned) /* objects: stopped by an error; at the end, something in vain */ \
 	COUNT(faults) TEXT(fault_kinds, 160) /* injected; "kill 3, exit 1": by kind; "" = none */ \
 	COUNT(faults_overwritten) /* counters of faults that simulators have overwritten: there were more */ \
 	COUNT(worker_memory_bytes) COUNT(memory_bytes) \
@@ -79,6 +79,8 @@ typedef struct ob_report {
 	OB_REPORT_MEMBERS(OB_REPORT_TEXT, OB_REPORT_COUNT, OB_REPORT_REAL)
 	ob_death death[OB_DEATHS_KEPT]; // the last of them, oldest first
 	uint32_t deaths_told; // number of entries in death
+	ob_script_error script_error[OB_SCRIPT_ERRORS_KEPT]; // the first of them, by step and object
+	uint32_t script_errors_told; // number of entries in script_error
 } ob_report;
 
 void ob_report_write_json(const ob_report *r, FILE *f);

@@ -646,9 +646,9 @@ static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 		return ob_fail(
 			e,
 			"--checkpoint: a monolith cannot be resumed, for ODE does not show all that its world holds");
-	if (r->strict && !(r->run.tolerance > 0))
-		return ob_fail(e,
-			       "--strict: this run has no tolerance that it could miss; give it one with --tolerance");
+	if (r->strict && !(r->run.tolerance > 0) && !s->scripts)
+		return ob_fail(e, "--strict: this run has no tolerance that it could miss, and no scripts; give it one "
+				  "with --tolerance");
 	if (r->run.monolith && r->verify)
 		return ob_fail(e, "--verify means nothing to --arch monolith");
 	r->run.verify = r->verify;

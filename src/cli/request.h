@@ -48,7 +48,7 @@ typedef struct ob_run_request {
 	ob_run_settings run; // after ob_request_resolve
 	double tolerance_share; // of the thickness of the thinnest body: the tolerance; 0: it is a length
 	bool explain;
-	bool strict; // a missed tolerance is a failure
+	bool strict; // a missed tolerance is a failure, and so is an error of a script
 	bool verify; // a sample of steps is solved finely besides
 	bool check; // checks the simulators' shared state after each step
 	ob_measure_when measure;

@@ -389,6 +389,7 @@ static void make_report(run *r, const char *outcome, ob_report *p)
 	p->frozen = times.frozen;
 	ob_script_count(ob_host_universe(r->host), &p->scripts_stopped, &p->scripts_warned);
 	p->deaths_told = ob_host_get_deaths(r->host, p->death);
+	p->script_errors_told = ob_host_get_script_errors(r->host, p->script_error);
 	report_free(r, p);
 	const double steps = body_steps(r, first_time(r), false);
 	const double all = body_steps(r, 0, true);
@@ -513,7 +514,7 @@ static int carry_out(run *r)
 		warn_of_unbounded_motion(report);
 		code = OB_EXIT_FAILED;
 	}
-	return code;
+	return r->request.strict && report->scripts_stopped && code == OB_EXIT_OK ? OB_EXIT_FAILED : code;
 }
 
 // Reads the scene of the run, and merges it with the request. NULL and e on failure.

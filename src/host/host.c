@@ -381,6 +381,11 @@ static bool has_task_times(const ob_universe *u)
 	return !ob_universe_contains(u) && !ob_universe_settings(u)->one_per_object;
 }
 
+uint32_t ob_host_get_script_errors(ob_host *h, ob_script_error out[OB_SCRIPT_ERRORS_KEPT])
+{
+	return ob_script_log_first(&h->scripts, out, OB_SCRIPT_ERRORS_KEPT);
+}
+
 void ob_host_get_times(ob_host *h, ob_host_times *out)
 {
 	const ob_latency *steps = ob_step_latency(h->u);
@@ -481,5 +486,6 @@ void ob_host_stop(ob_host *h)
 	pthread_mutex_destroy(&h->failure_lock);
 	pthread_mutex_destroy(&h->interval.lock);
 	free(h->blocks);
+	ob_script_log_finish(&h->scripts);
 	free(h);
 }

@@ -17,6 +17,7 @@
 
 #include "host/death.h"
 #include "host/population.h"
+#include "host/script_log.h"
 #include "host/timeline.h"
 #include "ranks/ranks.h"
 #include "scene/scene.h"
@@ -39,7 +40,7 @@ typedef struct ob_restart_limit {
 	uint32_t deaths;
 	double seconds; // wall
 } ob_restart_limit;
-enum { OB_RESTART_LIMIT_MAX = 10000, OB_DEATHS_KEPT = 16 };
+enum { OB_RESTART_LIMIT_MAX = 10000, OB_DEATHS_KEPT = 16, OB_SCRIPT_ERRORS_KEPT = 16 };
 
 typedef struct ob_host_config {
 	const char *name; // of the universe; NULL = obsim-<pid>
@@ -118,6 +119,8 @@ const ob_roster *ob_host_roster(const ob_host *h);
 void ob_host_get_times(ob_host *h, ob_host_times *out);
 // Copies the last deaths, oldest first, OB_DEATHS_KEPT of them at most; returns their number.
 uint32_t ob_host_get_deaths(ob_host *h, ob_death out[OB_DEATHS_KEPT]);
+// Copies the first errors that have stopped scripts, OB_SCRIPT_ERRORS_KEPT of them at most; returns their number. Paused.
+uint32_t ob_host_get_script_errors(ob_host *h, ob_script_error out[OB_SCRIPT_ERRORS_KEPT]);
 // Requests, carried out at the next step boundary. The id of an added object appears in the roster. Any thread. false:
 // no memory, or, for add, an invalid definition, explained by e. remove: nothing happens if another generation has the
 // id by then.

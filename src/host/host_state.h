@@ -15,8 +15,6 @@
 #include "host/spawn.h"
 #include "table/checkpoint.h"
 
-enum { OB_SCRIPTS_LOGGED = 20 }; // errors of scripts that are logged one by one
-
 // A run interval: from one opening of the gate to the next pause. Host and supervisor may both make it end early.
 typedef struct ob_interval {
 	pthread_mutex_t lock;
@@ -81,11 +79,7 @@ struct ob_host {
 
 	ob_restart_state restart;
 	ob_interval interval;
-	struct {
-		uint32_t failed, logged, more; // failed: at the last check; more: not logged
-		uint64_t who[OB_SCRIPTS_LOGGED]; // generation << 32 | id
-		uint64_t warned; // bit i: script i was warned of
-	} scripts; // scripts that errors have stopped, or that have no effect
+	ob_script_log scripts;
 	uint64_t target; // the caller's
 	uint64_t free_end; // last step of a free run
 	uint64_t free_window; // steps that simulators may be ahead of the common time
@@ -116,8 +110,6 @@ struct ob_host {
 void ob_host_set_failure(ob_host *h, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // Orders the workers to leave. Any thread.
 void ob_host_halt(ob_host *h);
-// Warns of scripts that were stopped since the last call. Paused.
-void ob_host_log_scripts(ob_host *h);
 // Makes the running interval end at the next step boundary. Any thread.
 void ob_host_pause_early(ob_host *h);
 

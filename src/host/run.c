@@ -7,7 +7,6 @@
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/log.h"
-#include "base/utf8.h"
 #include "free/free.h"
 #include "host/free_run.h"
 #include "host/host_state.h"
@@ -34,11 +33,12 @@ static void begin_interval(ob_host *h)
 {
 	ob_interval *interval = &h->interval;
 	uint64_t step = ob_step_count(h->u);
+	ob_script_log_look(&h->scripts, h->u); // before their objects may go
 	if (!ob_host_free_is_ahead(h))
 		ob_population_update(h->population, step, h->requests);
 	ob_restart_checkpoint(h, ob_restart_freeze(h));
 	ob_sim_pause_after_scripts(h->u, ob_restart_is_due_after_scripts(h));
-	ob_host_log_scripts(h);
+	ob_script_log_look(&h->scripts, h->u);
 	if (is_called(h) && step < h->target && !ob_population_is_behind(h->population))
 		h->target = step;
 	if (h->started && step >= h->target)
@@ -154,58 +154,6 @@ void ob_host_finish(ob_host *h)
 void ob_host_want_contacts(ob_host *h, uint64_t step)
 {
 	ob_contacts_want(h->u, step);
-}
-
-// Warns once of each script that does something without effect.
-static void log_warning(ob_host *h, const ob_script_turn *turn, const char *warning)
-{
-	const uint64_t bit = (uint64_t)1 << (turn->script - 1) % OB_SCRIPTS_MAX;
-	if (!(h->scripts.warned & bit))
-		ob_log_warn("the script of object %u (%.*s): %s", turn->object, OB_NAME_MAX,
-			    ob_passport_of(h->u, turn->object)->name, warning);
-	h->scripts.warned |= bit;
-}
-
-// Warns once of each object whose script an error has stopped, across restarts.
-static void log_script(ob_host *h, uint32_t cell)
-{
-	const ob_step_data *data = ob_universe_step_data(h->u);
-	const ob_script_turn *turn = &data->script_turn[cell];
-	char error[OB_SCRIPT_ERROR_BYTES + 1] = "";
-	memcpy(error, data->script_cell[cell].error, OB_SCRIPT_ERROR_BYTES);
-	ob_utf8_make_plain(error);
-	if (!(turn->flags & OB_SCRIPT_STOPPED)) {
-		log_warning(h, turn, error);
-		return;
-	}
-	const uint64_t who = (uint64_t)turn->generation << 32 | turn->object;
-	for (uint32_t i = 0; i < h->scripts.logged; i++)
-		if (h->scripts.who[i] == who)
-			return;
-	if (h->scripts.logged < OB_SCRIPTS_LOGGED)
-		h->scripts.who[h->scripts.logged++] = who;
-	else if (h->scripts.more++ > 0)
-		return;
-	if (h->scripts.more)
-		ob_log_warn("more scripts were stopped: the report has their number");
-	else
-		ob_log_warn("the script of object %u (%.*s) was stopped at %g s: %s", turn->object, OB_NAME_MAX,
-			    ob_passport_of(h->u, turn->object)->name,
-			    data->script_cell[cell].failed_step * ob_universe_settings(h->u)->step_length, error);
-}
-
-void ob_host_log_scripts(ob_host *h)
-{
-	const ob_step_data *data = ob_universe_step_data(h->u);
-	const ob_script_counts *count = data->script_counts;
-	if (!count || count->failed == h->scripts.failed)
-		return;
-	h->scripts.failed = count->failed;
-	for (uint32_t i = 0; i < count->cells && i < data->script_cells; i++)
-		if (data->script_turn[i].script &&
-		    data->script_turn[i].flags & (OB_SCRIPT_STOPPED | OB_SCRIPT_WARNED) &&
-		    data->script_turn[i].object < data->objects_max)
-			log_script(h, i);
 }
 
 // A gate that was stopped looks like a pause: the step then falls short of the interval's end.

@@ -40,4 +40,5 @@ void ob_script_request_refuse(ob_universe *u, uint32_t cell, uint32_t line, cons
 	snprintf(c->error, sizeof c->error, "%.47s:%u: %.130s",
 		 script < data->script_text->scripts ? data->script_text->text[script].name : "?", line, why);
 	data->script_counts->failed++;
+	data->script_counts->stopped++;
 }

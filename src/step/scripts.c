@@ -251,6 +251,7 @@ bool ob_scripts_carry_out(ob_sim *s)
 		if (c->asks & OB_SCRIPT_ASKS_POST)
 			other |= post_all(s, turn, c);
 		count->failed += (c->asks & OB_SCRIPT_ASKS_ERROR) != 0;
+		count->stopped += c->asks & OB_SCRIPT_ASKS_ERROR && turn->flags & OB_SCRIPT_STOPPED;
 		c->asks = 0;
 	}
 	return other;

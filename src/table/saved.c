@@ -361,6 +361,7 @@ static bool load_scripts(ob_universe *u, const ob_saved_universe *s)
 		data->script_cell[i] = s->script_cell[i];
 		data->script_of[turn->object] = i + 1;
 		data->script_counts->failed += (turn->flags & (OB_SCRIPT_STOPPED | OB_SCRIPT_WARNED)) != 0;
+		data->script_counts->stopped += turn->flags & OB_SCRIPT_STOPPED && *data->script_cell[i].error;
 	}
 	if (data->script_cells)
 		data->script_counts->cells = s->script_cells;

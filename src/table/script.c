@@ -48,8 +48,11 @@ void ob_script_free_cell(ob_universe *u, uint32_t id)
 void ob_script_stop(ob_universe *u, uint32_t id)
 {
 	ob_step_data *data = &u->step_data;
-	if (ob_script_turn_of(u, id))
-		data->script_turn[data->script_of[id] - 1].flags |= OB_SCRIPT_STOPPED;
+	const ob_script_turn *turn = ob_script_turn_of(u, id);
+	if (!turn || turn->flags & OB_SCRIPT_STOPPED)
+		return;
+	data->script_turn[data->script_of[id] - 1].flags |= OB_SCRIPT_STOPPED;
+	*data->script_cell[data->script_of[id] - 1].error = 0;
 }
 
 const ob_script_turn *ob_script_turn_of(const ob_universe *u, uint32_t id)
@@ -64,13 +67,11 @@ const ob_script_turn *ob_script_turn_of(const ob_universe *u, uint32_t id)
 void ob_script_count(const ob_universe *u, uint64_t *stopped, uint64_t *warned)
 {
 	const ob_step_data *data = &u->step_data;
-	*stopped = *warned = 0;
+	*stopped = data->script_counts ? data->script_counts->stopped : 0;
+	*warned = 0;
 	for (uint32_t i = 0; i < data->script_cells; i++) {
 		const ob_script_turn *t = &data->script_turn[i];
-		if (t->script && t->flags & OB_SCRIPT_STOPPED)
-			++*stopped;
-		else if (t->script && t->flags & OB_SCRIPT_WARNED)
-			++*warned;
+		*warned += t->script && (t->flags & (OB_SCRIPT_STOPPED | OB_SCRIPT_WARNED)) == OB_SCRIPT_WARNED;
 	}
 }
 

@@ -134,7 +134,7 @@ typedef struct ob_script_counts {
 	uint32_t failed; // objects whose script was stopped by an error, and those whose script is warned of
 	uint32_t lost; // messages that found their addressee's inbox full
 	uint32_t pause_for; // 1 + the step (from 0) before which the run pauses once scripts have run; 0: none
-	uint32_t zero;
+	uint32_t stopped; // objects whose script an error has stopped so far
 	uint64_t calls; // of objects' scripts
 } ob_script_counts;
 

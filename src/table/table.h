@@ -122,7 +122,7 @@ bool ob_may_touch(const ob_universe *u, uint32_t a, uint32_t b);
 bool ob_sensor_finds(const ob_passport *sensor, const ob_passport *p);
 // Cell of an object; NULL: it has no script.
 const ob_script_turn *ob_script_turn_of(const ob_universe *u, uint32_t id);
-// Counts objects whose script an error has stopped; and those whose script goes on, but is warned of. Paused.
+// Counts objects whose script an error has stopped, also those that have gone; and those whose script goes on, but is warned of. Paused.
 void ob_script_count(const ob_universe *u, uint64_t *stopped, uint64_t *warned);
 // Reason for which pages of the universe may be missing; NULL: none.
 const char *ob_universe_lost(const ob_universe *u);

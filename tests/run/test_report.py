@@ -74,6 +74,25 @@ class Report(program.Case):
 		self.assertIn(" kept, ", done.stdout)
 		self.refuse("run", program.scene("stack"), "--substeps", "4", "--strict", saying="no tolerance")
 
+	def test_script_errors(self):
+		"""A script that fails is named with its line and its step, also when its object has gone, and fails a strict run."""
+		with open(self.path("door.lua"), "w") as f:
+			f.write("""
+scene { duration = .5 }
+script("door", "function on_step()\\n if time() > .2 and self:id() > 0 then self.hinge.x = 1 end end")
+for i = 1, 3 do sphere { radius = .1, at = { i, 0, 9 }, script = "door", dies = i == 3 and .3 or nil } end
+""")
+		for words in [], ["--isolation", "process", "--workers", "1"], ["--isolation", "process", "--harden"], ["--arch", "monolith"]:
+			for strict, code in ([], 0), (["--strict"], 1):
+				done = program.call("run", self.path("door.lua"), *words, *strict, "--json", self.path("r"))
+				self.assertEqual(done.returncode, code, done.stderr)
+				with open(self.path("r")) as f:
+					report = json.load(f)
+				self.assertEqual((report["scripts_stopped"], [(e["object"], e["step"]) for e in report["script_errors"]]), (2, [(1, 14), (2, 14)]))
+				self.assertTrue(all(e["what"].startswith("door:2: ") for e in report["script_errors"]))
+				self.assertIn("  scripts      2 stopped by an error, 0 with something in vain\n", done.stdout)
+				self.assertRegex(done.stdout, r"(?m)^ +object \d \(sphere#\d\) in step 14: door:2: ")
+
 	def test_verify(self):
 		"""Errors of a sample of steps: fewer substeps show larger ones, and nothing else changes."""
 		words = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "2", "--measure", "end", "--workers", "1"]

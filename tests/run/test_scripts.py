@@ -357,6 +357,7 @@ sphere { radius = .1, at = { 0, 9, 9 }, script = "crowds" }
 				self.assertEqual((found["scripts_stopped"], found["scripts_warned"]), (41, 20))
 		done = program.call("run", self.path("scene.lua"))
 		self.assertIn("  scripts      41 stopped by an error, 20 with something in vain\n", done.stdout)
+		self.assertRegex(done.stdout, r"(?m)^ +object 1 \(sphere#1\) in step 1: fails:1: attempt to index .*\n( +object .*\n){3} +and 37 more$")
 		self.assertIn("more scripts were stopped: the report has their number", done.stderr)
 		self.write("scene.lua", "sphere { radius = 1 }")
 		self.assertNotIn("  scripts ", program.call("run", self.path("scene.lua")).stdout)

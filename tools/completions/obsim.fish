@@ -104,7 +104,7 @@ complete -c obsim -n $run -l gpu -x -a 'surfaceless 0 1' -d 'which GPU'
 complete -c obsim -n $run -l record -r -F -d 'trajectories as HDF5'
 complete -c obsim -n $run -l replay -r -F -d 'draw what was recorded'
 complete -c obsim -n $run -l series -r -F -d 'figures of each step as CSV'
-complete -c obsim -n $run -l strict -d 'fail where the tolerance is missed'
+complete -c obsim -n $run -l strict -d 'fail where the tolerance is missed, or a script fails'
 complete -c obsim -n $run -l verify -d 'errors of a sample of steps'
 complete -c obsim -n $run -l measure -x -a 'step profile end' -d 'when to measure'
 
