@@ -8,7 +8,6 @@
 #include "solver/joints.h"
 
 static const double sleep_delay = .5, sleep_interval = .5; // s: rest time before the first test; interval of tests
-static const double unbalanced_share = 1e-5; // share of the largest external acceleration that may remain unbalanced
 static const double own_speed = 1e-3; // m/s: speed that may remain after contacts have stopped the bodies
 static const double slack = 1e-5; // m: a smaller gap counts as contact
 static const double converged_share = .01; // share of the bounds above: the solver ends once an iteration changes less
@@ -57,7 +56,7 @@ static bool contacts_stop(ob_solver *s)
 static bool contacts_hold(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
-	const double enough = unbalanced_share * w->max_acceleration * w->h; // m/s
+	const double enough = ob_balanced_change(w, w->h);
 	ob_body_row *v = w->v;
 	w->v = w->drift; // free as scratch memory here
 	memset(w->v, 0, w->rows * sizeof *w->v);

@@ -125,25 +125,25 @@ static double solve_contacts(ob_solver *s, const ob_solver_iteration *iteration,
 
 static void solve_joints(ob_solver *s, double threshold, bool *any);
 
-// Runs iterations on u, over all contacts and joints, until none changes a velocity by more than the wake threshold; without
-// joints conjugate ones. Returns the largest change (m/s) of the last.
+// Runs conjugate iterations on u, over all contacts and joints, until none changes a velocity by more than the wake
+// threshold. Returns the largest change (m/s) of the last.
 static double converge(ob_solver *s, ob_solver_iteration *iteration, uint32_t max_iterations)
 {
 	ob_island_work *w = &s->island;
 	double residual = INFINITY, changed;
 	bool any_active = true;
-	const bool conjugate = !w->joints.count;
-	if (conjugate)
-		ob_conjugate_begin(w);
+	ob_conjugate_begin(w);
+	ob_joints_iterate(w);
 	for (uint32_t k = 0; k < max_iterations && any_active && !ob_budget_spent(s); k++) {
-		if (k && conjugate)
+		if (k) {
 			ob_conjugate_go_on(w);
+			ob_joints_iterate(w);
+		}
 		s->counters.solver_iterations++;
 		s->methods.read(s, w->u, k);
 		for (uint32_t i = 0; i < w->batches; i++)
 			w->batch_due[i] = w->iteration;
-		if (conjugate)
-			ob_conjugate_note(w);
+		ob_conjugate_note(w);
 		residual = solve_contacts(s, iteration, &any_active, &changed);
 		solve_joints(s, iteration->wake_threshold, &any_active);
 		iteration->first = false;
@@ -170,7 +170,7 @@ void ob_solver_converge(ob_solver *s, double enough, uint32_t max_iterations)
 
 // Solves cycles of contacts between bodies at rest, or stacked high. Alternates direct solves with conjugate iterations,
 // more and more of them if a direct solve does not reduce the residual. Gives up for this step if the end is not in
-// sight; where bodies still move, as soon as a direct solve fails.
+// sight; if bodies still move, as soon as a direct solve fails.
 static void settle(ob_solver *s, const ob_solver_iteration *last)
 {
 	ob_solver_iteration iteration = *last;
@@ -278,6 +278,8 @@ void ob_solver_iterate(ob_solver *s)
 	bool any_active = true;
 	double residual = 0, changed;
 	ob_direct_begin_partial(&w->direct);
+	if (w->joints.count && ob_direct_stands(w)) // contacts show by their first change that they are in equilibrium
+		ob_joints_solve(w, w->u);
 	for (uint32_t k = 0; k < max_extra_iterations * run->iterations && any_active && !ob_budget_spent(s); k++) {
 		if (k == run->iterations) {
 			iteration.wake_threshold = extra_iteration_threshold * w->unit.speed / refinement(s);
@@ -304,13 +306,13 @@ void ob_solver_iterate(ob_solver *s)
 		}
 		iteration.first = false;
 		iteration.block_tolerance = block_tolerance * residual;
-		if (!w->joints.count && ob_direct_wanted(s, residual)) {
+		if (ob_direct_wanted(s, residual)) {
 			ob_direct_solve(s);
 			any_active = true;
 			activate_all(w);
 		}
 	}
 	w->direct.used_last = w->direct.solves > 0;
-	if (!w->joints.count && ob_direct_settles(s, residual))
+	if (ob_direct_settles(s, residual))
 		settle(s, &iteration);
 }

@@ -6,6 +6,8 @@
 #include "base/allocate.h"
 #include "elementary/real.h"
 #include "solver/budget.h"
+#include "solver/joint_axis.h"
+#include "solver/joint_rows.h"
 #include "solver/relative_speed.h"
 
 #include "contact/friction.h" // for one number
@@ -176,21 +178,6 @@ static uint32_t sparse_index(const ob_island_work *w, uint32_t row)
 	return w->body[row].inv_mass > 0 ? row - 1 : OB_SPARSE_FIXED;
 }
 
-static void set_inertia(ob_sparse_solver *t, uint32_t body, const ob_body *m)
-{
-	double inertia[6][6] = { { 0 } };
-	for (int i = 0; i < 3; i++) {
-		const double *r = m->r.m[i];
-		inertia[i][i] = m->mass;
-		for (int j = 0; j < 3; j++) {
-			const double *q = m->r.m[j];
-			inertia[3 + i][3 + j] =
-				r[0] * q[0] * m->inertia.x + r[1] * q[1] * m->inertia.y + r[2] * q[2] * m->inertia.z;
-		}
-	}
-	ob_sparse_set_inertia(t, body, inertia);
-}
-
 // Plans the elimination for the contacts. Returns false if it would cost too much.
 static bool plan(ob_island_work *w, const limits *most)
 {
@@ -198,19 +185,25 @@ static bool plan(ob_island_work *w, const limits *most)
 	ob_sparse_begin(&f->sparse, w->bodies);
 	for (uint32_t k = 0; k < f->contacts; k++)
 		ob_sparse_link(&f->sparse, f->contact[k].child - 1, sparse_index(w, f->contact[k].parent));
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		ob_sparse_link(&f->sparse, w->joints.joint[i].child, w->joints.joint[i].parent);
 	return ob_sparse_analyse(&f->sparse, most->products);
 }
 
-// Solves for the rows of the contacts.
+// Solves for the rows of the contacts. Joints hold: their rows do not move.
 static void solve_rows(ob_island_work *w)
 {
 	ob_direct_solver *f = &w->direct;
 	ob_sparse_clear(&f->sparse);
-	for (uint32_t i = 1; i <= w->bodies; i++)
-		set_inertia(&f->sparse, i - 1, &w->body[i]);
+	ob_joints_set_inertias(w, &f->sparse);
 	for (uint32_t k = 0; k < f->contacts; k++) {
 		const ob_direct_contact *c = &f->contact[k];
 		ob_sparse_add_joint(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));
+	}
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		memset(j->rows.y, 0, sizeof j->rows.y);
+		ob_sparse_add_joint(&f->sparse, &j->rows, j->child, j->parent);
 	}
 	ob_sparse_solve(&f->sparse);
 	for (uint32_t k = 0; k < f->contacts; k++) {
@@ -286,6 +279,7 @@ static void project_solution(ob_island_work *w, double alpha)
 	}
 	for (uint32_t i = 0; i < w->batches; i++)
 		ob_batch_apply_impulses(&w->batch[i], f->impulse_change[i], w->delta);
+	ob_joints_follow(w, w->delta);
 }
 
 // Returns the share of the change, at most 1, that minimises the residual energy, slope t + curvature t^2 / 2.
@@ -324,6 +318,8 @@ static bool go_to_aims(ob_island_work *w, const limits *most)
 	for (uint32_t i = 1; i <= w->bodies && !f->gave_up; i++)
 		for (int c = 0; c < 6; c++)
 			w->u[i][c] += t * w->delta[i][c];
+	if (!f->gave_up)
+		ob_joints_add_share(w, t);
 	memset(w->delta, 0, w->rows * sizeof *w->delta);
 	return !f->gave_up;
 }
@@ -345,6 +341,7 @@ static void find_unloaded_velocities(ob_island_work *w)
 	}
 	for (uint32_t i = 0; i < w->batches; i++)
 		ob_batch_apply_impulses(&w->batch[i], f->impulse_change[i], w->delta);
+	ob_joints_follow(w, w->delta);
 	for (uint32_t i = 0; i < w->batches; i++) {
 		ob_batch_row_velocities(&w->batch[i], w->delta, f->unloaded[i]);
 		for (int k = 0; k < OB_ROWS; k++)
@@ -532,12 +529,14 @@ static double fastest_contact(const ob_island_work *w, const ob_body_row *rows, 
 	return most;
 }
 
-// True if contacts close cycles: trees would load one contact with what several carry.
+// True if contacts and joints close cycles: trees would load one contact with what several carry.
 static bool closes_cycles(const ob_island_work *w)
 {
 	uint32_t touching = 0;
 	for (uint32_t i = 0; i < w->contacts; i++)
 		touching += w->contact[i].lane != OB_NO_LANE;
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		touching += w->joints.joint[i].base > 0;
 	return touching > w->bodies;
 }
 
@@ -600,17 +599,27 @@ static bool is_high(ob_solver *s)
 	return false;
 }
 
+bool ob_direct_stands(const ob_island_work *w)
+{
+	double sum;
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		if (w->joints.joint[i].axis && ob_axis_slides(&w->joints.joint[i]))
+			return false;
+	return fastest_contact(w, w->v, &sum) <= standing_speed * w->unit.speed;
+}
+
 static void find_shape(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
 	ob_direct_solver *f = &w->direct;
 	if (f->shape == OB_DIRECT_UNKNOWN) {
-		double sum, speed = fastest_contact(w, w->v, &sum) / w->unit.speed;
-		const bool slow = speed <= standing_speed, cyclic = closes_cycles(w);
-		f->shape = slow && !cyclic                                 ? OB_DIRECT_TREES
-			   : slow && has_come_to_rest(w)                   ? OB_DIRECT_CYCLIC
-			   : cyclic && speed < landing_speed && is_high(s) ? OB_DIRECT_HIGH
-									   : OB_DIRECT_UNFIT;
+		double sum;
+		const bool slow = ob_direct_stands(w), cyclic = closes_cycles(w);
+		f->shape = slow && !cyclic               ? OB_DIRECT_TREES
+			   : slow && has_come_to_rest(w) ? OB_DIRECT_CYCLIC
+			   : cyclic && fastest_contact(w, w->v, &sum) < landing_speed * w->unit.speed && is_high(s)
+				   ? OB_DIRECT_HIGH
+				   : OB_DIRECT_UNFIT;
 	}
 	if (f->shape != OB_DIRECT_UNFIT)
 		reserve(f, w);

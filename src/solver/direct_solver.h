@@ -47,6 +47,8 @@
 void ob_direct_begin(ob_direct_solver *f);
 // Resets it before the iterations of a partial substep.
 void ob_direct_begin_partial(ob_direct_solver *f);
+// True if no bodies slide or fall against each other faster than .02 m/s, and no joint is driven.
+bool ob_direct_stands(const ob_island_work *w);
 // True if a direct solve of trees is worth its cost after an iteration that still changed velocities by "residual"
 // (m/s). Then the caller must make it.
 bool ob_direct_wanted(ob_solver *s, double residual);

@@ -23,10 +23,10 @@ bool ob_equilibrium_confirmed(const ob_island_work *w);
 // partial substep suffices. Several bodies come to rest little by little, and driven surfaces act differently each
 // time: there, the whole step counts.
 bool ob_equilibrium_expected(const ob_island_work *w);
-// True if the island is in equilibrium: its contacts carry the external accelerations and nothing moves, to 1e-7 m/s.
-// So the next step would find the same. The island is not solved until something comes near, even if the run does not
+// True if the island is in equilibrium: its contacts and joints carry the external accelerations and nothing moves, to
+// 1e-7 m/s. So the next step would find the same. The island is not solved until something comes near, even if the run does not
 // put slow islands to sleep.
-bool ob_equilibrium_reached(const ob_island_work *w);
+bool ob_equilibrium_reached(const ob_solver *s);
 // True if a body is steady after a step that has led to an equilibrium.
 bool ob_equilibrium_body_steady(const ob_island_work *w, uint32_t row);
 

@@ -243,6 +243,7 @@ typedef struct ob_held_joint {
 	double error[OB_JOINT_ROWS]; // m, or sine: violation of each row
 	double sum[OB_JOINT_ROWS]; // N s, N m s: impulse of the flight, of its first or second half
 	double guess[OB_JOINT_ROWS]; // the same of the flight that comes
+	double share[OB_JOINT_ROWS]; // N s, N m s: impulses that go with a change by contacts (ob_joints_follow)
 	double target[OB_JOINT_ROWS]; // m/s, rad/s: velocity of each row that the contact solver aims at
 } ob_held_joint;
 
@@ -354,6 +355,13 @@ static inline double ob_coarser(const ob_island_work *w, double usual, double bo
 static inline double ob_coarse_time(const ob_island_work *w)
 {
 	return w->unit.time / w->run_coarseness;
+}
+
+// Returns the largest change of velocity (m/s) in so many seconds that counts as none: forces balance.
+static inline double ob_balanced_change(const ob_island_work *w, double time)
+{
+	const double unbalanced_share = 1e-5; // share of the largest external acceleration
+	return unbalanced_share * w->max_acceleration * time;
 }
 
 static inline ob_vec3 ob_row_linear(const double *row)

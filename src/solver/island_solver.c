@@ -202,9 +202,9 @@ static uint32_t rest_flag(ob_solver *s)
 	if (s->island.torques || ob_norm2(s->island.frame) > 0 ||
 	    ob_surfaces_carry_any(&s->island)) // equilibrium and sleep know of forces alone
 		return 0;
-	if (s->island.joints.count) // their impulses are none of a step before
-		return ob_joints_may_rest(&s->island) && ob_balance_may_sleep(s, rest_time) ? OB_MOTION_ASLEEP : 0;
-	if (ob_equilibrium_reached(&s->island))
+	if (!ob_joints_may_rest(&s->island))
+		return 0;
+	if (ob_equilibrium_reached(s))
 		return s->settings->sleeping ? OB_MOTION_ASLEEP : OB_MOTION_EQUILIBRIUM;
 	return ob_balance_may_sleep(s, rest_time) ? OB_MOTION_ASLEEP : 0;
 }

@@ -93,6 +93,14 @@ static void bounds_at_rest(const ob_held_joint *j, double *low, double *high)
 	bounds_at(&h, place_of(&h, 0), low, high);
 }
 
+bool ob_axis_slides(const ob_held_joint *j)
+{
+	const holders h = holders_of(j->axis);
+	double low, high;
+	bounds_at(&h, j->along.place, &low, &high);
+	return !j->along.engaged && low != 0;
+}
+
 // ---- states
 
 static void engage(ob_held_joint *j, double value, double rate, double time)

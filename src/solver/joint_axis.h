@@ -46,6 +46,8 @@ double ob_axis_armature(const ob_held_joint *j);
 double ob_axis_margin(const ob_held_joint *j, double rate, double force, ob_axis_event *event);
 // True if a motor holds the rate whatever force that takes.
 bool ob_axis_is_driven(const ob_held_joint *j);
+// True if friction or a motor gives all of its force, and holds no rate.
+bool ob_axis_slides(const ob_held_joint *j);
 // Rate (1/s) at which spring and damper may move it.
 double ob_axis_swing(const ob_held_joint *j);
 // True if its force depends on its rate.

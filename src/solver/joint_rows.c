@@ -10,7 +10,7 @@
 #include "solver/joint_load.h"
 #include "solver/six.h"
 
-static const double compliance = 1e-9; // of a row, as a share of its own response
+static const double compliance = 1e-9; // share of a row's own response
 
 // ---- rows
 
@@ -227,29 +227,31 @@ void ob_joint_find_rows(const ob_island_work *w, ob_held_joint *j)
 		j->rows.compliance[j->base + j->along.engaged] += j->along.softness;
 }
 
-static void set_inertia(ob_island_work *w, uint32_t body)
+void ob_joints_set_inertias(const ob_island_work *w, ob_sparse_solver *t)
 {
-	const ob_body *b = &w->body[1 + body];
-	const ob_vec3 k = b->inertia;
-	ob_sparse_block m = { { 0 } };
-	for (int i = 0; i < 3; i++)
-		m[i][i] = b->mass;
-	for (int axis = 0; axis < 3; axis++) {
-		const ob_vec3 n = ob_column(&b->r, axis);
-		const double x[3] = { n.x, n.y, n.z }, moment = axis == 0 ? k.x : axis == 1 ? k.y : k.z;
-		for (int i = 0; i < 3; i++)
-			for (int c = 0; c < 3; c++)
-				m[3 + i][3 + c] += moment * x[i] * x[c];
+	for (uint32_t row = 1; row <= w->bodies; row++) {
+		const ob_body *body = &w->body[row];
+		ob_sparse_block m = { { 0 } };
+		if (!ob_sparse_is_linked(t, row - 1))
+			continue;
+		for (int i = 0; i < 3; i++) {
+			const double *r = body->r.m[i];
+			m[i][i] = body->mass;
+			for (int j = 0; j < 3; j++) {
+				const double *q = body->r.m[j];
+				m[3 + i][3 + j] = r[0] * q[0] * body->inertia.x + r[1] * q[1] * body->inertia.y +
+						  r[2] * q[2] * body->inertia.z;
+			}
+		}
+		ob_sparse_set_inertia(t, row - 1, m);
 	}
-	ob_sparse_set_inertia(&w->joints.sparse, body, m);
 }
 
 void ob_joints_factor(ob_island_work *w)
 {
 	ob_joint_set *set = &w->joints;
 	ob_sparse_clear(&set->sparse);
-	for (uint32_t i = 0; i < w->bodies; i++)
-		set_inertia(w, i);
+	ob_joints_set_inertias(w, &set->sparse);
 	for (uint32_t i = 0; i < set->count; i++) {
 		ob_held_joint *j = &set->joint[i];
 		ob_joint_find_rows(w, j);
@@ -271,14 +273,19 @@ void ob_joints_find_responses(ob_island_work *w)
 	}
 }
 
-double ob_joint_row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_row *rows)
+// Velocity of a row at the velocities in rows; given: m/s, rad/s, of a parent that has no row.
+static double row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_row *rows, const double *given)
 {
-	const double *child = rows[1 + j->child];
-	const double *parent = j->parent == OB_SPARSE_FIXED ? j->end[j->end[0].row != 0].given : rows[1 + j->parent];
+	const double *child = rows[1 + j->child], *parent = j->parent == OB_SPARSE_FIXED ? given : rows[1 + j->parent];
 	double sum = 0;
 	for (int i = 0; i < 6; i++)
 		sum += j->rows.child[r][i] * child[i] + j->rows.parent[r][i] * parent[i];
 	return sum;
+}
+
+double ob_joint_row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_row *rows)
+{
+	return row_velocity(j, r, rows, j->end[j->end[0].row != 0].given);
 }
 
 void ob_joint_respond(const ob_held_joint *j, const double *impulse, ob_body_row *rows)
@@ -334,6 +341,43 @@ void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
 			for (uint32_t r = 0; r < j->rows.rows; r++)
 				j->sum[r] += j->rows.x[r];
 		}
+	}
+}
+
+void ob_joints_follow(ob_island_work *w, ob_body_row *change)
+{
+	enum { PASSES = 2 };
+	static const ob_body_row none;
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		memset(w->joints.joint[i].share, 0, sizeof w->joints.joint[i].share);
+	for (int pass = 0; w->joints.count && pass < PASSES; pass++) {
+		for (uint32_t i = 0; i < w->joints.count; i++) {
+			ob_held_joint *j = &w->joints.joint[i];
+			const uint32_t soft = j->base + j->along.engaged;
+			for (uint32_t r = 0; r < j->rows.rows; r++)
+				j->rows.y[r] = -row_velocity(j, r, change, none);
+			if (j->along.softness != 0)
+				j->rows.y[soft] -= j->along.softness * j->share[soft];
+		}
+		ob_joints_find_impulses(w);
+		for (uint32_t i = 0; i < w->joints.count; i++) {
+			ob_held_joint *j = &w->joints.joint[i];
+			ob_joint_respond(j, j->rows.x, change);
+			for (uint32_t r = 0; r < j->rows.rows; r++)
+				j->share[r] += j->rows.x[r];
+		}
+	}
+}
+
+void ob_joints_add_share(ob_island_work *w, double part)
+{
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		ob_held_joint *j = &w->joints.joint[i];
+		for (uint32_t r = 0; r < j->rows.rows; r++) {
+			j->share[r] *= part;
+			j->sum[r] += j->share[r];
+		}
+		ob_joint_note(j, j->share);
 	}
 }
 

@@ -31,6 +31,8 @@ void ob_joints_load(ob_solver *s, const ob_island_input *in);
 void ob_joints_find(ob_island_work *w, double time);
 // Finds the rows of a joint, whose ends have been found.
 void ob_joint_find_rows(const ob_island_work *w, ob_held_joint *j);
+// Sets the inertias of the bodies that an elimination links.
+void ob_joints_set_inertias(const ob_island_work *w, ob_sparse_solver *t);
 // Finds the rows of all joints, whose ends have been found, and factors their equations.
 void ob_joints_factor(ob_island_work *w);
 // Finds the response of each axis, with all joints, by the factors.
@@ -44,6 +46,10 @@ void ob_joint_respond(const ob_held_joint *j, const double *impulse, ob_body_row
 void ob_joints_find_impulses(ob_island_work *w);
 // Changes velocities such that each row moves as its target says. Adds the impulses to the joints' sums.
 void ob_joints_solve(ob_island_work *w, ob_body_row *rows);
+// Adds the joints' share to a change of velocities that contacts make, such that no row moves: the impulses are "share".
+void ob_joints_follow(ob_island_work *w, ob_body_row *change);
+// Adds so much of this share to the joints' sums, after the velocities have changed by as much.
+void ob_joints_add_share(ob_island_work *w, double part);
 // Solves the joints on the velocities u that contacts have left; rows of axes change until they are within their bounds.
 void ob_joints_iterate(ob_island_work *w);
 // Rate (m/s, rad/s) of a joint's axis at the velocities in rows; gives it an impulse (N s, N m s).

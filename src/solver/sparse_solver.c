@@ -44,8 +44,10 @@ static void add_edge(ob_sparse_solver *t, uint32_t from, uint32_t to)
 
 void ob_sparse_link(ob_sparse_solver *t, uint32_t child, uint32_t parent)
 {
+	t->node[child].linked = true;
 	if (parent == OB_SPARSE_FIXED)
 		return;
+	t->node[parent].linked = true;
 	const bool fewer = t->node[child].degree < t->node[parent].degree;
 	const uint32_t from = fewer ? child : parent, to = fewer ? parent : child;
 	for (uint32_t e = t->node[from].edges; e != NONE; e = t->edge[e].next)
@@ -146,7 +148,14 @@ bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most)
 	for (uint32_t i = 0; i < t->bodies; i++)
 		t->least[i] = NONE;
 	for (uint32_t i = t->bodies; i-- > 0;)
-		enter_degree(t, i);
+		if (t->node[i].linked)
+			enter_degree(t, i);
+	t->unlinked = 0;
+	for (uint32_t i = t->bodies; i-- > 0;)
+		if (!t->node[i].linked) {
+			enter_degree(t, i);
+			t->unlinked++;
+		}
 	for (uint32_t k = 0; k < t->bodies; k++) {
 		while (t->least[degree] == NONE)
 			degree++;
@@ -336,7 +345,7 @@ static void back_substitute(ob_sparse_solver *t, uint32_t k)
 
 void ob_sparse_factor(ob_sparse_solver *t)
 {
-	for (uint32_t k = 0; k < t->bodies; k++)
+	for (uint32_t k = t->unlinked; k < t->bodies; k++)
 		eliminate_body(t, k);
 }
 
@@ -351,16 +360,16 @@ static void forward_substitute(ob_sparse_solver *t, uint32_t k)
 
 void ob_sparse_substitute(ob_sparse_solver *t)
 {
-	for (uint32_t k = 0; k < t->bodies; k++)
+	for (uint32_t k = t->unlinked; k < t->bodies; k++)
 		forward_substitute(t, k);
-	for (uint32_t k = t->bodies; k-- > 0;)
+	for (uint32_t k = t->bodies; k-- > t->unlinked;)
 		back_substitute(t, k);
 }
 
 void ob_sparse_solve(ob_sparse_solver *t)
 {
 	ob_sparse_factor(t);
-	for (uint32_t k = t->bodies; k-- > 0;)
+	for (uint32_t k = t->bodies; k-- > t->unlinked;)
 		back_substitute(t, k);
 }
 
@@ -436,7 +445,7 @@ void ob_sparse_invert(ob_sparse_solver *t)
 		t->between = ob_reallocate(t->between, t->between_max * sizeof *t->between);
 		t->shares = ob_reallocate(t->shares, t->between_max * sizeof *t->shares);
 	}
-	for (uint32_t k = t->bodies; k-- > 0;)
+	for (uint32_t k = t->bodies; k-- > t->unlinked;)
 		invert_body(t, k);
 }
 

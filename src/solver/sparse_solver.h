@@ -46,6 +46,7 @@ typedef struct ob_sparse_node {
 	uint32_t next, previous; // bodies of the same degree
 	uint32_t place; // in the order of elimination; UINT32_MAX: not eliminated yet
 	uint32_t mark; // scratch
+	bool linked; // a joint has it
 } ob_sparse_node;
 
 // Edge from a body to a neighbour, which may have been eliminated since.
@@ -56,6 +57,7 @@ typedef struct ob_sparse_edge {
 // Memory grown as needed, never shrunk. Bodies have numbers from 0.
 typedef struct ob_sparse_solver {
 	uint32_t bodies, bodies_max;
+	uint32_t unlinked; // bodies without a joint: first in the order, and left alone
 	ob_sparse_node *node; // [body]
 	uint32_t *least; // [degree]: first body of this degree
 	uint32_t edges, edges_max;
@@ -74,10 +76,15 @@ typedef struct ob_sparse_solver {
 } ob_sparse_solver;
 
 void ob_sparse_begin(ob_sparse_solver *t, uint32_t bodies);
+// Names a joint. Bodies that no joint links take no part.
 void ob_sparse_link(ob_sparse_solver *t, uint32_t child, uint32_t parent);
 // Plans the elimination, after the links. false: the solve would cost more than "most" block products for each body.
 bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most);
-// Sets the body's inertia.
+// True if a joint links the body: it needs an inertia.
+static inline bool ob_sparse_is_linked(const ob_sparse_solver *t, uint32_t body)
+{
+	return t->node[body].linked;
+}
 void ob_sparse_set_inertia(ob_sparse_solver *t, uint32_t body, double (*m)[6]);
 void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent);
 void ob_sparse_solve(ob_sparse_solver *t);

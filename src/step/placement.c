@@ -220,7 +220,7 @@ bool ob_sim_wake_joined(ob_universe *u, const ob_joint_passport *j)
 	for (int side = 0; side < 2; side++) {
 		const uint32_t id = j->object[side];
 		if (id >= ob_universe_step_data(u)->objects_max ||
-		    ob_universe_step_data(u)->schedule[id].state != OB_SCHEDULE_ASLEEP)
+		    ob_universe_step_data(u)->schedule[id].state < OB_SCHEDULE_ASLEEP)
 			continue;
 		wake_object(u, id);
 		any = true;

@@ -105,6 +105,7 @@ static void test_said_twice(ob_sparse_solver *t)
 	ob_joint j = { .rows = 2, .compliance = { 1e-7, 1e-7 }, .y = { 3, 3 } };
 	j.child[0][2] = j.child[1][2] = 1;
 	ob_sparse_begin(t, 1);
+	ob_sparse_link(t, 0, OB_SPARSE_FIXED);
 	CHECK(ob_sparse_analyse(t, 0));
 	ob_sparse_set_inertia(t, 0, inertia);
 	ob_sparse_add_joint(t, &j, 0, OB_SPARSE_FIXED);

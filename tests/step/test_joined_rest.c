@@ -5,6 +5,8 @@
 #include "elementary/elementary.h"
 #include "little_universe.h"
 
+static const ob_quat z_axis = { 1, 0, 0, 0 }, y_axis = { M_SQRT1_2, -M_SQRT1_2, 0, 0 };
+
 static little_scene *sleepy_scene(void)
 {
 	little_scene *s = little_scene_new();
@@ -35,7 +37,152 @@ static ob_joint_axis *drive(ob_joint_passport *j)
 	return &j->axis;
 }
 
-static const ob_quat z_axis = { 1, 0, 0, 0 }, y_axis = { M_SQRT1_2, -M_SQRT1_2, 0, 0 };
+// Largest speed (m/s) of a centre or an edge half a metre from it.
+static double fastest(const little_universe *l)
+{
+	double most = 0;
+	for (uint32_t i = 0; i < l->now.count; i++) {
+		const ob_state x = little_state(l, i);
+		if (l->now.passport[i].mass > 0)
+			most = fmax(most, ob_norm(x.v) + .5 * ob_norm(x.w));
+	}
+	return most;
+}
+
+// Vertical impulse (N s) that contacts with the object gave to what lies on it in the last substep.
+static double carried_by(const little_universe *l, uint32_t id)
+{
+	enum { MOST_POINTS = 4096 };
+	static ob_contact_point point[MOST_POINTS];
+	const size_t n = ob_universe_get_contacts(l->u, point, MOST_POINTS);
+	double sum = 0;
+	for (size_t i = 0; i < n; i++)
+		if (point[i].a == id || point[i].b == id)
+			sum += point[i].impulse * fabs(point[i].normal.z);
+	return sum;
+}
+
+static double weight_of(const little_scene *s)
+{
+	double mass = 0;
+	for (uint32_t i = 0; i < s->world.objects; i++)
+		mass += s->world.passport[i].mass;
+	return mass * s->world.gravity.z;
+}
+
+// ---- what stands
+
+typedef enum structure { FLAG_LIES, FLAG_IS_FIXED, LEAF_HANGS, TABLE, TABLES, CHAIN, STRUCTURES } structure;
+
+static const char *const structure_names[STRUCTURES] = { "flag that lies", "flag that is fixed", "leaf that hangs",
+							 "table",          "two tables",         "chain" };
+
+static void add_table(ob_world *w, double z)
+{
+	const uint32_t top = w->objects;
+	ob_world_box(w, 10, ob_v3(.6, .4, .02), ob_v3(0, 0, z + .72));
+	for (int k = 0; k < 4; k++) {
+		const ob_vec3 p = ob_v3(k & 1 ? .5 : -.5, k & 2 ? .3 : -.3, z + .35);
+		ob_world_box(w, 1.5, ob_v3(.03, .03, .35), p);
+		ob_world_join(w, OB_JOINT_FIXED, top + 1 + k, top, (ob_pose){ { p.x, p.y, z + .7 }, z_axis });
+	}
+}
+
+static void build(ob_world *w, structure what, int n)
+{
+	if (what <= LEAF_HANGS) {
+		const uint32_t flag = w->objects + (uint32_t)n, top = flag - 1;
+		ob_world_stack(w, n, ob_v3(0, 0, 0), 7);
+		if (what == LEAF_HANGS) {
+			ob_world_box(w, 1, ob_v3(.05, .05, .2), ob_v3(.6, 0, n - .5));
+			ob_world_join(w, OB_JOINT_HINGE, flag, top, (ob_pose){ { .6, 0, n - .3 }, y_axis });
+			return;
+		}
+		ob_world_box(w, 1, ob_v3(.05, .05, .05), ob_v3(0, 0, n + .05));
+		if (what == FLAG_IS_FIXED)
+			ob_world_join(w, OB_JOINT_FIXED, flag, top, (ob_pose){ { 0, 0, n }, z_axis });
+		return;
+	}
+	for (int k = 0; k < n; k++) {
+		if (what != CHAIN) {
+			add_table(w, .74 * k);
+			continue;
+		}
+		ob_world_box(w, .5, ob_v3(.1, .05, .05), ob_v3(.25 * k, 0, .05));
+		if (k)
+			ob_world_join(w, OB_JOINT_BALL, w->objects - 1, w->objects - 2,
+				      (ob_pose){ { .25 * k - .125, 0, .05 }, z_axis });
+	}
+}
+
+// Structures with joints stand as those without: still, in equilibrium or asleep, and the ground carries their weight.
+static void test_stands(structure what, int n, bool sleeping)
+{
+	little_scene *s = sleepy_scene();
+	little_universe l;
+	s->run.sleeping = sleeping;
+	build(&s->world, what, n);
+	const uint32_t ground = s->world.objects;
+	ob_world_ground(&s->world);
+	ob_world_material(&s->world, .5, 0);
+	little_open(&l, s);
+	little_run(&l, 0);
+	const double energy = little_energy(&l);
+	little_run_to(&l, 2);
+	const double speed = fastest(&l), share = carried_by(&l, ground) / (fabs(weight_of(s)) * s->run.step_length),
+		     carried = share * (share > .5 ? 1 : s->run.substeps) - 1; // equilibrium takes one substep
+	double aside = 0;
+	bool rest = true;
+	for (uint32_t i = 0; i < ground; i++) {
+		const ob_vec3 way = ob_sub(little_state(&l, i).pose.p, s->world.state[i].pose.p);
+		aside = fmax(aside, hypot(way.x, way.y));
+		rest &= l.now.motion[i].flags & OB_MOTION_RESTS ? true : false;
+	}
+	printf("%s, %d: %.3g m/s, %.3g m aside, weight off by %.3g\n", structure_names[what], n, speed, aside, carried);
+	CHECK(rest);
+	CHECK(speed <= 1e-6);
+	CHECK(aside <= 1e-4);
+	CHECK(fabs(carried) <= 1e-6);
+	CHECK(little_energy(&l) <= energy * (1 + 1e-9));
+	finish(&l, s);
+}
+
+// A joint whose other end goes, or whose motor has another target, ends the equilibrium of what it held.
+static void test_equilibrium_ends(void)
+{
+	little_scene *s = sleepy_scene();
+	little_universe l;
+	s->run.sleeping = false;
+	ob_world_box(&s->world, 0, ob_v3(.1, .1, .1), ob_v3(0, 0, 2)); // a frame that is taken away
+	ob_world_box(&s->world, 2, ob_v3(.5, .05, .05), ob_v3(.7, 0, 2));
+	ob_world_join(&s->world, OB_JOINT_FIXED, 1, 0, (ob_pose){ { .1, 0, 2 }, z_axis });
+	little_open(&l, s);
+	little_run_to(&l, 1);
+	CHECK(l.now.motion[1].flags & OB_MOTION_EQUILIBRIUM);
+	little_take_away(&l, 0);
+	little_run(&l, 30);
+	CHECK_NEAR(little_state(&l, 1).pose.p.z, 2 - .5 * 9.81 * .25, 1e-6);
+	finish(&l, s);
+}
+
+// A pendulum that turns back, or hardly swings, is in no equilibrium.
+static void test_swings(double angle)
+{
+	little_scene *s = sleepy_scene();
+	little_universe l;
+	s->run.sleeping = false;
+	ob_world_sphere(&s->world, 1, .1, ob_v3(sin(angle), 0, 3 - cos(angle)));
+	ob_world_join(&s->world, OB_JOINT_HINGE, 0, OB_JOINT_WORLD, (ob_pose){ { 0, 0, 3 }, y_axis });
+	little_open(&l, s);
+	double least = 1;
+	for (double t = 0; t < 20; t += .1) {
+		little_run_to(&l, t);
+		CHECK(!(l.now.motion[0].flags & OB_MOTION_RESTS));
+		least = fmin(least, little_state(&l, 0).pose.p.x);
+	}
+	CHECK(least < -.9 * sin(angle));
+	finish(&l, s);
+}
 
 // ---- a ragdoll
 
@@ -164,6 +311,18 @@ static void test_carried(void)
 
 int main(void)
 {
+	static const int heights[] = { 5, 20, 50, 60 };
+	for (size_t i = 0; i < sizeof heights / sizeof *heights; i++)
+		for (structure what = FLAG_LIES; what <= LEAF_HANGS; what++)
+			test_stands(what, heights[i], i % 2);
+	for (int sleeping = 0; sleeping < 2; sleeping++) {
+		test_stands(TABLE, 1, sleeping);
+		test_stands(TABLES, 2, sleeping);
+		test_stands(CHAIN, 12, sleeping);
+	}
+	test_equilibrium_ends();
+	test_swings(1e-4);
+	test_swings(.01);
 	test_ragdoll(.8, .8);
 	test_ragdoll(.8, 1.2);
 	test_ragdoll(2.2, 2.8);
