@@ -181,6 +181,7 @@ bool ob_ledger_look(ob_free_sim *s, const ob_free_scratch *x, const ob_free_neig
 	seen->step = head.step;
 	seen->torque = ob_madd(ob_scale(part(theirs->rate, TWIST), -1), seen->share, part(head.torque, 0));
 	seen->now = ob_motion_at(&seen->motion, p->inertia, s->time);
+	seen->mails = own != NULL;
 	if (!own)
 		return true;
 	double way[12];

@@ -42,6 +42,7 @@ typedef struct ob_free_seen {
 	// With a ledger, of a partner with a higher id: its account, if known, and the torque on it by others (N m).
 	ob_account account;
 	bool known;
+	bool mails; // there is an account with it
 	ob_vec3 torque;
 	double step; // s, as its ledger's
 	double share; // the island has so much of its mass: it is shared among all that solve its contacts

@@ -131,16 +131,19 @@ static bool read_neighbour(ob_free_sim *s, ob_free_scratch *x, const ob_free_nei
 		return true;
 	}
 	const double asked = s->time - x->free->delay;
-	out->version = has_ledger(x) ? ob_ledger_look(s, x, n, out)
-				     : ob_free_schedule_read(x->schedule, x->u, n->id, asked, &out->motion,
-							     x->free->delay > 0 ? NULL : &next);
+	if (has_ledger(x) && !ob_ledger_look(s, x, n, out))
+		return false;
+	// one that is ahead and has no mail, as before the two were neighbours, may have hit another since
+	if (!has_ledger(x) || (!out->mails && out->motion.t0 > s->time)) {
+		out->version = ob_free_schedule_read(x->schedule, x->u, n->id, asked, &out->motion,
+						     x->free->delay > 0 ? NULL : &next);
+		out->now = ob_free_state_at(&out->motion, &next, n->passport.inertia, s->time);
+	}
 	if (!out->version)
 		return false;
 	// a flight is as new as the time that its simulator has reached
 	const bool flies = out->motion.flags & OB_MOTION_FREE;
 	count_reading(s, asked, ob_max(out->motion.t0, flies ? ob_min(asked, ob_free_time(x->u, n->id)) : 0));
-	if (!has_ledger(x))
-		out->now = ob_free_state_at(&out->motion, &next, n->passport.inertia, s->time);
 	return true;
 }
 
