@@ -86,7 +86,7 @@ DUTIES = [
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
      r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|paper/viewer|ranks/mpi|serve/server)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
-     r'src/(host/(spawn_\w+|fork_server)|render/sink_video|experiment/process|ranks/courier|lab/attempt|paper/attempt|record/recording|import/import|base/part)\.c$', True),
+     r'src/(host/(spawn_\w+|fork_server|foreign)|render/sink_video|experiment/process|ranks/courier|lab/attempt|paper/attempt|record/recording|import/import|base/part)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),
 ]
 

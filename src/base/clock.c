@@ -58,3 +58,23 @@ double ob_hang_clock_tick(ob_hang_clock *c)
 	c->waited += past < most ? past : most;
 	return c->waited;
 }
+
+ob_hang_count ob_hang_count_start(uint64_t cpu_ns)
+{
+	return (ob_hang_count){ .clock = ob_hang_clock_start(), .cpu_ns = cpu_ns };
+}
+
+bool ob_hang_count_is_over(ob_hang_count *c, uint64_t cpu_ns, bool denied, double patience)
+{
+	enum { MOST_FACTOR = 10 };
+	static const double busy = .02; // of a core: below that nothing computes
+	const double waited = ob_hang_clock_tick(&c->clock), past = waited - c->looked;
+	const double computed = c->cpu_ns && cpu_ns > c->cpu_ns ? 1e-9 * (double)(cpu_ns - c->cpu_ns) : 0;
+	if (computed > busy * past)
+		c->counted += computed < past ? computed : past;
+	else if (!denied)
+		c->counted += past;
+	c->looked = waited;
+	c->cpu_ns = cpu_ns;
+	return c->counted > patience || waited > MOST_FACTOR * patience;
+}

@@ -302,8 +302,10 @@ static bool read_harden(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	if (r->harden && r->asked.monolith == 1)
 		return ob_fail(e,
 			       "--harden: a monolith is one simulator, which writes all; leave --arch monolith away");
+	if (r->harden && !r->isolation_given)
+		r->isolation = OB_ISOLATION_PROCESS;
 	if (r->harden && r->isolation != OB_ISOLATION_PROCESS)
-		return ob_fail(e, "--harden: threads share all their memory; add --isolation process");
+		return ob_fail(e, "--harden: threads share all their memory; leave --isolation away, or take process");
 	return true;
 }
 
@@ -638,8 +640,6 @@ bool ob_request_check_frames(const ob_frames_request *f, const ob_scene *s, doub
 // Checks the resolved run against the request.
 static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
-	if (!r->isolation_given && ob_scene_has_fmu(s)) // foreign code may end its process
-		r->isolation = OB_ISOLATION_PROCESS;
 	if (r->run.monolith && r->explain)
 		return ob_fail(e, "--explain means nothing to --arch monolith");
 	if (r->run.monolith && r->checkpoint)

@@ -37,7 +37,7 @@ typedef struct ob_run_request {
 	ob_scene_options scene_options;
 	const char *name; // of the universe; NULL = the host's choice
 	ob_isolation isolation;
-	bool isolation_given; // else a scene with FMUs has processes
+	bool isolation_given; // else a hardened run has processes
 	uint32_t workers; // 0 = one per object
 	uint32_t harden; // bits, 1 << ob_harden_measure
 	double duration; // s; 0 = the scene's

@@ -64,8 +64,6 @@ static const char *const fmi3_name[FUNCTIONS] = {
 
 struct ob_fmu {
 	ob_fmu_model model;
-	int file; // the library, in memory; open as long as it is loaded, so that no other has its name
-	void *library;
 	void *function[FUNCTIONS];
 	void *instance; // NULL: none yet, or the last one has failed
 	ob_fmi2_callbacks callbacks;
@@ -102,20 +100,31 @@ static bool load(ob_fmu *f, const unsigned char *bytes, ob_error *e)
 {
 	char path[64];
 	const size_t size = f->model.library_bytes;
-	f->file = memfd_create("fmu", MFD_CLOEXEC);
-	if (f->file < 0 || write(f->file, bytes, size) != (ssize_t)size)
+	const int file = memfd_create("fmu", MFD_CLOEXEC);
+	if (file < 0 || write(file, bytes, size) != (ssize_t)size)
 		return ob_fail(e, "no memory for its library: %s", strerror(errno));
-	snprintf(path, sizeof path, "/proc/self/task/%d/fd/%d", (int)gettid(), f->file);
-	f->library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-	if (!f->library)
+	snprintf(path, sizeof path, "/proc/self/fd/%d", file);
+	void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+	close(file);
+	if (!library)
 		return ob_fail(e, "its library cannot be loaded: %s", dlerror());
 	const char *const *name = f->model.standard == 2 ? fmi2_name : fmi3_name;
 	for (int i = 0; i < FUNCTIONS; i++) {
-		f->function[i] = name[i] ? dlsym(f->library, name[i]) : NULL;
+		f->function[i] = name[i] ? dlsym(library, name[i]) : NULL;
 		if (name[i] && !f->function[i])
 			return ob_fail(e, "its library has no %s", name[i]);
 	}
 	return true;
+}
+
+bool ob_fmu_model_read(const void *model, size_t size, ob_fmu_model *m, ob_error *e)
+{
+	if (size >= sizeof *m)
+		memcpy(m, model, sizeof *m);
+	return (size >= sizeof *m && m->library_bytes == size - sizeof *m && (m->standard == 2 || m->standard == 3) &&
+		m->inputs <= OB_FMU_INPUTS_MAX && m->outputs <= OB_FMU_OUTPUTS_MAX &&
+		memchr(m->token, 0, sizeof m->token)) ||
+	       ob_fail(e, "its data is damaged");
 }
 
 ob_fmu *ob_fmu_open(const void *model, size_t size, ob_error *e)
@@ -125,39 +134,14 @@ ob_fmu *ob_fmu_open(const void *model, size_t size, ob_error *e)
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
-	f->file = -1;
-	if (size >= sizeof f->model)
-		memcpy(&f->model, model, sizeof f->model);
-	const ob_fmu_model *m = &f->model;
-	const bool sense = size >= sizeof *m && m->library_bytes == size - sizeof *m &&
-			   (m->standard == 2 || m->standard == 3) && m->inputs <= OB_FMU_INPUTS_MAX &&
-			   m->outputs <= OB_FMU_OUTPUTS_MAX && memchr(m->token, 0, sizeof m->token);
 	f->callbacks = (ob_fmi2_callbacks){ .logger = log_fmi2, .allocate = calloc, .free = free, .environment = f };
-	if (sense ? load(f, (const unsigned char *)model + sizeof *m, e) : ob_fail(e, "its data is damaged"))
-		return f;
-	ob_fmu_close(f);
-	return NULL;
+	return ob_fmu_model_read(model, size, &f->model, e) &&
+			       load(f, (const unsigned char *)model + sizeof f->model, e)
+		       ? f
+		       : NULL;
 }
 
 #define CALL(f, which, type) ((type *)(f)->function[which])
-
-void ob_fmu_close(ob_fmu *f)
-{
-	if (!f)
-		return;
-	if (f->instance)
-		CALL(f, FREE, ob_fmi_free)(f->instance);
-	if (f->library)
-		dlclose(f->library);
-	if (f->file >= 0)
-		close(f->file);
-	free(f);
-}
-
-const ob_fmu_model *ob_fmu_model_of(const ob_fmu *f)
-{
-	return &f->model;
-}
 
 // ---- steps
 
@@ -246,8 +230,8 @@ static bool take_state(ob_fmu *f, ob_fmu_turn *t, ob_error *e)
 	if (!check(f, CALL(f, GET_STATE, ob_fmi_get_state)(f->instance, &state), "its state", e))
 		return false;
 	bool good = check(f, CALL(f, STATE_SIZE, ob_fmi_state_size)(f->instance, state, &size), "its state", e);
-	if (good && size > t->room)
-		good = ob_fail(e, "its state takes %zu bytes, and there is room for %u", size, t->room);
+	if (good && size > sizeof t->state)
+		good = ob_fail(e, "its state takes %zu bytes, and there is room for %zu", size, sizeof t->state);
 	if (good)
 		good = check(f, CALL(f, SERIALIZE, ob_fmi_serialize)(f->instance, state, t->state, size), "its state",
 			     e);
@@ -284,7 +268,7 @@ static bool run(ob_fmu *f, ob_fmu_turn *t, ob_error *e)
 
 bool ob_fmu_run(ob_fmu *f, ob_fmu_turn *t, ob_error *e)
 {
-	fenv_t usual; // the solver's results depend on it
+	fenv_t usual; // the next object starts from it
 	*f->said.text = 0;
 	fegetenv(&usual);
 	const bool good = run(f, t, e);

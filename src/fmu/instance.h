@@ -1,10 +1,10 @@
-// An FMU that runs: its library, loaded by one worker, and an instance of it that takes the state of one object after the
-// other. The state lies outside between two steps, as bytes; so any worker can run any object, and no worker is missed.
+// An FMU that runs: its library, and an instance of it that takes the state of one object after the other. The state lies
+// outside between two steps, as bytes; so any process can run any object, and none is missed.
 //
-// The library is foreign code with the rights of its process. A crash or a hang is the process's own; the host blames
-// the object at work.
+// The library is foreign code. It runs in a process of its own (script/foreign_process.c), which is ended by a kill alone:
+// nothing is freed.
 //
-// Thread-safety: one thread per ob_fmu. Each has a copy of the library, with its static data.
+// Thread-safety: one thread.
 #ifndef OB_FMU_INSTANCE_H
 #define OB_FMU_INSTANCE_H
 
@@ -15,7 +15,7 @@
 
 #include "fmu/archive.h"
 
-enum { OB_FMU_INPUTS_MAX = 16, OB_FMU_OUTPUTS_MAX = 8 };
+enum { OB_FMU_INPUTS_MAX = 16, OB_FMU_OUTPUTS_MAX = 8, OB_FMU_STATE_BYTES = 1024 };
 
 // First byte of a model's form in memory; no text begins with it.
 #define OB_FMU_MARK 0x7f
@@ -41,20 +41,20 @@ typedef struct ob_fmu_start {
 
 typedef struct ob_fmu_turn {
 	double time, length; // s: the step that begins
-	const double *input; // [inputs]
-	double *output; // [outputs], as of the step's end; any values, also NaN
-	unsigned char *state; // in: starts (first), or the state after the step before; out: the state after this one
-	uint32_t state_bytes, room;
-	bool first;
+	double input[OB_FMU_INPUTS_MAX];
+	double output[OB_FMU_OUTPUTS_MAX]; // as of the step's end; any values, also NaN
+	uint32_t first; // 1: the state holds starts, ob_fmu_start
+	uint32_t state_bytes;
+	unsigned char state[OB_FMU_STATE_BYTES]; // in: starts, or the state after the step before; out: after this one
 } ob_fmu_turn;
 
 typedef struct ob_fmu ob_fmu;
 
+// Reads a model from its form in memory, of "size" bytes. false and e: it is damaged.
+bool ob_fmu_model_read(const void *model, size_t size, ob_fmu_model *out, ob_error *e);
 // Loads the library of a model in its form in memory, of "size" bytes. NULL and e: it cannot be loaded.
 ob_fmu *ob_fmu_open(const void *model, size_t size, ob_error *e);
-void ob_fmu_close(ob_fmu *f); // NULL is allowed
-const ob_fmu_model *ob_fmu_model_of(const ob_fmu *f);
-// One step of an object. false and e: the FMU has refused, or its state does not fit; the turn's state is unchanged.
+// One step of an object. false and e: the FMU has refused, or its state does not fit.
 bool ob_fmu_run(ob_fmu *f, ob_fmu_turn *t, ob_error *e);
 
 #endif

@@ -19,7 +19,16 @@
 
 #include "table/table.h"
 
-// Restricts the calling process for good. false and e: a restriction cannot be set.
+// A process with foreign code, an FMU, is restricted in every run: it starts no process, sends signals to itself alone, and has
+// half of the machine's memory. The measures of a hardened run come in addition: privileges before its library is loaded, the
+// others after that.
+
+enum { OB_CALL_FD = 3 }; // a worker calls for such a process by it (table/desk.h)
+
+// Restricts the calling process for good. false and e: a restriction cannot be set. Likewise the others, of foreign code,
+// before and after its library is loaded.
+bool ob_confine_foreign(const ob_universe *u, ob_error *e);
+bool ob_confine_loaded(const ob_universe *u, ob_error *e);
 bool ob_confine(ob_universe *u, uint32_t worker, ob_error *e);
 
 #endif

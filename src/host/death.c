@@ -9,7 +9,6 @@ void ob_death_find_object(ob_death *d, const ob_universe *u)
 	const bool own = ob_universe_settings(u)->one_per_object && d->worker < ob_universe_simulators(u);
 	if (d->worker != OB_NO_WORKER)
 		d->object = own ? d->worker : ob_worker_object(u, d->worker);
-	d->foreign = d->worker != OB_NO_WORKER && ob_worker_is_in_foreign(u, d->worker);
 	if (d->object != OB_NO_OBJECT && ob_universe_get_passport(u, d->object, &p))
 		memcpy(d->name, p.name, sizeof d->name);
 	else

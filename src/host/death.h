@@ -39,7 +39,6 @@ typedef struct ob_death {
 	uint64_t step; // step in which it died, from 1
 	uint64_t when; // ns, ob_clock_ns
 	uint32_t object; // object that it simulated or solved at the time; OB_NO_OBJECT
-	bool foreign; // it ran foreign code for that object, an FMU
 	uint32_t frozen; // objects that stay in place because of it
 	char name[OB_NAME_MAX]; // name of the object
 	char text[400]; // all of this as a sentence, without a full stop

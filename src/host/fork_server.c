@@ -19,10 +19,14 @@
 #include "base/log.h"
 #include "base/utf8.h"
 #include "host/accounting.h"
+#include "host/confine.h"
+#include "host/foreign.h"
+#include "host/words.h"
 
 struct ob_fork_server {
 	pid_t pid;
 	int link;
+	int bell; // for workers of this process; -1: none
 };
 
 // count 0: kill them all instead
@@ -40,27 +44,34 @@ typedef struct server {
 	uint32_t workers;
 	pid_t *pid; // [workers]; 0 = none
 	char (*words)[OB_LAST_WORDS]; // [workers]: the end of that text
+	ob_foreign_owner foreign;
 } server;
 
-enum { LINK_FD = 3, SEGMENT_FD = 4 };
+enum { BELL_FD = OB_CALL_FD, BELL_IN_FD, LINK_FD, SEGMENT_FD, FIRST_FREE_FD }; // bell: see table/desk.h
 #define NO_WORKER UINT32_MAX
 
 // Closes all inherited files but the universe's segment, which the fork server owns beside the host. It needs no file
 // of a recorder, no device of a renderer, no terminal input.
-static bool close_inherited_files(ob_universe *u, int link)
+static bool close_inherited_files(ob_universe *u, int link, const int bell[2])
 {
 	int null = open("/dev/null", O_RDWR);
 	if (null >= 0) {
 		dup2(null, STDIN_FILENO);
 		dup2(null, STDOUT_FILENO);
 	}
-	// moves both aside first, so that neither overwrites the other
-	link = fcntl(link, F_DUPFD, SEGMENT_FD + 1);
-	int segment = fcntl(ob_universe_fd(u), F_DUPFD, SEGMENT_FD + 1);
-	if (link < 0 || segment < 0 || dup2(link, LINK_FD) < 0 || dup2(segment, SEGMENT_FD) < 0)
-		return false;
+	// moves all aside first, so that none overwrites another
+	const int from[] = { bell[1], bell[0], link, ob_universe_fd(u) };
+	int aside[sizeof from / sizeof *from];
+	for (int i = 0; i < SEGMENT_FD - BELL_FD + 1; i++) {
+		aside[i] = from[i] < 0 ? null : fcntl(from[i], F_DUPFD, FIRST_FREE_FD);
+		if (aside[i] < 0)
+			return false;
+	}
+	for (int i = 0; i < SEGMENT_FD - BELL_FD + 1; i++)
+		if (dup2(aside[i], BELL_FD + i) < 0)
+			return false;
 	ob_universe_move_fd(u, SEGMENT_FD);
-	close_range(SEGMENT_FD + 1, ~0U, 0);
+	close_range(FIRST_FREE_FD, ~0U, 0);
 	return true;
 }
 
@@ -85,7 +96,7 @@ _Noreturn static void run_simulator(const server *s, uint32_t worker, pid_t pare
 	sigemptyset(&none);
 	sigprocmask(SIG_SETMASK, &none, NULL);
 	dup2(s->words_out, STDERR_FILENO);
-	close_range(LINK_FD, ~0U, 0);
+	close_range(s->foreign.bell < 0 ? BELL_FD : BELL_FD + 1, ~0U, 0);
 	snprintf(name, sizeof name, "sim %u", worker);
 	prctl(PR_SET_NAME, name);
 	_exit(s->run(s->u, worker));
@@ -120,24 +131,8 @@ static void keep_words(char kept[OB_LAST_WORDS], const char *text, size_t n)
 	kept[before + n] = 0;
 }
 
-// Writes to standard error as much as it takes now. A pipe that is ready takes a page without blocking.
-static void hand_on(const char *text, size_t n)
-{
-	enum { PAGE = 4096 };
-	while (n > 0) {
-		struct pollfd p = { .fd = STDERR_FILENO, .events = POLLOUT };
-		if (poll(&p, 1, 0) <= 0 || p.revents & (POLLERR | POLLNVAL))
-			return;
-		const ssize_t written = write(STDERR_FILENO, text, n < PAGE ? n : PAGE);
-		if (written <= 0)
-			return;
-		text += written;
-		n -= (size_t)written;
-	}
-}
-
-// Reads one worker's text; false: there is no more now.
-static bool take_words(const server *s)
+// Reads one process's text; false: there is no more now.
+static bool take_words(server *s)
 {
 	char text[1 << 14], control[CMSG_SPACE(sizeof(struct ucred))];
 	struct iovec to = { text, sizeof text };
@@ -151,15 +146,18 @@ static bool take_words(const server *s)
 			continue;
 		memcpy(&who, CMSG_DATA(c), sizeof who);
 		const uint32_t w = worker_of(s, who.pid);
-		if (w < s->workers)
+		if (w < s->workers) {
 			keep_words(s->words[w], text, (size_t)n);
+			ob_words_hand_on(text, (size_t)n);
+		} else {
+			ob_foreign_take_words(&s->foreign, who.pid, text, (size_t)n);
+		}
 	}
-	hand_on(text, (size_t)n);
 	return true;
 }
 
 // Reads all text written before now, in a limited number of reads: a worker may write without end.
-static void take_all_words(const server *s)
+static void take_all_words(server *s)
 {
 	for (int i = 0; i < 64 && take_words(s); i++)
 		;
@@ -238,9 +236,11 @@ static void reap(server *s)
 	pid_t pid;
 	while ((pid = waitpid(-1, &status, WNOHANG)) > 0) {
 		const uint32_t w = worker_of(s, pid);
-		if (w == s->workers)
-			continue;
 		take_all_words(s);
+		if (w == s->workers) {
+			ob_foreign_reap(&s->foreign, pid, status);
+			continue;
+		}
 		ob_worker_end end = { .worker = w,
 				      .pid = pid,
 				      .signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0,
@@ -258,6 +258,7 @@ _Noreturn static void clean_up(const server *s)
 {
 	ob_universe_unlink(s->u);
 	kill_simulators(s, (fork_request){ .count = UINT32_MAX });
+	ob_foreign_kill_all(&s->foreign);
 	while (waitpid(-1, NULL, 0) > 0 || errno == EINTR)
 		;
 	_exit(EXIT_SUCCESS);
@@ -265,12 +266,17 @@ _Noreturn static void clean_up(const server *s)
 
 _Noreturn static void serve(server *s)
 {
-	struct pollfd fds[3] = { { .fd = s->link, .events = POLLIN },
+	enum { LOOK_MS = 100 };
+	struct pollfd fds[4] = { { .fd = s->link, .events = POLLIN },
 				 { .fd = s->children_fd, .events = POLLIN },
-				 { .fd = s->words_in, .events = POLLIN } };
+				 { .fd = s->words_in, .events = POLLIN },
+				 { .fd = s->foreign.bell, .events = POLLIN } };
 	for (;;) {
-		if (poll(fds, 3, -1) < 0 && errno != EINTR)
+		if (poll(fds, 4, s->foreign.processes ? LOOK_MS : -1) < 0 && errno != EINTR)
 			clean_up(s);
+		ob_foreign_watch(&s->foreign);
+		if (fds[3].revents)
+			ob_foreign_answer_calls(&s->foreign);
 		if (fds[2].revents)
 			take_words(s);
 		if (fds[1].revents) {
@@ -288,7 +294,20 @@ _Noreturn static void serve(server *s)
 	}
 }
 
-_Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int link)
+// Prepares for processes with foreign code, if the universe has any. false: no memory.
+static bool open_foreign(server *s, double patience)
+{
+	const uint32_t desks = ob_desks_count(s->u);
+	s->foreign = (ob_foreign_owner){ .u = s->u, .patience = patience, .bell = -1, .words = s->words_out };
+	if (!desks)
+		return true;
+	s->foreign.bell = BELL_IN_FD;
+	ob_desks_set_bell(s->u, BELL_FD);
+	s->foreign.written = calloc(desks, sizeof *s->foreign.written);
+	return s->foreign.written && fcntl(BELL_IN_FD, F_SETFL, O_NONBLOCK) == 0;
+}
+
+_Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int link, const int bell[2], double patience)
 {
 	server s = { .u = u, .run = run, .link = LINK_FD, .workers = ob_universe_workers(u) };
 	sigset_t child;
@@ -300,13 +319,13 @@ _Noreturn static void run_fork_server(ob_universe *u, ob_worker_run run, int lin
 	sigemptyset(&child);
 	sigaddset(&child, SIGCHLD);
 	sigprocmask(SIG_SETMASK, &child, NULL);
-	if (!close_inherited_files(u, link)) {
+	if (!close_inherited_files(u, link, bell)) {
 		report_ready(link, errno);
 		_exit(EXIT_FAILURE);
 	}
 	s.children_fd = signalfd(-1, &child, SFD_CLOEXEC | SFD_NONBLOCK);
 	s.pid = calloc(s.workers, sizeof *s.pid);
-	if (s.children_fd < 0 || !s.pid || !open_words(&s)) {
+	if (s.children_fd < 0 || !s.pid || !open_words(&s) || !open_foreign(&s, patience)) {
 		report_ready(s.link, errno);
 		clean_up(&(server){ .u = u });
 	}
@@ -344,19 +363,26 @@ static int wait_until_ready(const ob_fork_server *s)
 	return ETIMEDOUT;
 }
 
-ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error *e)
+ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, double patience, ob_error *e)
 {
-	int ends[2];
+	int ends[2], bell[2] = { -1, -1 };
 	ob_fork_server *s = calloc(1, sizeof *s);
-	if (!s || socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
+	const bool calls = s && ob_desks_count(u) > 0;
+	if (!s || (calls && pipe2(bell, O_CLOEXEC) != 0) ||
+	    socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
 		free(s);
 		ob_fail(e, "cannot make the link to the fork server: %s%s", strerror(errno), remedy(errno));
 		return NULL;
 	}
+	if (calls)
+		ob_desks_set_bell(u, bell[1]);
 	s->pid = fork();
 	if (s->pid == 0)
-		run_fork_server(u, run, ends[1]);
+		run_fork_server(u, run, ends[1], bell, patience);
 	close(ends[1]);
+	if (bell[0] >= 0)
+		close(bell[0]);
+	s->bell = bell[1];
 	if (s->pid < 0) {
 		ob_fail(e, "cannot fork the fork server: %s", strerror(errno));
 		close(ends[0]);
@@ -431,6 +457,8 @@ void ob_fork_server_stop(ob_fork_server *s)
 	if (!s)
 		return;
 	close(s->link);
+	if (s->bell >= 0)
+		close(s->bell);
 	if (!wait_for_end(s->pid, end_timeout)) {
 		ob_log_warn("the fork server (process %d, %s) does not end: killed", (int)s->pid,
 			    ob_state_word(ob_state_of_thread(s->pid, s->pid)));

@@ -30,8 +30,9 @@
 
 typedef struct ob_fork_server ob_fork_server;
 
-// Starts the fork server; its workers will execute run on the universe mapped here. NULL and e on failure.
-ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, ob_error *e);
+// Starts the fork server; its workers will execute run on the universe mapped here. patience: s that an FMU may take for a
+// step. NULL and e on failure.
+ob_fork_server *ob_fork_server_start(ob_universe *u, ob_worker_run run, double patience, ob_error *e);
 pid_t ob_fork_server_pid(const ob_fork_server *s);
 // Readable when there is an ob_worker_end to fetch; POLLHUP when the fork server is gone.
 int ob_fork_server_fd(const ob_fork_server *s);

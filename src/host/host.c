@@ -336,7 +336,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->u = make_universe(scene, config, h->spawn, e);
 	h->workers = h->u ? ob_universe_workers(h->u) : 0;
 	// the fork server first: it and its children inherit as little as possible
-	h->fork_server = h->u ? ob_fork_server_start(h->u, ob_worker_live, e) : NULL;
+	h->fork_server = h->u ? ob_fork_server_start(h->u, ob_worker_live, h->patience, e) : NULL;
 	if (!h->fork_server || !start_timeline(h, config->trace, e) || !place_objects(h, scene, config, e) ||
 	    !start_workers(h, e)) {
 		ob_host_stop(h);

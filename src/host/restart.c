@@ -266,7 +266,7 @@ static bool plan_freeze(ob_host *h, ob_error *text)
 	ob_death *d = latest(r);
 	ob_journal_place place = ob_journal_here(h->u);
 	place.after_scripts &= ob_gate_phase(h->u) != OB_PHASE_SCRIPTS; // they ran
-	const bool alone = d->foreign || (ob_universe_settings(h->u)->one_per_object && d->cause != OB_DEATH_FAILURE);
+	const bool alone = ob_universe_settings(h->u)->one_per_object && d->cause != OB_DEATH_FAILURE;
 	if (ids && d->object < most)
 		n = alone ? 1 : ob_sim_failed_objects(h->u, d->object, ids, most);
 	if (alone && n)
@@ -485,17 +485,6 @@ static bool start_workers(ob_host *h, const char *why)
 	return false;
 }
 
-// True if the latest death freezes objects. Foreign code that ends its process freezes its own object, as it would do so
-// again; SIGKILL came from elsewhere.
-static bool death_freezes(const ob_host *h)
-{
-	const ob_death *d = &h->restart.last[(h->restart.deaths - 1) % OB_DEATHS_KEPT];
-	const bool killed = d->cause == OB_DEATH_SIGNAL && d->signal == SIGKILL;
-	if (d->cause == OB_DEATH_FAILURE)
-		return ob_on_death_freezes_failed(h->on_death);
-	return h->on_death == OB_ON_DEATH_FREEZE || (d->foreign && !killed);
-}
-
 bool ob_restart(ob_host *h)
 {
 	ob_restart_state *r = &h->restart;
@@ -507,7 +496,9 @@ bool ob_restart(ob_host *h)
 	if (!end_all_workers(h))
 		return false;
 	describe(h, &text);
-	if (death_freezes(h) && !plan_freeze(h, &text)) {
+	const bool freezes = latest(r)->cause == OB_DEATH_FAILURE ? ob_on_death_freezes_failed(h->on_death)
+								  : h->on_death == OB_ON_DEATH_FREEZE;
+	if (freezes && !plan_freeze(h, &text)) {
 		ob_host_set_failure(h, "%s", text.text);
 		return false;
 	}

@@ -6,8 +6,9 @@
 #include "free/free.h"
 #include "host/accounting.h"
 #include "host/host_state.h"
+#include "table/desk.h"
 
-enum { SHOWN = 4, MOST_FACTOR = 10 }; // MOST_FACTOR: times patience, limit for simulators that get no core
+enum { SHOWN = 4 };
 
 // Workers that block the step.
 typedef struct blockers {
@@ -75,7 +76,7 @@ static uint64_t shares_of(const ob_host *h)
 
 ob_stall_watch ob_stall_watch_start(const ob_host *h)
 {
-	return (ob_stall_watch){ .step = ob_step_count(h->u), .shares = shares_of(h), .clock = ob_hang_clock_start() };
+	return (ob_stall_watch){ .step = ob_step_count(h->u), .shares = shares_of(h), .count = ob_hang_count_start(0) };
 }
 
 static bool one_is_runnable(ob_host *h)
@@ -89,22 +90,12 @@ static bool one_is_runnable(ob_host *h)
 
 bool ob_stall_watch_look(ob_stall_watch *s, ob_host *h)
 {
-	static const double busy = .02; // of a core: below that nothing computes
 	uint64_t step = ob_step_count(h->u);
-	if (step != s->step || shares_of(h) != s->shares || !is_due(h)) {
+	if (step != s->step || shares_of(h) != s->shares || !is_due(h) || ob_desks_await_answers(h->u)) {
 		*s = ob_stall_watch_start(h);
 		return false;
 	}
-	double waited = ob_hang_clock_tick(&s->clock), past = waited - s->looked;
-	uint64_t cpu_ns = ob_host_read_cpu(h);
-	double computed = s->cpu_ns && cpu_ns > s->cpu_ns ? 1e-9 * (double)(cpu_ns - s->cpu_ns) : 0;
-	if (computed > busy * past)
-		s->counted += computed < past ? computed : past;
-	else if (!one_is_runnable(h))
-		s->counted += past;
-	s->looked = waited;
-	s->cpu_ns = cpu_ns;
-	return s->counted > h->patience || waited > MOST_FACTOR * h->patience;
+	return ob_hang_count_is_over(&s->count, ob_host_read_cpu(h), one_is_runnable(h), h->patience);
 }
 
 // ---- blocking workers

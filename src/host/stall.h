@@ -5,7 +5,7 @@
 // so Ctrl-Z, a suspended machine and a debugger on the host end no run. While simulators compute, their CPU time
 // counts: on a tenth of a core they get ten times the patience, but no more. If none computes and none is denied a
 // core, they are stopped or wait for something: then wall time counts. In a free run time counts while a step is due by the
-// clock.
+// clock. Waits for FMUs do not count: their owner bounds them (foreign.h).
 //
 // Thread-safety: the thread that waits for the run.
 #ifndef OB_HOST_STALL_H
@@ -17,9 +17,7 @@
 typedef struct ob_stall_watch {
 	uint64_t step; // complete at the last look
 	uint64_t shares; // hash of the objects on which the workers worked then
-	ob_hang_clock clock; // since then
-	double looked, counted; // s, clock at the last look; s counted so far
-	uint64_t cpu_ns; // CPU time of all workers at the last look; 0 = unknown
+	ob_hang_count count; // since then
 } ob_stall_watch;
 
 ob_stall_watch ob_stall_watch_start(const ob_host *h);

@@ -57,7 +57,7 @@ static int live(ob_universe *u, uint32_t worker)
 	ob_sim *s = ob_sim_create(u, worker, &e);
 	ob_script_runner *scripts = NULL;
 	if (s && ob_universe_step_data(u)->script_counts) {
-		scripts = ob_script_runner_create(u);
+		scripts = ob_script_runner_create(u, worker);
 		if (scripts) {
 			ob_sim_set_scripts(s, ob_script_runner_run, scripts);
 		} else {

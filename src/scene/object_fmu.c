@@ -187,11 +187,3 @@ uint32_t ob_builder_fmu(lua_State *L, ob_builder *b, const char *where, const ch
 	}
 	return ob_builder_add_script(L, b, where, name, text, sizeof m + f->library_bytes);
 }
-
-bool ob_scene_has_fmu(const ob_scene *s)
-{
-	bool found = false;
-	for (uint32_t i = 0; i < s->scripts && !found; i++)
-		found = s->script[i].size > 0 && s->script[i].text[0] == OB_FMU_MARK;
-	return found;
-}

@@ -139,8 +139,6 @@ ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e
 ob_scene *ob_scene_load_text(const char *path, const char *text, size_t size, const ob_scene_options *o, ob_error *e);
 void ob_scene_free(ob_scene *s);
 
-// True if an object of the scene has an FMU.
-bool ob_scene_has_fmu(const ob_scene *s);
 // Thickness (m) of the thinnest object that moves; infinity: none does.
 double ob_scene_thinnest(const ob_scene *s);
 

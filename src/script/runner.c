@@ -337,17 +337,12 @@ static void pass_on_warning(const ob_script_runner *r, ob_script_turn *t, ob_scr
 	snprintf(c->error, sizeof c->error, "%.*s", OB_SCRIPT_ERROR_BYTES - 1, r->warning.text);
 }
 
-uint64_t ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c)
+static uint64_t run_text(ob_script_runner *r, ob_script_turn *t, ob_script_cell *c)
 {
-	ob_script_runner *r = runner;
 	const ob_script_turn before = *t;
 	unsigned char state[OB_SCRIPT_STATE_BYTES];
 	const uint32_t state_bytes = c->state_bytes;
 	ob_error e = { "" };
-	if (before.script > r->data->script_text->scripts || state_bytes > sizeof state)
-		return 0;
-	if (ob_script_is_foreign(r->data->script_text, before.script))
-		return ob_script_run_foreign(r, t, c);
 	memcpy(state, c->state, state_bytes);
 	r->cell = c;
 	r->step = ob_step_count(r->u);
@@ -381,9 +376,24 @@ uint64_t ob_script_runner_run(void *runner, ob_script_turn *t, ob_script_cell *c
 	return r->instructions;
 }
 
+uint64_t ob_script_runner_run(void *runner, ob_script_turn *const *t, ob_script_cell *const *c, uint32_t n)
+{
+	enum { STEP_INSTRUCTIONS = 1000 }; // a step of an FMU counts as so many; it cannot be measured in them
+	ob_script_runner *r = runner;
+	if (t[0]->script > r->data->script_text->scripts)
+		return 0;
+	for (uint32_t i = 0; i < n; i++)
+		if (c[i]->state_bytes > OB_SCRIPT_STATE_BYTES)
+			return 0;
+	if (!ob_script_is_foreign(r->data->script_text, t[0]->script))
+		return run_text(r, t[0], c[0]);
+	ob_script_run_foreign(r, t, c, n);
+	return STEP_INSTRUCTIONS;
+}
+
 // ---- runners
 
-ob_script_runner *ob_script_runner_create(ob_universe *u)
+ob_script_runner *ob_script_runner_create(ob_universe *u, uint32_t worker)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
 	ob_script_runner *r = calloc(1, sizeof *r);
@@ -393,6 +403,7 @@ ob_script_runner *ob_script_runner_create(ob_universe *u)
 		return NULL;
 	}
 	r->u = u;
+	r->worker = worker;
 	r->data = data;
 	r->settings = ob_universe_settings(u);
 	r->builder.scene = &r->scene;
@@ -413,7 +424,7 @@ void ob_script_runner_destroy(ob_script_runner *r)
 	if (!r)
 		return;
 	for (uint32_t i = 0; i < OB_SCRIPTS_MAX; i++)
-		close_interpreter(&r->interpreter[i]), ob_fmu_close(r->fmu[i]);
+		close_interpreter(&r->interpreter[i]);
 	free(r->scene.script);
 	free(r->scene.object);
 	free(r->scene.joint);

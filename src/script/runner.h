@@ -8,6 +8,7 @@
 #include "scene/flat.h"
 #include "scene/sandbox.h"
 #include "script/script.h"
+#include "table/desk.h"
 
 typedef enum ob_handler {
 	OB_HANDLER_START,
@@ -37,15 +38,23 @@ typedef struct ob_interpreter {
 	ob_error broken; // why the text itself cannot run; empty: it can
 } ob_interpreter;
 
+// An FMU among the texts.
+typedef struct ob_foreign {
+	ob_fmu_model model;
+	ob_desk desk;
+	bool spoilt; // the process there has failed in a turn
+} ob_foreign;
+
 struct ob_script_runner {
 	ob_builder builder; // first: the functions that scripts share with scenes find it in the runner's place
 	ob_scene_options joining; // the builder's
 	ob_scene scene; // for objects that a script creates
 	ob_universe *u;
+	uint32_t worker;
 	const ob_step_data *data;
 	const ob_run_settings *settings;
 	ob_interpreter interpreter[OB_SCRIPTS_MAX];
-	ob_fmu *fmu[OB_SCRIPTS_MAX]; // loaded at once: a contained worker cannot do so later; NULL: broken
+	ob_foreign foreign[OB_SCRIPTS_MAX];
 	// Data of the running call; turn NULL: a text is being read.
 	ob_script_turn *turn;
 	ob_script_cell *cell;
@@ -62,9 +71,9 @@ void ob_script_begin_turn(ob_script_runner *r, ob_script_turn *t, ob_script_cell
 void ob_script_stop_turn(ob_script_runner *r, ob_script_turn *t, const ob_error *why);
 void ob_script_leave(ob_script_runner *r);
 
-// Loads the FMUs among the texts; runs the turn of an object that has one.
+// Prepares the FMUs among the texts; runs turns of objects that have one of them.
 void ob_script_open_foreign(ob_script_runner *r);
-uint64_t ob_script_run_foreign(ob_script_runner *r, ob_script_turn *t, ob_script_cell *c);
+void ob_script_run_foreign(ob_script_runner *r, ob_script_turn *const *t, ob_script_cell *const *c, uint32_t n);
 
 // Notes, as "name:line: text", a call without effect; the first is kept.
 void ob_script_warn(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));

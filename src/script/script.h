@@ -20,9 +20,9 @@
 
 typedef struct ob_script_runner ob_script_runner;
 
-ob_script_runner *ob_script_runner_create(ob_universe *u); // NULL: no memory
+ob_script_runner *ob_script_runner_create(ob_universe *u, uint32_t worker); // NULL: no memory
 void ob_script_runner_destroy(ob_script_runner *r); // NULL is allowed
 // Makes the due calls of a script, and writes results only to its turn and its cell. An ob_script_run of step/sim.h.
-uint64_t ob_script_runner_run(void *runner, ob_script_turn *turn, ob_script_cell *cell);
+uint64_t ob_script_runner_run(void *runner, ob_script_turn *const *turn, ob_script_cell *const *cell, uint32_t n);
 
 #endif

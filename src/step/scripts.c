@@ -36,40 +36,82 @@ bool ob_scripts_due(ob_universe *u)
 	return count->due > 0 || pauses_after(count);
 }
 
-static uint64_t run(ob_sim *s, uint32_t cell)
+// Cells whose scripts run in one call: one, or some with the same foreign code.
+typedef struct batch {
+	uint32_t n, task[OB_SCRIPT_BATCH], cell[OB_SCRIPT_BATCH];
+} batch;
+
+static uint64_t call(ob_sim *s, const batch *b)
 {
 	const ob_step_data *data = s->data;
-	if (!ob_universe_contained(s->u))
-		return s->scripts.run(s->scripts.runner, &data->script_turn[cell], &data->script_cell[cell]);
-	s->scripts.turn = data->script_turn[cell];
-	s->scripts.cell = data->script_cell[cell];
-	const uint64_t instructions = s->scripts.run(s->scripts.runner, &s->scripts.turn, &s->scripts.cell);
-	ob_hand_over_script(s->u, cell, &s->scripts.turn, &s->scripts.cell);
+	ob_script_turn *turn[OB_SCRIPT_BATCH];
+	ob_script_cell *cell[OB_SCRIPT_BATCH];
+	const bool copies = ob_universe_contained(s->u);
+	for (uint32_t i = 0; i < b->n; i++) {
+		turn[i] = copies ? &s->scripts.turn[i] : &data->script_turn[b->cell[i]];
+		cell[i] = copies ? &s->scripts.cell[i] : &data->script_cell[b->cell[i]];
+		if (copies) {
+			*turn[i] = data->script_turn[b->cell[i]];
+			*cell[i] = data->script_cell[b->cell[i]];
+		}
+	}
+	const uint64_t instructions = s->scripts.run(s->scripts.runner, turn, cell, b->n);
+	for (uint32_t i = 0; i < b->n && copies; i++)
+		ob_hand_over_script(s->u, b->cell[i], turn[i], cell[i]);
 	return instructions;
 }
 
-static void run_share(ob_sim *s, uint32_t cell)
+static void run(ob_sim *s, batch *b)
 {
 	enum { INSTRUCTIONS_PER_WORK = 4 };
-	const ob_script_turn *turn = &s->data->script_turn[cell];
-	ob_budget_begin_share(s, turn->object);
-	if (ob_script_is_foreign(s->data->script_text, turn->script))
-		ob_worker_enter_foreign(s->u, s->worker);
-	ob_budget_note(&s->solver, run(s, cell) / INSTRUCTIONS_PER_WORK);
-	ob_worker_set_object(s->u, s->worker, turn->object); // foreign code is over
-	ob_budget_spent(&s->solver);
+	if (b->n == 0)
+		return;
+	ob_worker_set_object(s->u, s->worker, s->data->script_turn[b->cell[0]].object);
+	const uint64_t instructions = call(s, b);
+	for (uint32_t i = 0; i < b->n; i++) {
+		ob_budget_begin_share(s, s->data->script_turn[b->cell[i]].object);
+		ob_budget_note(&s->solver, instructions / INSTRUCTIONS_PER_WORK);
+		ob_budget_spent(&s->solver);
+		if (!s->settings->one_per_object)
+			ob_profile_task_done(s, b->task[i]);
+	}
+	b->n = 0;
+}
+
+// Script that may run in one call with others; 0: runs alone.
+static uint32_t shared_script(const ob_step_data *data, uint32_t cell)
+{
+	const uint32_t script = data->script_turn[cell].script;
+	return ob_script_is_foreign(data->script_text, script) ? script : 0;
+}
+
+// Cells in a batch at most: so that each worker gets several.
+static uint32_t largest_batch(const ob_sim *s)
+{
+	enum { BATCHES = 4 };
+	const uint32_t n = s->data->script_counts->due / (BATCHES * ob_universe_simulators(s->u));
+	return n < 1 ? 1 : n < OB_SCRIPT_BATCH ? n : OB_SCRIPT_BATCH;
 }
 
 void ob_scripts_run(ob_sim *s)
 {
+	const ob_step_data *data = s->data;
+	batch b = { .n = 0 };
 	uint32_t i;
-	if (s->settings->one_per_object)
-		run_share(s, s->data->script_of[s->worker] - 1);
-	else
-		while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK)) {
-			run_share(s, s->data->script_due[i]);
-			ob_profile_task_done(s, i);
-		}
+	if (s->settings->one_per_object) {
+		b = (batch){ .n = 1, .cell = { data->script_of[s->worker] - 1 } };
+		run(s, &b);
+		return;
+	}
+	const uint32_t most = largest_batch(s);
+	while (ob_task_claim(s->u, &i) && (s->settings->freezes || ob_step_failed(s->u, NULL) == OB_STEP_OK)) {
+		const uint32_t cell = data->script_due[i], script = shared_script(data, cell);
+		if (b.n == most || (b.n && (!script || script != shared_script(data, b.cell[0]))))
+			run(s, &b);
+		b.task[b.n] = i;
+		b.cell[b.n++] = cell;
+	}
+	run(s, &b);
 }
 
 bool ob_sim_awaits_requests(const ob_universe *u)

@@ -17,9 +17,10 @@ typedef struct ob_sim ob_sim;
 ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e); // in the worker's own thread
 void ob_sim_destroy(ob_sim *s);
 
-// Runs the script of an object, for this module, which has no interpreter. turn, cell: data of the script
-// (table/script_data.h), in the universe or in a copy. Returns the number of instructions, the same on any worker.
-typedef uint64_t (*ob_script_run)(void *runner, ob_script_turn *turn, ob_script_cell *cell);
+// Runs the scripts of n objects, for this module, which has no interpreter: of one, or of up to OB_SCRIPT_BATCH that have the
+// same foreign code. turn, cell: data of the scripts (table/script_data.h), in the universe or in a copy. Returns the number
+// of instructions of each, the same on any worker.
+typedef uint64_t (*ob_script_run)(void *runner, ob_script_turn *const *turn, ob_script_cell *const *cell, uint32_t n);
 void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner);
 
 // Connects the arranger with the others before its first step. false and e, on all ranks: one of them has other

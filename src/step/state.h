@@ -44,8 +44,8 @@ struct ob_sim {
 	struct { // step/scripts.h; NULL: this worker runs none
 		ob_script_run run;
 		void *runner;
-		ob_script_turn turn; // for a contained simulator: the copy that it runs
-		ob_script_cell cell; // the copy that it hands over
+		ob_script_turn turn[OB_SCRIPT_BATCH]; // for a contained simulator: the copies that it runs
+		ob_script_cell cell[OB_SCRIPT_BATCH]; // the copies that it hands over
 	} scripts;
 	uint64_t fault_chances; // in this process (step/fault.h)
 	struct { // step/profile.h

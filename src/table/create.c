@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "table/desk.h"
 #include "table/layout.h"
 #include "table/pages.h"
 #include "table/segment.h"
@@ -108,7 +109,9 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 	u->ranks = setup->ranks ? setup->ranks : 1;
 	u->shares_contacts = setup->shares_contacts;
 	u->fd = ob_segment_create(e);
-	if (u->fd >= 0 && map_new(u, e) && fill(u, setup, e) && ob_segment_publish(u->fd, name, e)) {
+	const uint32_t foreign = setup->script_bytes ? ob_script_count_foreign(setup->script_text, UINT32_MAX) : 0;
+	if (u->fd >= 0 && map_new(u, e) && fill(u, setup, e) && ob_desks_create(u, foreign, e) &&
+	    ob_segment_publish(u->fd, name, e)) {
 		ob_pages_track(u);
 		return u;
 	}
@@ -123,6 +126,7 @@ void ob_universe_destroy(ob_universe *u, bool unlink)
 	if (unlink)
 		ob_universe_unlink(u);
 	ob_pages_forget(u);
+	ob_desks_destroy(u);
 	if (u->base)
 		munmap(u->base, u->header.bytes);
 	if (u->fd >= 0)

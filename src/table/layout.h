@@ -221,6 +221,11 @@ struct ob_universe {
 	ob_trace_ring *trace_ring; // these three only if traced
 	ob_trace_event *trace_event;
 	uint64_t *trace_since;
+	struct { // table/desk.h; base NULL: none
+		char *base;
+		uint32_t foreign;
+		int bell;
+	} desks;
 };
 
 // Input of a layout.

@@ -22,6 +22,7 @@ enum {
 		4096, // maximum of an object's requests in a step: messages, creations, paths and others
 	OB_SCRIPT_TOUCHES = 16, // contacts of an object that begin in a step and are reported to it
 	OB_SCRIPT_ERROR_BYTES = 192,
+	OB_SCRIPT_BATCH = 32, // objects with the same foreign code that run in one exchange, at most
 };
 
 enum { // ob_script_turn.flags
@@ -123,6 +124,15 @@ static inline bool ob_script_is_foreign(const ob_script_directory *d, uint32_t s
 {
 	return script >= 1 && script <= OB_SCRIPTS_MAX && d->text[script - 1].size > 0 &&
 	       ((const char *)d)[d->text[script - 1].offset] == OB_SCRIPT_FOREIGN;
+}
+
+// Number of texts below this one, from 1, that are foreign code.
+static inline uint32_t ob_script_count_foreign(const ob_script_directory *d, uint32_t script)
+{
+	uint32_t n = 0;
+	for (uint32_t i = 1; i < script && i <= d->scripts; i++)
+		n += ob_script_is_foreign(d, i);
+	return n;
 }
 
 // Counts of the run so far, and of the phase in which scripts run.

@@ -232,9 +232,6 @@ void ob_worker_set_objects(ob_universe *u, uint32_t worker, uint32_t objects);
 // the host, which must not trust it.
 #define OB_NO_OBJECT UINT32_MAX
 void ob_worker_set_object(ob_universe *u, uint32_t worker, uint32_t object);
-// Marks that the worker runs foreign code for that object, an FMU, which is to blame for its end; until the next object.
-void ob_worker_enter_foreign(ob_universe *u, uint32_t worker);
-bool ob_worker_is_in_foreign(const ob_universe *u, uint32_t worker);
 uint32_t ob_worker_object(const ob_universe *u, uint32_t worker);
 void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns);
 // The worker's own counters; the host reads them while the universe stands still.

@@ -27,38 +27,20 @@ void ob_worker_set_cpu(ob_universe *u, uint32_t worker, uint64_t cpu_ns)
 	__atomic_store_n(&u->worker[worker].cpu_ns, cpu_ns, __ATOMIC_RELAXED);
 }
 
-enum { FOREIGN = 1u << 31 }; // mark in working_on
-
 void ob_worker_set_object(ob_universe *u, uint32_t worker, uint32_t object)
 {
 	uint32_t *to = u->outbox ? &u->outbox->page->working_on : &u->worker[worker].working_on;
-	__atomic_store_n(to, (object + 1) & ~FOREIGN, __ATOMIC_RELAXED);
-}
-
-void ob_worker_enter_foreign(ob_universe *u, uint32_t worker)
-{
-	uint32_t *to = u->outbox ? &u->outbox->page->working_on : &u->worker[worker].working_on;
-	__atomic_fetch_or(to, FOREIGN, __ATOMIC_RELAXED);
-}
-
-static uint32_t working_on(const ob_universe *u, uint32_t worker)
-{
-	if (worker >= u->header.sizes.workers)
-		return 0;
-	const uint32_t *from = u->header.sizes.outbox_bytes ? &ob_outbox_page_of(u, worker)->working_on
-							    : &u->worker[worker].working_on;
-	return __atomic_load_n(from, __ATOMIC_RELAXED);
+	__atomic_store_n(to, object + 1, __ATOMIC_RELAXED);
 }
 
 uint32_t ob_worker_object(const ob_universe *u, uint32_t worker)
 {
-	const uint32_t object = (working_on(u, worker) & ~FOREIGN) - 1;
+	if (worker >= u->header.sizes.workers)
+		return OB_NO_OBJECT;
+	const uint32_t *from = u->header.sizes.outbox_bytes ? &ob_outbox_page_of(u, worker)->working_on
+							    : &u->worker[worker].working_on;
+	const uint32_t object = __atomic_load_n(from, __ATOMIC_RELAXED) - 1;
 	return object < u->header.sizes.capacity ? object : OB_NO_OBJECT;
-}
-
-bool ob_worker_is_in_foreign(const ob_universe *u, uint32_t worker)
-{
-	return working_on(u, worker) & FOREIGN;
 }
 
 ob_counters *ob_worker_counters(const ob_universe *u, uint32_t worker)

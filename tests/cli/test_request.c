@@ -80,7 +80,7 @@ static void test_refused(void)
 	check_refused("s --json /tmp", "this is a directory");
 	check_refused("s --frames /dev/null", "this is a file");
 	check_refused("s --series x.csv --measure end", "--measure step");
-	check_refused("s --harden", "add --isolation process");
+	check_refused("s --harden --isolation thread", "threads share all their memory");
 	check_refused("s --isolation process --harden --arch monolith", "a monolith is one simulator");
 	check_refused("s --isolation process --harden=page", "--harden=page: expected some of outbox|checksum|pages");
 	check_refused("s --isolation process --harden=,", "--harden=: expected some of");
@@ -111,7 +111,8 @@ static void test_taken(void)
 	CHECK(read_line("s --tolerance .001", &r, &e) && r.asked.tolerance == 1e-3);
 	CHECK(read_line("s --tolerance 20um", &r, &e));
 	CHECK_NEAR(r.asked.tolerance, 20e-6, 1e-18);
-	CHECK(!r.harden && read_line("s --harden --isolation process", &r, &e) && r.harden == OB_HARDEN_ALL);
+	CHECK(!r.harden && read_line("s --harden", &r, &e) && r.harden == OB_HARDEN_ALL);
+	CHECK(r.isolation == OB_ISOLATION_PROCESS);
 	CHECK(read_line("s --harden=limits,calls --isolation process", &r, &e));
 	CHECK(r.harden == (1 << OB_HARDEN_LIMITS | 1 << OB_HARDEN_CALLS));
 	CHECK(read_line("s --harden=pages --isolation process", &r, &e)); // pages need the outbox

@@ -32,6 +32,7 @@ void *fmi2Instantiate(const char *name, int type, const char *guid, const char *
 		return NULL;
 	}
 	memcpy(c->value, model_start, sizeof c->value);
+	model_pass("instantiate");
 	c->callbacks = functions;
 	return c;
 }
@@ -39,6 +40,7 @@ void *fmi2Instantiate(const char *name, int type, const char *guid, const char *
 void fmi2FreeInstance(void *p)
 {
 	component *c = p;
+	model_pass("free");
 	c->callbacks->free(c);
 }
 
@@ -49,6 +51,7 @@ int fmi2SetupExperiment(void *c, int has_tolerance, double tolerance, double sta
 
 int fmi2EnterInitializationMode(void *c)
 {
+	model_pass("initialize");
 	return OB_FMI_OK;
 }
 
@@ -91,6 +94,8 @@ int fmi2DoStep(void *p, double time, double length, int no_state_before)
 int fmi2GetFMUstate(void *p, void **state)
 {
 	const component *c = p;
+	if (model_give_state)
+		model_give_state(c->value);
 	*state = *state ? *state : malloc(sizeof c->value);
 	memcpy(*state, c->value, sizeof c->value);
 	return OB_FMI_OK;

@@ -33,6 +33,7 @@ void *fmi3InstantiateCoSimulation(const char *name, const char *token, const cha
 		return NULL;
 	}
 	memcpy(c->value, model_start, sizeof c->value);
+	model_pass("instantiate");
 	c->log = log;
 	c->environment = environment;
 	return c;
@@ -40,11 +41,13 @@ void *fmi3InstantiateCoSimulation(const char *name, const char *token, const cha
 
 void fmi3FreeInstance(void *c)
 {
+	model_pass("free");
 	free(c);
 }
 
 int fmi3EnterInitializationMode(void *c, bool has_tolerance, double tolerance, double start, bool has_stop, double stop)
 {
+	model_pass("initialize");
 	return OB_FMI_OK;
 }
 
@@ -94,6 +97,8 @@ int fmi3DoStep(void *p, double time, double length, bool no_state_before, bool *
 int fmi3GetFMUState(void *p, void **state)
 {
 	const component *c = p;
+	if (model_give_state)
+		model_give_state(c->value);
 	*state = *state ? *state : malloc(sizeof c->value);
 	memcpy(*state, c->value, sizeof c->value);
 	return OB_FMI_OK;

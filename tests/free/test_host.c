@@ -205,8 +205,8 @@ static void test_slow_clock(ob_isolation isolation)
 		while (ob_free_time(h->u, id) <= 0) // it may begin at once
 			CHECK(ob_host_free_wait(h, .01) == false);
 	ob_stall_watch watch = ob_stall_watch_start(h);
-	watch.counted = 61; // s
-	CHECK(!ob_stall_watch_look(&watch, h) && watch.counted == 0);
+	watch.count.counted = 61; // s
+	CHECK(!ob_stall_watch_look(&watch, h) && watch.count.counted == 0);
 	ob_host_stop(h);
 	free(s.object);
 }

@@ -22,7 +22,7 @@ static void test_start_and_leave(const ob_spawn *s, uint32_t workers)
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "test-workers-%d", (int)getpid());
 	ob_universe *u = make_universe(name, workers);
-	ob_fork_server *k = ob_fork_server_start(u, idle_worker, &e);
+	ob_fork_server *k = ob_fork_server_start(u, idle_worker, 60, &e);
 	ob_worker_group *g = s->start(&(ob_worker_group_setup){ .u = u, .fork_server = k, .run = idle_worker }, &e);
 	CHECK(g != NULL);
 	uint32_t there = 0;
@@ -58,7 +58,7 @@ static void test_deaths(void)
 	char name[OB_NAME_MAX];
 	snprintf(name, sizeof name, "test-deaths-%d", (int)getpid());
 	ob_universe *u = make_universe(name, 4);
-	ob_fork_server *k = ob_fork_server_start(u, misbehave, &e);
+	ob_fork_server *k = ob_fork_server_start(u, misbehave, 60, &e);
 	const ob_spawn *s = &ob_spawn_processes;
 	ob_worker_group *g = s->start(&(ob_worker_group_setup){ .u = u, .fork_server = k, .run = misbehave }, &e);
 	CHECK(next_end(s, g, WAIT_MS, &end) && end.worker == 1 && end.code == 7 && end.signal == 0);
@@ -107,7 +107,7 @@ static void test_last_words(void)
 		abort();
 	dup2(said[1], STDERR_FILENO); // a pipe without a reader yet
 	ob_universe *u = make_universe(name, 4);
-	ob_fork_server *k = ob_fork_server_start(u, talk, &e);
+	ob_fork_server *k = ob_fork_server_start(u, talk, 60, &e);
 	dup2(before, STDERR_FILENO);
 	const ob_spawn *s = &ob_spawn_processes;
 	ob_worker_group *g = s->start(&(ob_worker_group_setup){ .u = u, .fork_server = k, .run = talk }, &e);
@@ -141,7 +141,7 @@ _Noreturn static void run_host(const ob_spawn *s, const char *name, uint32_t wor
 	prctl(PR_SET_PDEATHSIG, SIGKILL); // if the test is ended
 	ob_error e;
 	ob_universe *u = make_universe(name, workers);
-	ob_fork_server *k = ob_fork_server_start(u, idle_worker, &e);
+	ob_fork_server *k = ob_fork_server_start(u, idle_worker, 60, &e);
 	ob_worker_group *g = s->start(&(ob_worker_group_setup){ .u = u, .fork_server = k, .run = idle_worker }, &e);
 	for (uint32_t w = 0; g && w < workers; w++)
 		pid_of_worker(u, w);

@@ -424,10 +424,10 @@ static void test_patience_of_shares(void)
 	ob_stall_watch watch = ob_stall_watch_start(h);
 	for (uint32_t share = 0; share < 8; share++) {
 		ob_worker_set_object(h->u, share % 2, 10 + share);
-		watch.counted = 61; // s
-		CHECK(!ob_stall_watch_look(&watch, h) && watch.counted == 0);
+		watch.count.counted = 61; // s
+		CHECK(!ob_stall_watch_look(&watch, h) && watch.count.counted == 0);
 	}
-	watch.counted = 61;
+	watch.count.counted = 61;
 	CHECK(ob_stall_watch_look(&watch, h));
 	ob_host_stop(h);
 	free(s.object);
