@@ -443,9 +443,12 @@ static bool label_spot(ob_frame *f, ob_drawing *d, const ob_spot *s)
 	if (!rest || !s->shown || !ob_font_fit_line(&rest, 120, point_font, false, true, text, sizeof text))
 		return true;
 	for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-		double diagonal = places[i].x != 0 && places[i].y != 0 ? .75 : 1, away = (style.size + 2.5) * diagonal;
-		double x = s->at.x + places[i].x * away, y = s->at.y + places[i].y * away;
-		y += places[i].y < 0 ? 0 : places[i].y > 0 ? point_font * OB_FONT_ASCENT : point_font * .36;
+		const double away = style.size + 2.5, diagonal = places[i].x != 0 && places[i].y != 0 ? .75 : 1;
+		const double x = s->at.x + places[i].x * away * diagonal;
+		const double y = s->at.y + places[i].y * away +
+				 point_font * (places[i].y < 0   ? -OB_FONT_DESCENT
+					       : places[i].y > 0 ? OB_FONT_ASCENT
+								 : .36);
 		ob_type type = { .size = point_font, .paint = OB_PAINT_MUTED, .anchor = places[i].anchor };
 		ob_rect box = ob_rect_grown(ob_drawing_box(x, y, text, "", type), 1);
 		if (ob_rect_within(box, room) && !is_taken(f, box) && !crossings(f, box))

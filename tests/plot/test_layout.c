@@ -140,6 +140,23 @@ static void check_crosses(void)
 	ob_drawing_finish(&d);
 }
 
+// Each point of a falling curve has room for its label: above it to the right.
+static void check_point_labels(void)
+{
+	static ob_plot_point falling[] = { { .x = .09, .y = 1860, .label = "finest" },
+					   { .x = .75, .y = 1407, .label = "fine" },
+					   { .x = 7.9, .y = 501, .label = "coarse" },
+					   { .x = 23, .y = 366, .label = "coarsest" } };
+	const ob_plot_series line = { .title = "one", .count = 4, .point = falling, .line = true };
+	ob_drawing d = { 0 };
+	ob_plot p = plot;
+	p.series = &line;
+	CHECK(ob_plot_layout(&p, &d, NULL));
+	for (size_t i = 0; i < 4; i++)
+		CHECK(count_text(&d, falling[i].label) == 1);
+	ob_drawing_finish(&d);
+}
+
 // A target of zero has the whole band of zeros on its good side.
 static void check_zero_target(void)
 {
@@ -221,6 +238,7 @@ int main(void)
 	check_awkward();
 	check_bands();
 	check_crosses();
+	check_point_labels();
 	check_zero_target();
 	check_lines();
 	check_fonts();
