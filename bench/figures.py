@@ -5,7 +5,8 @@ measure   runs all experiments on an otherwise idle machine (a quarter of an hou
           docs/notebook/data/figures.json
 write     renders tables, sentences and diagrams from that file into the documents, between <!-- figures: NAME --> and
           <!-- end -->, and into docs/images (draw_plot of a build with tests: build*/tools/draw_plot, or --draw PROGRAM)
-check     lists differences between documents or diagrams and the file; exit 1 if there are any
+check     lists differences between documents or diagrams and the file, blocks that a document lacks, and figures of README.md
+          outside of its block; exit 1 if there are any
 """
 import json
 import math
@@ -69,7 +70,7 @@ LANDING = ['--duration', '3']  # boxes fly, land and pile up; later they rest, a
 
 
 def growth():
-    """CPU and wall over the number of objects."""
+    """CPU, wall and the deepest penetration over the number of objects."""
     counts = (10, 30, 100, 300, 1000, 3000, 10000)
     curves = {}
     for name, words in CONFIGURATIONS.items():
@@ -77,11 +78,13 @@ def growth():
         for n in counts:
             if n > 1000 and name == 'a process per object':
                 continue
-            r = run(scene('falling_boxes'), '-D', f'n={n}', *LANDING, *words, '--measure', 'end')
+            words_of_n = [scene('falling_boxes'), '-D', f'n={n}', *LANDING, *words]
+            r = run(*words_of_n, '--measure', 'end')
             scale = 1e6 / (n * r['simulated_s'])
+            depth = 1e3 * run(*words_of_n, runs=1)['worst_penetration_m']  # to measure it takes time
             curves[name].append({'n': n, 'cpu_us': r['cpu_s'] * scale, 'low': r['cpu_spread'][0] * scale,
                                  'high': r['cpu_spread'][1] * scale, 'wall': r['wall_s'] / r['simulated_s'],
-                                 'memory_mb': r['memory_bytes'] / 1e6, 'hash': r['state_hash'][:8]})
+                                 'memory_mb': r['memory_bytes'] / 1e6, 'hash': r['state_hash'][:8], 'depth_mm': depth})
     return curves
 
 
@@ -218,13 +221,13 @@ def at(curve, n, key):
 
 
 def reach(curve):
-    """The number of objects at which a simulated second takes a second, rounded to one digit; '10,000 or more' at the end."""
+    """The number of objects at which a simulated second takes a second, two digits rounded down; '10,000 or more' at the end."""
     logs = [(math.log(p['n']), math.log(p['wall'])) for p in curve]
     for (n0, w0), (n1, w1) in zip(logs, logs[1:]):
         if w0 < 0 <= w1:
             n = math.exp(n0 + (n1 - n0) * -w0 / (w1 - w0))
-            digit = 10 ** math.floor(math.log10(n))
-            return f'about {int(round(n / digit) * digit):,}'
+            digit = 10 ** (math.floor(math.log10(n)) - 1)
+            return f'{math.floor(n / digit) * digit:,}'
     return f"{curve[-1]['n']:,} or more" if logs[-1][1] < 0 else f"fewer than {curve[0]['n']:,}"
 
 
@@ -249,34 +252,49 @@ def crossing(one, many):
     return next((math.exp(d) for d in steps if cost(many, d) < cost(one, d)), 0)
 
 
+SHOWN = (100, 1000, 10000)  # numbers of boxes in the table
+
+
 def verdict(data):
-    """When a simulator per object is worth it, in sentences that follow from the figures."""
-    grown, priced = data['growth'], data['price']
+    """What a simulator per object costs, for which error: a table, and what follows from it. All of it names n, duration and error."""
+    grown, priced, m = data['growth'], data['price'], data['machine']
     pool, each, world = grown['threads'], grown['a process per object'], grown['one ODE world']
-    same = all(len({at(grown[c], p['n'], 'hash') for c in ('threads', 'processes')}) == 1 for p in pool)
-    ratio = sorted(at(grown['processes'], p['n'], 'cpu_us') / p['cpu_us'] for p in pool if p['n'] >= 100)
-    usual = priced['one ODE world'][0]
-    default = next(p for p in priced['threads'] if p['setting'] == '1 mm')
-    return '\n'.join([
-        f"- **Threads or processes?** {'Both end in the same bits.' if same else 'Their results differ.'} A pool of processes"
-        f" takes {ratio[0]:.2f} to {ratio[-1]:.2f} times the CPU of a pool of threads.",
-        f"- **A process per object?** It takes {at(each, 100, 'cpu_us') / at(pool, 100, 'cpu_us'):.1f} times the CPU of the pool"
-        f" with 100 objects, {at(each, 1000, 'cpu_us') / at(pool, 1000, 'cpu_us'):.1f} times with 1,000.",
-        f"- **One world or many?** At 60 Hz one ODE world takes {100 * middle(usual, 'cpu_us') / middle(default, 'cpu_us'):.0f} %"
-        f" of the simulators' CPU, and boxes sink {number(middle(usual, 'depth_mm'))} mm into each other in place of"
-        f" {number(middle(default, 'depth_mm'))}. Below"
-        f" {number(crossing(priced['one ODE world'], priced['threads']))} mm of penetration the simulators are cheaper.",
-        f"- **Objects in real time?** On {data['machine']['cores']} cores: {reach(pool)} in a pool, {reach(each)} with a process"
-        f" each, {reach(world)} in one world (while boxes land; at rest they cost simulators nothing).",
+    same = all(len({at(curve, p['n'], 'hash') for name, curve in grown.items() if name != 'one ODE world' and any(q['n'] == p['n'] for q in curve)}) == 1
+               for p in pool)
+    cells = lambda curve, text: [text(at(curve, n, 'cpu_us'), n) if any(p['n'] == n for p in curve) else '–' for n in SHOWN]
+    absolute = lambda cpu, n: f'{cpu:,.0f}'
+    rows = [[f'CPU, µs: {what}', *cells(curve, absolute)] for what, curve in
+            (('one ODE world, steps of 1/60 s', world), ('simulators in a pool of threads', pool), ('in a pool of processes', grown['processes']),
+             ('in a process each', each))]
+    rows.append(['pool of threads over one ODE world', *cells(pool, lambda cpu, n: f"{cpu / at(world, n, 'cpu_us'):.1f}")])
+    rows += [[f'deepest overlap, mm: {what}', *(number(at(curve, n, 'depth_mm')) for n in SHOWN)] for what, curve in
+             (('one ODE world', world), ('simulators', pool))]
+    ratio = sorted(at(grown['processes'], p['n'], 'cpu_us') / p['cpu_us'] for p in pool if p['n'] in SHOWN)
+    level = crossing(priced['one ODE world'], priced['threads'])
+    where = f"{m['cores']} cores, commit {m['commit'][:7]}, medians of {m['runs']}"
+    return table({'head': ['boxes that fall and land, 3 s simulated', *(f'n = {n:,}' for n in SHOWN)], 'rows': rows}) + '\n'.join([
+        '', f'CPU is that of a box and a simulated second ({where}). ' + ('Threads, pools of processes and a process each end in the same bits.' if same else
+                                                                        'Threads and processes end in different bits.'), '',
+        f"- **Threads or processes?** A pool of processes takes {ratio[0]:.2f} to {ratio[-1]:.2f} times the CPU of a pool of threads; overlaps are"
+        " equal.",
+        f"- **One world or many?** Shorter steps make one world more exact, and dearer: for overlaps below {number(level)} mm simulators take"
+        f" less CPU (n = 100, 3 s, {m['seeds']} seeds).",
+        f"- **Boxes in real time?** While they land, with overlaps as above: {reach(pool)} boxes in a pool of threads, {reach(each)} in a process"
+        f" each, {reach(world)} in one world.",
     ]) + '\n'
 
 
-TITLES = {'growth': 'CPU of a simulated second, by the number of objects', 'price': 'CPU of a simulated second, by the error'}
+def summary(data):
+    """The same in words, for docs/notebook/figures.md."""
+    grown = data['growth']
+    cost = [at(grown['threads'], n, 'cpu_us') / at(grown['one ODE world'], n, 'cpu_us') for n in SHOWN]
+    error = [at(grown['one ODE world'], n, 'depth_mm') / at(grown['threads'], n, 'depth_mm') for n in SHOWN]
+    return (f"While boxes land (n = 100 to 10,000, 3 s) object simulators take {min(cost):.1f} to {max(cost):.1f} times the CPU of one ODE world at"
+            f" its usual step, and their deepest overlap is {min(error):.0f} to {max(error):.0f} times smaller. The table below of 100 boxes is of"
+            " 10 s: most rest then, and cost object simulators nothing.\n")
 
 
-def label(name, point):
-    """Settings stand beside one of two curves that coincide."""
-    return '' if name == 'processes' else ' ' + point['setting']
+TITLES = {'growth': 'CPU per body and simulated second, by the number of bodies', 'price': 'CPU per body and simulated second, by the error'}
 
 
 def diagrams(data):
@@ -284,23 +302,23 @@ def diagrams(data):
     where = f"falling boxes, 3 s while they land; {data['machine']['cores']} cores, commit {data['machine']['commit'][:7]}"
     styles = {'one ODE world': 0, 'threads': 2, 'processes': 5, 'a process per object': 7}
     head = 'title {}\nsubtitle {}\nx log {}\ny log CPU per body and simulated second (µs)\n'
-    usual, default = data['price']['one ODE world'][0], next(p for p in data['price']['threads'] if p['setting'] == '1 mm')
-    depth = f"deepest penetration {number(middle(default, 'depth_mm'))} mm, in one world {number(middle(usual, 'depth_mm'))} mm"
-    growth_text = head.format(TITLES['growth'], f"{where}; medians of {data['machine']['runs']}; {depth}", 'objects')
+    least, most = ([f"{number(pick(p['depth_mm'] for p in data['growth'][name]))}" for name in ('threads', 'one ODE world')] for pick in (min, max))
+    depth = f'overlaps of {least[0]} to {most[0]} mm, in one world {least[1]} to {most[1]} mm'
+    growth_text = head.format(TITLES['growth'], f"{where}; medians of {data['machine']['runs']}; {depth}", 'bodies')
     for name, curve in data['growth'].items():
         growth_text += f'series {styles[name]} {name}\n'
         growth_text += ''.join(f"point {p['n']} {p['cpu_us']:.6g} {p['low']:.6g} {p['high']:.6g}\n" for p in curve)
     price_text = head.format(TITLES['price'], '100 ' + where + f"; medians of {data['machine']['seeds']} seeds", 'deepest penetration (mm)')
-    for name, curve in data['price'].items():
-        price_text += f'series {styles[name]} {name}\n'
-        price_text += ''.join(f"point {middle(p, 'depth_mm'):.6g} {middle(p, 'cpu_us'):.6g} 0 0{label(name, p)}\n" for p in curve)
+    for name, what in ('one ODE world', 'one ODE world, by its steps'), ('threads', 'threads, by their tolerance'): # processes: the same points
+        price_text += f'series {styles[name]} {what}\n'
+        price_text += ''.join(f"point {middle(p, 'depth_mm'):.6g} {middle(p, 'cpu_us'):.6g} 0 0 {p['setting']}\n" for p in data['price'][name])
     return {'docs/images/cost-objects.svg': growth_text, 'docs/images/cost-error.svg': price_text}
 
 
 def blocks(data):
     found = {name: table(data[name]) for name in ('error_falling', 'error_stack', 'bits', 'counts', 'shapes', 'capture')}
     found |= {name: '```\n' + data[name]['text'] + '```\n' for name in ('compare', 'varied')}
-    return found | {'machine': origin(data), 'verdict': verdict(data)}
+    return found | {'machine': origin(data), 'verdict': verdict(data), 'summary': summary(data)}
 
 
 def rendered(text, made):
@@ -322,6 +340,19 @@ def wanted(program):
         yield ROOT / name, draw(program, description)
 
 
+NEEDED = {'README.md': ['verdict'], 'docs/notebook/figures.md': ['summary', 'verdict', 'compare', 'error_falling']}
+FIGURE = re.compile(r'\d[\d.,]*\s?(µs|mm\b|times the CPU|% of)')
+
+
+def faults():
+    """Blocks that are missing, so that two documents may differ; figures that no measurement wrote."""
+    for name, blocks_of in NEEDED.items():
+        text = (ROOT / name).read_text(encoding='utf-8')
+        yield from (f'{name} has no block of {block}' for block in blocks_of if f'<!-- figures: {block} -->' not in text)
+    plain = re.sub(r'<!-- figures: .*?<!-- end -->', '', (ROOT / 'README.md').read_text(encoding='utf-8'), flags=re.S)
+    yield from (f'README.md has "{m.group()}" outside of its block' for m in FIGURE.finditer(plain))
+
+
 def main():
     global OBSIM
     words = sys.argv[1:]
@@ -339,6 +370,9 @@ def main():
     if words not in (['write'], ['check']) or not program:
         sys.exit(__doc__)
     wrong = 0
+    for fault in faults() if words == ['check'] else ():
+        print(fault)
+        wrong = 1
     for path, text in wanted(program):
         if words == ['write']:
             path.write_text(text, encoding='utf-8')
