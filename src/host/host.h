@@ -17,6 +17,7 @@
 
 #include "host/death.h"
 #include "host/population.h"
+#include "host/role.h"
 #include "host/script_log.h"
 #include "host/timeline.h"
 #include "ranks/ranks.h"
@@ -127,8 +128,11 @@ uint32_t ob_host_get_script_errors(ob_host *h, ob_script_error out[OB_SCRIPT_ERR
 bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e);
 bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation);
 // Requests of visitors and other programs, of any kind: checks the request against the universe as it is now, completes
-// it, and carries it out or queues it. Roles are the caller's to check (role.h). Any thread.
+// it, and carries it out or queues it, whatever the role. Any thread.
 bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e);
+// The same for a visitor, whose number is the request's origin: checks its role first. Those who take part remove what they
+// have created, and steer no avatar but their own. Any thread.
+bool ob_host_ask_as(ob_host *h, ob_role role, ob_request *r, ob_error *e);
 // Carries out requests to keep a snapshot and to go back to one. Between a wait and the next go; returns true if the
 // universe was put back, to an earlier or later step. The first call keeps the start, where go begins.
 bool ob_host_operate(ob_host *h);

@@ -261,6 +261,18 @@ bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e)
 	}
 }
 
+bool ob_host_ask_as(ob_host *h, ob_role role, ob_request *r, ob_error *e)
+{
+	ob_roster_entry entry;
+	ob_role needed = ob_role_for(r->kind);
+	const bool found = ob_roster_find(h->roster, r->id, &entry), own = found && entry.origin == r->origin;
+	if (r->kind == OB_REQUEST_REMOVE && own && entry.generation == r->generation)
+		needed = OB_ROLE_TAKE_PART;
+	else if (r->kind != OB_REQUEST_ADD && r->kind != OB_REQUEST_RELEASE && found && ob_is_avatar(&entry) && !own)
+		needed = OB_ROLE_OPERATE;
+	return ob_role_check(role, needed, e) && ob_host_ask(h, r, e);
+}
+
 bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation)
 {
 	return request(h, &(ob_request){ .kind = OB_REQUEST_REMOVE, .id = id, .generation = generation });

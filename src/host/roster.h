@@ -17,6 +17,12 @@ typedef struct ob_roster_entry {
 	char name[OB_NAME_MAX];
 } ob_roster_entry;
 
+// True if the object is a visitor's avatar: what visitors create themselves has no script.
+static inline bool ob_is_avatar(const ob_roster_entry *entry)
+{
+	return entry->origin > 0 && entry->script > 0;
+}
+
 typedef struct ob_roster ob_roster;
 
 ob_roster *ob_roster_create(void); // empty; NULL: out of memory

@@ -8,11 +8,6 @@
 static const double golden_angle = 2.39996323; // rad: a spiral of places, each away from all before
 enum { PLACES = 200 };
 
-bool ob_is_avatar(const ob_roster_entry *entry)
-{
-	return entry->origin > 0 && entry->script > 0;
-}
-
 // True if no bounds of an object reach into this ball, but for ground.
 static bool is_free(const ob_universe *u, ob_vec3 p, double radius)
 {

@@ -6,8 +6,6 @@
 #include "host/host.h"
 #include "serve/client.h"
 
-// True if the object is an avatar: what visitors create themselves has no script.
-bool ob_is_avatar(const ob_roster_entry *entry);
 // Requests an avatar for a new viewer, at a free place near the template's. Scenes without avatars: nothing.
 void ob_avatar_ask(ob_host *h, const ob_scene *scene, const ob_client *c);
 // Finds each viewer's avatar, requests those that are missing, and removes those whose viewer has gone. Calls found for

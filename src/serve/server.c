@@ -250,49 +250,16 @@ static void look(lws_sorted_usec_list_t *tick)
 
 // ---- receiving
 
-static bool may(ob_client *c, ob_role needed)
+// True if the visitor may create one more object now.
+static bool may_create(ob_server *s, ob_client *c)
 {
-	ob_error e;
-	if (ob_role_check(c->role, needed, &e))
-		return true;
-	send_error(c, e.text);
-	return false;
-}
-
-// Sends a visitor's request to the host. Another's avatar is for operators.
-static void ask(ob_server *s, ob_client *c, ob_request *r)
-{
-	ob_error e;
-	ob_roster_entry entry;
-	if (ob_roster_find(ob_host_roster(s->host), r->id, &entry) && ob_is_avatar(&entry) &&
-	    entry.origin != c->number && r->kind != OB_REQUEST_RELEASE && !may(c, OB_ROLE_OPERATE))
-		return;
-	r->origin = c->number;
-	c->pulls |= r->kind == OB_REQUEST_PUSH || r->kind == OB_REQUEST_DRAG || r->kind == OB_REQUEST_TORQUE;
-	if (!ob_host_ask(s->host, r, &e))
-		send_error(c, e.text);
-}
-
-// A visitor may remove objects of its own, and, as an operator, any.
-static void remove_object(ob_server *s, ob_client *c, ob_request *r)
-{
-	ob_roster_entry entry;
-	const bool own = ob_roster_find(ob_host_roster(s->host), r->id, &entry) && entry.generation == r->generation &&
-			 entry.origin == c->number;
-	if (own || may(c, OB_ROLE_OPERATE))
-		ob_host_request_remove(s->host, r->id, r->generation);
-}
-
-static void create(ob_server *s, ob_client *c, const ob_object_def *def)
-{
-	ob_error e;
 	if (!ob_allowance_take(&c->creations, ob_clock_wall(), creations_rate))
 		send_error(c, "too many objects in a second: try again");
 	else if (ob_roster_copy(ob_host_roster(s->host), NULL, 0) >= ob_universe_capacity(ob_host_universe(s->host)))
 		send_error(c, "the universe is full: remove an object first");
-	else if (!ob_host_request(s->host, &(ob_request){ .kind = OB_REQUEST_ADD, .origin = c->number, .def = *def },
-				  &e))
-		send_error(c, e.text);
+	else
+		return true;
+	return false;
 }
 
 // Requests about objects and the universe.
@@ -305,12 +272,12 @@ static void carry_out_requests(ob_server *s, ob_client *c, ob_command *asked)
 			send_error(c, e.text);
 			return;
 		}
-		if (r->kind == OB_REQUEST_REMOVE)
-			remove_object(s, c, r);
-		else if (r->kind != OB_REQUEST_ADD && may(c, ob_role_for(r->kind)))
-			ask(s, c, r);
-		else if (r->kind == OB_REQUEST_ADD && may(c, OB_ROLE_TAKE_PART))
-			create(s, c, &r->def);
+		r->origin = c->number;
+		c->pulls |= r->kind == OB_REQUEST_PUSH || r->kind == OB_REQUEST_DRAG || r->kind == OB_REQUEST_TORQUE;
+		if (r->kind == OB_REQUEST_ADD && c->role >= OB_ROLE_TAKE_PART && !may_create(s, c))
+			continue;
+		if (!ob_host_ask_as(s->host, c->role, r, &e))
+			send_error(c, e.text);
 	}
 }
 
