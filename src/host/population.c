@@ -138,12 +138,14 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 	ob_passport pass = def->passport;
 	pass.id = id;
 	pass.generation = ++p->slots[id].generation;
-	pass.flags |= OB_OBJECT_PRESENT;
+	pass.flags &= ~(uint32_t)OB_OBJECT_PRESENT;
 	if (pass.flags & OB_OBJECT_PRESCRIBED)
 		pass.mass = 0;
 	pass.inertia = inertia_of(p, &pass);
 	ob_write_passport(p->u, id, &pass);
 	ob_sim_place(p->u, id, &def->state);
+	pass.flags |= OB_OBJECT_PRESENT; // to readers once it has a motion
+	ob_write_passport(p->u, id, &pass);
 	if (ob_free_settings_of(p->u))
 		ob_free_set_rate(p->u, id, def->update_rate);
 	p->slots[id].use = SLOT_PRESENT;

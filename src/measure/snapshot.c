@@ -125,27 +125,27 @@ static bool take_hulls(ob_snapshot *s, const ob_universe *u, const ob_passport *
 	return fine;
 }
 
-// An object that vanishes between two reads is absent; one that stays without a state is broken.
+// An object that changes between two reads is read again; one that stays without a state is broken.
 static bool take_object(ob_snapshot *s, const ob_universe *u, uint32_t id, ob_error *e)
 {
-	ob_passport *p = &s->passport[id], again;
-	memset(p, 0, sizeof *p);
-	memset(&s->motion[id], 0, sizeof s->motion[id]);
-	s->home[id] = UINT32_MAX;
-	s->own_time[id] = NAN;
-	if (!ob_universe_get_passport(u, id, p) || !(p->flags & OB_OBJECT_PRESENT))
-		return true;
-	if (!ob_universe_get_home(u, id, &s->home[id]))
+	ob_passport *p = &s->passport[id];
+	uint64_t version;
+	do {
+		version = ob_universe_get_passport_version(u, id);
+		memset(p, 0, sizeof *p);
+		memset(&s->motion[id], 0, sizeof s->motion[id]);
 		s->home[id] = UINT32_MAX;
-	if (!ob_universe_get_own_time(u, id, &s->own_time[id]))
 		s->own_time[id] = NAN;
-	if (ob_universe_get_motion(u, id, &s->motion[id]))
-		return take_hulls(s, u, p, e);
-	bool there = ob_universe_get_passport(u, id, &again) && again.generation == p->generation;
-	if (there)
-		return ob_fail(e, "object %u (%.*s) has published no state that makes sense", id, OB_NAME_MAX, p->name);
-	memset(p, 0, sizeof *p);
-	return true;
+		if (!ob_universe_get_passport(u, id, p) || !(p->flags & OB_OBJECT_PRESENT))
+			return true;
+		if (!ob_universe_get_home(u, id, &s->home[id]))
+			s->home[id] = UINT32_MAX;
+		if (!ob_universe_get_own_time(u, id, &s->own_time[id]))
+			s->own_time[id] = NAN;
+		if (ob_universe_get_motion(u, id, &s->motion[id]))
+			return take_hulls(s, u, p, e);
+	} while (ob_universe_get_passport_version(u, id) != version);
+	return ob_fail(e, "object %u (%.*s) has published no state that makes sense", id, OB_NAME_MAX, p->name);
 }
 
 static bool take_contacts(ob_snapshot *s, const ob_universe *u, ob_error *e)

@@ -228,9 +228,32 @@ bool ob_sim_wake_joined(ob_universe *u, const ob_joint_passport *j)
 	return any;
 }
 
+// Takes an object out of all that simulators share, but for its passport and its motion, which readers go on to see.
+static void take_out(ob_universe *u, uint32_t id)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		const ob_pair_key *k = &data->pair[i];
+		uint32_t other = k->a == id ? k->b : k->a;
+		if ((k->a != id && k->b != id) || !k->active || other >= data->objects_max ||
+		    !ob_schedule_is_dynamic(&data->schedule[other]))
+			continue;
+		wake_object(u, other);
+	}
+	for (uint32_t j = ob_joint_first(data, id); j; j = ob_joint_next(data, j, id))
+		(void)ob_sim_wake_joined(u, &data->joint[j - 1]);
+	ob_pairs_drop(u, id);
+	ob_broadphase_remove(u, id);
+	data->schedule[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };
+	note_change(u, id);
+	if (ob_universe_traced(u))
+		ob_trace_death(u, id, ob_newest_motion(u, id)->flags);
+	ob_pin_drop(u, id);
+}
+
 static void replace(ob_universe *u, uint32_t id, const ob_passport *p, const ob_state *state)
 {
-	ob_sim_remove(u, id);
+	take_out(u, id);
 	ob_write_passport(u, id, p);
 	ob_sim_place(u, id, state);
 }
@@ -294,24 +317,7 @@ void ob_sim_push(ob_universe *u, uint32_t id, ob_vec3 force, bool changes)
 
 void ob_sim_remove(ob_universe *u, uint32_t id)
 {
-	ob_step_data *data = ob_universe_step_data(u);
-	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
-		const ob_pair_key *k = &data->pair[i];
-		uint32_t other = k->a == id ? k->b : k->a;
-		if ((k->a != id && k->b != id) || !k->active || other >= data->objects_max ||
-		    !ob_schedule_is_dynamic(&data->schedule[other]))
-			continue;
-		wake_object(u, other);
-	}
-	for (uint32_t j = ob_joint_first(data, id); j; j = ob_joint_next(data, j, id))
-		(void)ob_sim_wake_joined(u, &data->joint[j - 1]);
-	ob_pairs_drop(u, id);
-	ob_broadphase_remove(u, id);
-	data->schedule[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };
-	note_change(u, id);
-	if (ob_universe_traced(u))
-		ob_trace_death(u, id, ob_newest_motion(u, id)->flags);
-	ob_pin_drop(u, id);
+	take_out(u, id);
 	ob_passport none = *ob_passport_of(u, id);
 	none.flags = 0;
 	ob_write_passport(u, id, &none);

@@ -315,8 +315,8 @@ static void load_object(ob_universe *u, uint32_t id, const ob_saved_universe *s)
 	data->result_island[id] = UINT32_MAX;
 	if (!(s->passport[id].flags & OB_OBJECT_PRESENT))
 		return;
-	ob_write_passport(u, id, &s->passport[id]);
 	ob_publish_motion(u, id, &s->motion[id]);
+	ob_write_passport(u, id, &s->passport[id]);
 	data->schedule[id] = s->schedule[id];
 	data->neighbours[id].count = s->neighbours[id];
 	memcpy(data->bounds[id], s->bounds[id], sizeof data->bounds[id]);
