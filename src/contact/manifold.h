@@ -40,9 +40,10 @@ typedef struct ob_manifold {
 	// m, path of both bodies together after which the manifold is found again; infinity, unless a finder knows that
 	// it changes sooner
 	double valid_path;
+	uint32_t pieces; // of a terrain, each tested as a hull of its own; a finder receives 0
 } ob_manifold;
 
-// Finds points with a gap up to margin (m). The caller sets out->disc_radius to 0 and out->valid_path to infinity.
+// Finds points with a gap up to margin (m). The caller sets out->disc_radius and out->pieces to 0 and out->valid_path to infinity.
 // Returns false for shapes that do not know each other, as two planes: out then has no points, and an infinite
 // separation.
 bool ob_manifold_find(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);

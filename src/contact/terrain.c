@@ -45,6 +45,7 @@ typedef struct contact {
 	ob_manifold on_plane; // of the body with the plane
 	ob_polygon over; // points along the normal
 	ob_vec3 u, w; // axes of the polygon
+	uint32_t pieces; // triangles that were tested
 	uint32_t others; // found along other directions
 	ob_manifold other[OTHERS];
 	double separation; // least, m
@@ -240,6 +241,7 @@ static void touch(contact *c, uint32_t triangle)
 {
 	ob_manifold m;
 	find_at(c, triangle, &m);
+	c->pieces++;
 	const bool touches = m.separation <= c->margin;
 	if (touches && !take(c, triangle, &m))
 		take_plane(c, triangle);
@@ -344,6 +346,7 @@ void ob_manifold_terrain(const ob_placed *a, const ob_placed *b, double margin, 
 	else if (c.others)
 		put_nearest(&c, out);
 	out->separation = c.separation;
+	out->pieces = c.pieces;
 	if (!out->points) { // others hold the body here: checked again before this region can
 		out->separation = ob_max(c.separation, rest);
 		out->valid_path = out->separation;

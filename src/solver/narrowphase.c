@@ -33,10 +33,19 @@ static uint64_t work_of_points(const ob_placed *a, const ob_placed *b)
 	return two ? OF_TWO_ROUND : OF_A_CORNER * (corners_of(a) + corners_of(b));
 }
 
+// Returns the work of tests with the ground below triangles of a terrain, whether points come of them or not.
+static uint64_t work_of_pieces(const ob_placed *a, uint32_t pieces)
+{
+	enum { OF_A_BALL = 8, OF_A_HULL = 100, OF_A_RIM = 2500 };
+	return (uint64_t)pieces * (ob_shape_is(a->shape, OB_ISOTROPIC) ? OF_A_BALL
+				   : ob_shape_is(a->shape, OB_RIMMED)  ? OF_A_RIM
+								       : OF_A_HULL);
+}
+
 void ob_shapes_find(ob_solver *s, const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	ob_manifold_find(a, b, margin, out);
-	ob_budget_note(s, out->points ? work_of_points(a, b) : 0);
+	ob_budget_note(s, out->pieces ? work_of_pieces(a, out->pieces) : out->points ? work_of_points(a, b) : 0);
 }
 
 // Runs a collision test. Once the budget is spent all shapes are far apart, so that loops over many pairs, and searches
@@ -50,6 +59,7 @@ static void find_manifold(void *with, const ob_placed *a, const ob_placed *b, do
 	b = ob_placed_own(b, &part[1]);
 	ob_budget_note(s, work_of_test(a, b));
 	out->disc_radius = 0;
+	out->pieces = 0;
 	out->valid_path = INFINITY;
 	if (ob_budget_spent(s)) {
 		out->points = 0;

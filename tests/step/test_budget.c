@@ -7,6 +7,7 @@
 #include "little_universe.h"
 #include "solver/narrowphase.h"
 #include "step/budget.h"
+#include "terrain/terrain.h"
 
 // Checks the failure's message; the state of the previous step stands.
 static void expect_failure(little_universe *l, ob_step_failure why, uint32_t object, const char *saying)
@@ -84,6 +85,42 @@ static void test_small_shares(void)
 	while (!ob_gate_host_wait(l.u, 0))
 		ob_step(l.sim);
 	CHECK(ob_step_failed(l.u, NULL) == OB_STEP_OK && ob_step_count(l.u) == 1);
+	little_close(&l);
+	free(s);
+}
+
+// Each triangle of a terrain that is tested counts, whether the body touches there or not: a cylinder that others hold off a
+// ridge is compared with all of it.
+static void test_terrain(void)
+{
+	static const double height[9] = { 0, 1, 0, 0, 1, 0, 0, 1, 0 };
+	const ob_quat level = ob_quat_identity();
+	little_scene *s = little_scene_new();
+	ob_world_sphere(&s->world, 500, .5, ob_v3(0, 0, 9));
+	little_universe l;
+	little_open(&l, s);
+	ob_error e;
+	ob_terrain *t = ob_terrain_of_heights(height, (uint32_t[2]){ 2, 2 }, (double[2]){ 2, 2 }, &e);
+	const ob_manifold_finder finder = ob_narrowphase_finder(&l.sim->solver);
+	ob_budget_begin_share(l.sim, 0);
+	for (uint32_t i = 0; i < t->regions; i++) {
+		ob_terrain_part part;
+		ob_terrain_take(t, i, &part);
+		const ob_placed ground = { .shape = OB_SHAPE_TERRAIN,
+					   .size = ob_terrain_size(t),
+					   .r = ob_quat_matrix(level),
+					   .hull = &part.hull },
+				cylinder = { .shape = OB_SHAPE_CYLINDER,
+					     .size = { .5, .5, 0 },
+					     .p = { .1, .1, .3 },
+					     .r = ob_quat_matrix(level) };
+		ob_manifold m;
+		const uint64_t before = l.sim->solver.budget.noted;
+		finder.find(finder.with, &cylinder, &ground, .1, &m);
+		CHECK(m.pieces > 0);
+		CHECK(l.sim->solver.budget.noted - before >= 2000 * m.pieces);
+	}
+	free(t);
 	little_close(&l);
 	free(s);
 }
@@ -230,6 +267,7 @@ int main(void)
 	test_spent_in_flight();
 	test_small_shares();
 	test_collision_tests();
+	test_terrain();
 	test_searches();
 	test_diverged();
 	test_engine();
