@@ -68,5 +68,5 @@ int main(void)
 			if (on != SPHERE)
 				check_leaving(on, rolls, OB_SHAPE_CYLINDER);
 		}
-	return 0;
+	return check_end();
 }
