@@ -1,10 +1,9 @@
 #include "life.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/random.h"
+#include "things.h"
 
 // They push themselves about, create what soon removes itself, and answer messages.
 static const char scripts[] =
@@ -31,45 +30,14 @@ static const char scripts[] =
 	"function on_wake() self:remove() end\n"
 	"function on_stop() for _, o in ipairs(near(.5)) do send(o, 1) end end]])\n";
 
-typedef struct writer {
-	char *to;
-	int used;
-	uint64_t seed;
-} writer;
-
-__attribute__((format(printf, 2, 3))) static void put(writer *w, const char *format, ...)
-{
-	va_list args;
-	va_start(args, format);
-	w->used += vsnprintf(w->to + w->used, (size_t)(LIFE_TEXT - w->used), format, args);
-	va_end(args);
-}
-
-static double within(writer *w, double low, double high)
-{
-	return ob_splitmix_within(&w->seed, low, high);
-}
-
-static bool one_in(writer *w, unsigned n)
-{
-	return ob_splitmix(&w->seed) % n == 0;
-}
-
-// " name = { x, y, z }," each between the two
-static void put_vector(writer *w, const char *name, double low, double high)
-{
-	const double x = within(w, low, high), y = within(w, low, high);
-	put(w, " %s = { %.3f, %.3f, %.3f },", name, x, y, within(w, low, high));
-}
-
-static void put_object(writer *w, uint64_t seed, bool has_scripts)
+static void put_object(writer *w, uint64_t seed, bool has_scripts, bool closed)
 {
 	static const char *const shapes[] = { "sphere", "box", "capsule", "cylinder" };
 	w->seed = seed;
 	const unsigned shape = ob_splitmix(&w->seed) % 4, fixed = ob_splitmix(&w->seed) % 12;
 	put(w, "%s {", shapes[shape]);
 	put_vector(w, "at", .3, 2.3);
-	if (fixed)
+	if (fixed || closed)
 		put_vector(w, "velocity", -2, 2);
 	if (shape == 1)
 		put_vector(w, "size", .1, .6);
@@ -78,14 +46,14 @@ static void put_object(writer *w, uint64_t seed, bool has_scripts)
 	if (shape > 1)
 		put(w, " length = %.3f,", within(w, .1, .6));
 	put(w, " restitution = %.2f,", within(w, 0, .8));
-	if (fixed < 2)
+	if (fixed < 2 && !closed)
 		put(w, " kind = '%s',", fixed ? "kinematic" : "static");
 	else if (has_scripts && one_in(w, 2))
 		put(w, " script = 'a',");
 	const double born = one_in(w, 4) ? within(w, .1, 3) : 0;
-	if (born > 0)
+	if (born > 0 && !closed)
 		put(w, " born = %.3f,", born);
-	if (one_in(w, 4))
+	if (one_in(w, 4) && !closed)
 		put(w, " dies = %.3f,", born + within(w, .05, 3));
 	put(w, " density = %.0f }\n", within(w, 100, 2000));
 }
@@ -97,9 +65,8 @@ static int by_step(const void *a, const void *b)
 }
 
 // Some of them come at once.
-static void draw_events(life *l, uint64_t seed, uint64_t left)
+static uint32_t draw_events(const life *l, uint64_t seed, life_event all[LIFE_EVENTS])
 {
-	life_event all[LIFE_EVENTS];
 	const uint32_t n = 1 + (uint32_t)(ob_splitmix(&seed) % LIFE_EVENTS);
 	for (uint32_t i = 0; i < n; i++) {
 		const uint32_t step = (uint32_t)(ob_splitmix(&seed) % LIFE_STEPS);
@@ -112,29 +79,70 @@ static void draw_events(life *l, uint64_t seed, uint64_t left)
 			all[i].kind = LIFE_CREATE_REMOVE;
 	}
 	qsort(all, n, sizeof *all, by_step);
+	return n;
+}
+
+static uint32_t draw_deeds(uint64_t seed, life_event all[LIFE_DEEDS])
+{
+	const uint32_t n = (uint32_t)(ob_splitmix(&seed) % (LIFE_DEEDS + 1));
+	for (uint32_t i = 0; i < n; i++) {
+		const uint64_t kind = ob_splitmix(&seed) % 12;
+		all[i].step = (uint32_t)(ob_splitmix(&seed) % LIFE_STEPS);
+		all[i].kind = LIFE_VISIT + (kind < LIFE_ALL_KINDS - LIFE_VISIT ? (uint32_t)kind : 0);
+		all[i].seed = ob_splitmix(&seed);
+	}
+	qsort(all, n, sizeof *all, by_step);
+	return n;
+}
+
+static void take(life *l, const life_event *all, uint32_t n, uint64_t left)
+{
 	for (uint32_t i = 0; i < n; i++)
 		if (left >> i & 1)
 			l->event[l->events++] = all[i];
 }
 
-void life_make(life *l, uint64_t seed, life_parts left)
+static void put_things(writer *w, life *l, uint64_t seed, uint64_t left, bool free)
 {
-	writer w = { .to = l->text, .seed = seed * 0x9e3779b97f4a7c15u + 1 };
+	things t = { .scripts = l->scripts, .free = free, .closed = l->closed, .life = l->seed };
+	const uint32_t most = ob_splitmix(&seed) % 4 ? LIFE_THINGS / 2 : LIFE_THINGS,
+		       n = (uint32_t)(ob_splitmix(&seed) % (most + 1));
+	for (uint32_t i = 0; i < n; i++) {
+		const uint64_t mine = ob_splitmix(&seed);
+		if (left >> i & 1)
+			put_thing(w, &t, i, mine);
+	}
+}
+
+void life_make(life *l, uint64_t seed, life_parts left, bool free)
+{
+	uint64_t more = seed * 0xd1342543de82ef95u + 7;
+	writer w = { .to = l->text, .size = LIFE_TEXT, .seed = seed * 0x9e3779b97f4a7c15u + 1 };
 	*l = (life){ .seed = seed };
-	const bool sleeping = !one_in(&w, 3), coarse = !one_in(&w, 3), ground = !one_in(&w, 6);
-	l->scripts = one_in(&w, 3);
+	bool sleeping = !one_in(&w, 3), coarse = !one_in(&w, 3), ground = !one_in(&w, 6);
+	l->scripts = one_in(&w, 3) && !free;
 	l->objects = 1 + (uint32_t)(ob_splitmix(&w.seed) % LIFE_OBJECTS);
+	l->reader = ob_splitmix(&more) % 3 == 0 && left.objects >> LIFE_READER & 1;
+	l->keeps = ob_splitmix(&more) % 2 == 0 && !l->scripts && left.objects >> LIFE_KEEPS & 1;
+	coarse |= ob_splitmix(&more) % 4 && left.objects >> LIFE_OBJECTS; // else most of the time goes into few lives
 	const uint64_t events = ob_splitmix(&w.seed), objects = ob_splitmix(&w.seed);
-	put(&w, "scene { step = 1/60%s, sleeping = %s%s }\n", coarse ? ", substeps = 2, iterations = 4" : "",
-	    sleeping ? "true" : "false", l->scripts ? ", room = 12" : "");
+	l->closed = free && ob_splitmix(&more) % 2;
+	put(&w, "scene { step = 1/60%s, sleeping = %s%s%s }\n", coarse ? ", substeps = 2, iterations = 4" : "",
+	    sleeping ? "true" : "false", l->scripts ? ", room = 12" : "", l->closed ? ", gravity = { 0, 0, 0 }" : "");
 	if (l->scripts)
 		put(&w, "%s", scripts);
-	if (ground)
+	if (l->closed)
+		put(&w, "sphere { radius = .1, at = { 0, 0, 90 } }\n");
+	else if (ground)
 		put(&w, "ground {}\n");
 	else
 		put(&w, "box { size = { 8, 8, .2 }, at = { 0, 0, -.1 }, static = true }\n");
 	for (uint32_t i = 0; i < l->objects; i++)
 		if (left.objects >> i & 1)
-			put_object(&w, objects + i, l->scripts);
-	draw_events(l, events, left.events);
+			put_object(&w, objects + i, l->scripts, l->closed);
+	put_things(&w, l, ob_splitmix(&more), left.objects >> LIFE_OBJECTS, free);
+	life_event strange[LIFE_EVENTS], deeds[LIFE_DEEDS];
+	take(l, strange, draw_events(l, events, strange), left.events);
+	take(l, deeds, draw_deeds(ob_splitmix(&more), deeds), left.events >> LIFE_EVENTS);
+	qsort(l->event, l->events, sizeof *l->event, by_step);
 }

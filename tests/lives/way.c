@@ -12,30 +12,18 @@
 #include "base/hash.h"
 #include "base/random.h"
 #include "checkpoint/saved_run.h"
-#include "host/host_state.h"
+#include "deeds.h"
+#include "free_way.h"
 #include "measure/measure.h"
+#include "reader.h"
+#include "things.h"
 
 enum { PATIENCE_S = 300 }; // a life takes some tens of ms
-
-typedef struct run {
-	const life *l;
-	way way;
-	ob_scene *scene;
-	ob_host_config config;
-	ob_host *h;
-	ob_error e;
-	uint32_t deaths;
-} run;
-
-static const ob_universe *universe(const run *r)
-{
-	return ob_host_universe(r->h);
-}
 
 // ---- events
 
 // An object that exists, any of them. false: none does.
-static bool draw_object(const run *r, uint64_t *seed, ob_passport *p)
+bool draw_object(const run *r, uint64_t *seed, ob_passport *p)
 {
 	const uint32_t ids = ob_universe_ids(universe(r));
 	uint32_t n = 0, which;
@@ -116,10 +104,30 @@ static void freeze_any(run *r, uint64_t *seed)
 	x->freeze[x->freezes++] = (ob_freeze){ place, p.id, p.generation };
 }
 
-static bool stand_at(run *r, uint64_t step)
+bool stand_at(run *r, uint64_t step)
 {
 	ob_host_go(r->h, step);
 	return ob_host_wait(r->h, &r->e);
+}
+
+// Ends a simulator, or in a free run stops it for a while, half of the time.
+static void stop_or_kill(const run *r, int pid, uint64_t seed)
+{
+	const bool stops = r->way == WAY_FREE && ob_splitmix(&seed) % 2;
+	kill(pid, stops ? SIGSTOP : SIGKILL);
+	if (!stops)
+		return;
+	nanosleep(&(struct timespec){ .tv_nsec = (long)(ob_splitmix(&seed) % 40000000) }, NULL);
+	kill(pid, SIGCONT);
+}
+
+// True if the event leaves a closed life closed, or a free run takes it.
+static bool may_happen(const run *r, uint32_t kind)
+{
+	if (r->way != WAY_FREE)
+		return true;
+	return r->l->closed ? kind == LIFE_KILL || kind == LIFE_PAUSE || kind == LIFE_COLOUR
+			    : kind != LIFE_FREEZE && kind != LIFE_RESUME && kind != LIFE_RETURN;
 }
 
 // Kills one while the run stands, or some time after it goes on.
@@ -132,11 +140,11 @@ static bool kill_any(run *r, uint64_t *seed)
 	if (ob_splitmix(seed) % 2)
 		r->h->restart.cost = 1e9; // no checkpoint for a while
 	ob_host_go(r->h, until < LIFE_STEPS ? until : LIFE_STEPS);
-	if (r->way < WAY_PROCESSES)
+	if (r->config.isolation == OB_ISOLATION_THREAD)
 		return ob_host_wait(r->h, &r->e);
 	nanosleep(&(struct timespec){ .tv_nsec = (long)(ob_splitmix(seed) % 2000000) }, NULL);
 	if (ob_universe_get_worker(universe(r), worker, &info) && info.pid > 0)
-		kill(info.pid, SIGKILL);
+		stop_or_kill(r, info.pid, *seed);
 	return ob_host_wait(r->h, &r->e);
 }
 
@@ -144,18 +152,24 @@ static bool start(run *r, const ob_saved_host *from)
 {
 	r->config.from = from;
 	r->h = ob_host_start(r->scene, &r->config, &r->e);
+	if (r->h && r->l->reader)
+		r->reader = reader_start(ob_universe_name(universe(r)));
 	return r->h;
 }
 
-static void stop(run *r)
+// false: a reader has found what makes no sense.
+static bool stop(run *r)
 {
 	ob_host_times times = { 0 };
+	const bool fine = reader_stop(r->reader, &r->e);
+	r->reader = NULL;
 	if (r->h) {
 		ob_host_get_times(r->h, &times);
 		ob_host_stop(r->h);
 	}
 	r->deaths += times.deaths;
 	r->h = NULL;
+	return fine;
 }
 
 static bool put_down_and_resume(run *r)
@@ -172,9 +186,9 @@ static bool put_down_and_resume(run *r)
 		return stands;
 	bool fine = ob_saved_run_make(&made, &f, r->h, "", &r->e);
 	if (fine) {
-		stop(r);
+		fine = stop(r);
 		ob_checkpoint_seal(&f);
-		fine = ob_saved_run_parse(&saved, &read, f.bytes, f.size, "life", &r->e);
+		fine = fine && ob_saved_run_parse(&saved, &read, f.bytes, f.size, "life", &r->e);
 		if (fine) {
 			fine = start(r, &saved.host);
 			ob_saved_run_close(&saved, &read);
@@ -220,19 +234,20 @@ static bool happen(run *r, const life_event *event)
 	case LIFE_RESUME:
 		return put_down_and_resume(r);
 	default:
-		return true;
+		return deed_happen(r, event);
 	}
 }
 
 static bool live(run *r)
 {
-	if (!start(r, NULL) || !stand_at(r, 0))
+	if (!start(r, NULL) || !stand_at(r, r->way == WAY_FREE ? 1 : 0))
 		return false;
+	const free_sums begin = r->way == WAY_FREE ? free_way_measure(r) : (free_sums){ .energy = 0 };
 	for (uint32_t i = 0; i < r->l->events; i++)
 		if ((r->l->event[i].step > ob_step_count(universe(r)) && !stand_at(r, r->l->event[i].step)) ||
-		    !happen(r, &r->l->event[i]))
+		    (may_happen(r, r->l->event[i].kind) && !happen(r, &r->l->event[i])))
 			return false;
-	return stand_at(r, LIFE_STEPS);
+	return stand_at(r, LIFE_STEPS) && (r->way != WAY_FREE || free_way_check(r, &begin));
 }
 
 static uint64_t hash_of(run *r, uint32_t *objects)
@@ -268,26 +283,33 @@ static uint64_t hash_of(run *r, uint32_t *objects)
 static outcome live_here(const life *l, way w)
 {
 	const ob_run_settings unset = ob_run_settings_unset();
+	char path[300];
 	run r = { .l = l, .way = w, .e = { "" } };
 	outcome o = { 0 };
-	r.scene = ob_scene_load_text("life.lua", l->text, strlen(l->text), NULL, &r.e);
+	snprintf(path, sizeof path, "%s/life.lua", things_folder());
+	r.scene = ob_scene_load_text(path, l->text, strlen(l->text), NULL, &r.e);
 	bool fine = r.scene && ob_run_settings_resolve(&r.scene->run, &unset, &r.e);
 	if (fine) {
 		r.config =
 			(ob_host_config){ .isolation = w < WAY_PROCESSES ? OB_ISOLATION_THREAD : OB_ISOLATION_PROCESS,
 					  .workers = w == WAY_ONE_THREAD ? 1 : 2,
 					  .harden = w == WAY_HARDENED ? OB_HARDEN_ALL : 0,
+					  .on_death = l->keeps ? OB_ON_DEATH_KEEP : OB_ON_DEATH_RESTART,
 					  .check = true,
+					  .returns = true,
 					  .run = r.scene->run };
+		r.config.run.freezes = l->keeps;
+		if (w == WAY_FREE)
+			free_way_settings(&r);
 		fine = live(&r);
 	}
-	o.failed = !fine;
-	o.broken = !r.scene || (r.h && ob_host_broke_invariant(r.h));
 	if (fine)
 		o.hash = hash_of(&r, &o.objects);
-	else
-		snprintf(o.text, sizeof o.text, "%.390s", r.e.text);
-	stop(&r);
+	o.broken = !r.scene || r.broken || (r.h && ob_host_broke_invariant(r.h));
+	if (!stop(&r))
+		fine = false, o.broken = true;
+	o.failed = !fine;
+	snprintf(o.text, sizeof o.text, "%.390s", fine ? "" : r.e.text);
 	o.deaths = r.deaths;
 	ob_scene_free(r.scene);
 	return o;
@@ -326,8 +348,10 @@ outcome way_run(const life *l, way w)
 	return o;
 }
 
-bool outcomes_agree(const outcome *a, const outcome *b)
+bool outcomes_agree(way w, const outcome *a, const outcome *b)
 {
+	if (w == WAY_FREE)
+		return !b->failed;
 	if (a->broken || b->broken || a->failed != b->failed)
 		return false;
 	return a->failed ? strcmp(a->text, b->text) == 0 : a->hash == b->hash && a->objects == b->objects;

@@ -1,11 +1,12 @@
-// Ways to run a life: threads, processes whose simulators are killed, hardened ones. All end alike.
+// Ways to run a life: threads, processes whose simulators are killed, hardened ones, which all end alike; and a free run,
+// whose simulators are killed or stopped, which ends at all, and keeps momentum and energy.
 #ifndef OB_TESTS_LIVES_WAY_H
 #define OB_TESTS_LIVES_WAY_H
 
 #include "life.h"
 
-typedef enum way { WAY_THREADS, WAY_ONE_THREAD, WAY_PROCESSES, WAY_HARDENED, WAYS } way;
-#define WAY_NAMES "threads", "one thread, resumed", "processes, killed", "hardened, killed"
+typedef enum way { WAY_THREADS, WAY_ONE_THREAD, WAY_PROCESSES, WAY_HARDENED, WAY_FREE, WAYS } way;
+#define WAY_NAMES "threads", "one thread, resumed", "processes, killed", "hardened, killed", "free, killed or stopped"
 
 typedef struct outcome {
 	uint64_t hash; // motions, passports, state of scripts
@@ -16,7 +17,8 @@ typedef struct outcome {
 
 // Runs a life, in a process of its own: a crash or a hang is a failure, too.
 outcome way_run(const life *l, way w);
-// True if both ended in the same state, or failed for the same reason, which is none of obsim's.
-bool outcomes_agree(const outcome *a, const outcome *b);
+// True if both ended in the same state, or failed for the same reason, which is none of obsim's. w: of b; a free run has to end
+// well.
+bool outcomes_agree(way w, const outcome *a, const outcome *b);
 
 #endif
