@@ -123,7 +123,7 @@ void life_make(life *l, uint64_t seed, life_parts left, bool free)
 	l->scripts = one_in(&w, 3) && !free;
 	l->objects = 1 + (uint32_t)(ob_splitmix(&w.seed) % LIFE_OBJECTS);
 	l->reader = ob_splitmix(&more) % 3 == 0 && left.objects >> LIFE_READER & 1;
-	l->keeps = ob_splitmix(&more) % 2 == 0 && !l->scripts && left.objects >> LIFE_KEEPS & 1;
+	l->keeps = ob_splitmix(&more) % 2 == 0 && left.objects >> LIFE_KEEPS & 1;
 	coarse |= ob_splitmix(&more) % 4 && left.objects >> LIFE_OBJECTS; // else most of the time goes into few lives
 	const uint64_t events = ob_splitmix(&w.seed), objects = ob_splitmix(&w.seed);
 	l->closed = free && ob_splitmix(&more) % 2;
