@@ -34,7 +34,7 @@ with tempfile.TemporaryDirectory() as folder:
 	for seed in range(first, last + 1):
 		scene = os.path.join(folder, "life.lua")
 		with open(scene, "w") as f:
-			f.write(subprocess.run([lives, "lives", "--print", str(seed)], stdout=subprocess.PIPE, text=True, check=True).stdout)
+			f.write(subprocess.run([lives, "lives", "--folder", folder, "--print", str(seed)], stdout=subprocess.PIPE, text=True, check=True).stdout)
 		one, three = run(scene), run(scene, "mpirun", "-n", "3")
 		if one != three or " " in one:
 			failed += 1
