@@ -106,16 +106,61 @@ bool hand_step(hand *h, uint32_t id)
 	       ob_free_sim_step(&h->sim[id], &h->scratch);
 }
 
+static void begin_anew(hand *h, uint32_t id)
+{
+	if (!ob_free_sim_begin(&h->sim[id], h->u, id))
+		exit(1);
+}
+
+// Ends all stops. false: there were none.
+static bool end_stops(hand *h, uint64_t stopped[HAND_MOST], uint64_t turn, uint64_t *random)
+{
+	bool some = false;
+	for (uint32_t id = 0; id < h->objects; id++) {
+		if (stopped[id] <= turn)
+			continue;
+		some = true;
+		stopped[id] = 0;
+		if (ob_splitmix(random) % 2)
+			begin_anew(h, id);
+	}
+	return some;
+}
+
+bool hand_run_with_stops(hand *h, uint64_t *random, double kills, double stops)
+{
+	enum { LONGEST = 4000 };
+	uint64_t stopped[HAND_MOST] = { 0 }; // until a turn
+	for (uint64_t turn = 0; !hand_is_there(h); turn++) {
+		uint32_t tried = 0, id = (uint32_t)(ob_splitmix(random) % h->objects);
+		while (tried++ < h->objects && (stopped[id] > turn || !hand_step(h, id)))
+			id = (id + 1) % h->objects;
+		if (tried > h->objects && !end_stops(h, stopped, turn, random))
+			return false;
+		if (tried > h->objects)
+			continue;
+		if (ob_splitmix_real(random) < kills)
+			begin_anew(h, id);
+		if (stops > 0 && ob_splitmix_real(random) < stops)
+			stopped[id] = turn + ob_splitmix(random) % LONGEST;
+	}
+	return true;
+}
+
 bool hand_run(hand *h, uint64_t *random, double kills)
 {
+	return hand_run_with_stops(h, random, kills, 0);
+}
+
+bool hand_run_in_order(hand *h)
+{
 	while (!hand_is_there(h)) {
-		uint32_t tried = 0, id = (uint32_t)(ob_splitmix(random) % h->objects);
-		while (tried++ < h->objects && !hand_step(h, id))
-			id = (id + 1) % h->objects;
-		if (tried > h->objects)
+		uint32_t first = HAND_MOST;
+		for (uint32_t id = 0; id < h->objects; id++)
+			if (!at_boundary(h, id) && (first == HAND_MOST || h->sim[id].time < h->sim[first].time))
+				first = id;
+		if (!hand_step(h, first))
 			return false;
-		if (ob_splitmix_real(random) < kills && !ob_free_sim_begin(&h->sim[id], h->u, id))
-			exit(1);
 	}
 	return true;
 }

@@ -31,6 +31,11 @@ bool hand_step(hand *h, uint32_t id);
 // Steps all in a random order until all are at the boundary. kills: probability that a simulator begins anew after a step.
 // Returns false if nobody could step before that.
 bool hand_run(hand *h, uint64_t *random, double kills);
+// The same with simulators that are stopped for a while. stops: probability of that after a step. Once all others wait for those
+// that are stopped, each goes on, or begins anew.
+bool hand_run_with_stops(hand *h, uint64_t *random, double kills, double stops);
+// Steps all without a lag, the earliest first, until all are at the boundary. false: it is blocked.
+bool hand_run_in_order(hand *h);
 bool hand_is_there(const hand *h);
 
 #endif

@@ -1,5 +1,5 @@
-"""Random free runs: births, deaths, kills, stops by a signal, simulators that sleep, every coupling and bound. Each comes to
-its end.
+"""Random free runs: births, deaths, kills, stops by a signal for longer than the run's patience and for less, simulators that
+sleep, every coupling and bound. Each comes to its end.
 
 Arguments: the number of runs, or the first seed and the number of runs."""
 
@@ -16,6 +16,7 @@ import program
 NUMBERS = [int(a) for a in sys.argv[1:] if a.isdigit()]
 FIRST, RUNS = [[1, 12], [1] + NUMBERS, NUMBERS][len(NUMBERS)]
 STEP = 1 / 60
+PATIENCE, LONG = .4, 1.2 # s
 
 
 class Random(program.Case):
@@ -47,15 +48,16 @@ class Random(program.Case):
 		fault = draw.choice(faults)
 		return words + ["--isolation", isolation] + (["--fault", fault] if fault else [])
 
-	def stop_now_and_then(self, draw, run):
-		"""Stops simulators, or all that are threads, one at a time until the run's end. Returns the number of stops."""
-		stops = 0
+	def stop_now_and_then(self, draw, run, longest):
+		"""Stops simulators, or all that are threads, one at a time until the run's end; one of them for the longest time (s), if
+		there is one. Returns the number of stops."""
+		stops, left = 0, longest
 		while run.poll() is None:
 			pids = program.simulators(run.pid) or [run.pid]
 			pid = draw.choice(pids)
 			try:
 				os.kill(pid, signal.SIGSTOP)
-				time.sleep(draw.choice([.001, .01, .1]))
+				time.sleep(left.pop() if left and pid != run.pid else draw.choice([.001, .01, .1]))
 				os.kill(pid, signal.SIGCONT)
 				stops += 1
 			except ProcessLookupError:
@@ -64,12 +66,14 @@ class Random(program.Case):
 		return stops
 
 	def test_each_ends(self):
-		deaths = stops = 0
+		deaths = stalls = stops = 0
 		for seed in range(FIRST, FIRST + RUNS):
 			draw = random.Random(seed)
 			scene, words = self.scene(draw), self.options(draw, seed)
+			kill = draw.random() < .5 and "process" in words # a thread cannot be killed
+			words += ["--patience", PATIENCE] + ([] if "--pace" in words else ["--pace", .5]) if kill else [] # or it ends at once
 			run = program.start("run", scene, *words, "--json", self.path("r.json"))
-			stops += self.stop_now_and_then(draw, run) if draw.random() < .5 else 0
+			stops += self.stop_now_and_then(draw, run, [LONG] if kill else []) if kill or draw.random() < .5 else 0
 			_, errors = run.communicate(timeout=program.PATIENCE)
 			self.assertEqual(run.returncode, 0, (seed, words, errors))
 			with open(self.path("r.json")) as f:
@@ -77,7 +81,8 @@ class Random(program.Case):
 			self.assertEqual(r["outcome"], "finished", (seed, words))
 			self.assertAlmostEqual(r["simulated_s"], r["steps"] * STEP, delta=1e-9)
 			deaths += r["deaths"]
-		print(f"{RUNS} runs from seed {FIRST} on, {deaths} deaths, {stops} stops", file=sys.stderr)
+			stalls += sum(d["cause"] == "stall" for d in r.get("death_list", []))
+		print(f"{RUNS} runs from seed {FIRST} on, {deaths} deaths, {stalls} of stalls, {stops} stops", file=sys.stderr)
 
 
 if __name__ == "__main__":
