@@ -78,6 +78,16 @@ static bool has_account(const ob_free_sim *s, uint32_t id)
 	return false;
 }
 
+static void read_passport(ob_free_neighbour *n, const ob_universe *u)
+{
+	const double friction = n->passport.friction;
+	n->passport_version = ob_universe_get_passport_version(u, n->id);
+	ob_universe_get_passport(u, n->id, &n->passport);
+	n->hull = ob_hull_of(u, &n->passport);
+	if (n->passport.friction != friction) // the contact's impulses would go on without it
+		n->contact.kept = 0;
+}
+
 static void add(ob_free_sim *s, ob_free_scratch *x, uint32_t id, ob_free_kind kind, uint32_t generation)
 {
 	if (s->neighbours == s->neighbours_max) {
@@ -86,9 +96,7 @@ static void add(ob_free_sim *s, ob_free_scratch *x, uint32_t id, ob_free_kind ki
 	}
 	ob_free_neighbour *n = &s->neighbour[s->neighbours++];
 	*n = (ob_free_neighbour){ .id = id, .generation = generation, .kind = kind };
-	n->passport_version = ob_universe_get_passport_version(x->u, id);
-	ob_universe_get_passport(x->u, id, &n->passport);
-	n->hull = ob_hull_of(x->u, &n->passport);
+	read_passport(n, x->u);
 	if (!ob_passport_collides(&s->passport, &n->passport))
 		s->neighbours--;
 	else if (kind == OB_FREE_SIMULATED)
@@ -99,6 +107,16 @@ static bool is_there(const ob_free_neighbour *n, const ob_universe *u)
 {
 	uint32_t generation;
 	return ob_free_kind_of(u, n->id, &generation) != OB_FREE_ABSENT && generation == n->generation;
+}
+
+// Reads body properties that the host has changed.
+static void renew_passports(ob_free_sim *s, const ob_universe *u)
+{
+	for (uint32_t i = 0; i < s->neighbours; i++) {
+		ob_free_neighbour *n = &s->neighbour[i];
+		if (ob_universe_get_passport_version(u, n->id) != n->passport_version && is_there(n, u))
+			read_passport(n, u);
+	}
 }
 
 // Drops neighbours that are gone or far. One that has mail is kept until the account is settled.
@@ -178,6 +196,7 @@ void ob_free_neighbours_update(ob_free_sim *s, ob_free_scratch *x, double h)
 	const bool all = renew_bounds(s, x, h);
 	const uint32_t ids = ob_universe_ids(x->u), groups = (ids + OB_FREE_GROUP - 1) / OB_FREE_GROUP;
 	bool any = all;
+	renew_passports(s, x->u);
 	if (ob_free_schedule_replays(x->schedule)) {
 		replay(s, x);
 		return;

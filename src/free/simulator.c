@@ -172,10 +172,13 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 	x->run.substeps = substeps_of(x, h);
 	const uint64_t version = ob_universe_get_passport_version(x->u, s->id);
 	if (version != s->passport_version) {
+		const double friction = s->passport.friction;
 		s->flies = false;
 		ob_universe_get_passport(x->u, s->id, &s->passport);
 		s->hull = ob_hull_of(x->u, &s->passport);
 		s->passport_version = version;
+		for (uint32_t i = 0; i < s->neighbours && s->passport.friction != friction; i++)
+			s->neighbour[i].contact.kept = 0;
 	}
 	ob_free_neighbours_update(s, x, h);
 	if (!x->schedule && flies_on(s, x, next)) {

@@ -259,6 +259,33 @@ static void test_rates(void)
 	hand_destroy(h);
 }
 
+// A box slides on another, which slides on the ground. Friction that the host changes, while all wait, holds at once for those
+// near it, too, whichever of them solves the contact.
+static void test_friction_changes(ob_coupling coupling, uint32_t changed)
+{
+	ob_free_settings f = settings(1000, .002);
+	f.coupling = coupling;
+	hand *h = hand_create(f, down);
+	hand_add(h, OB_SHAPE_PLANE, none, 0, none, none, 0);
+	hand_add(h, OB_SHAPE_BOX, ob_v3(2, .5, .1), 100, ob_v3(0, 0, .1), none, 0);
+	hand_add(h, OB_SHAPE_BOX, ob_v3(.1, .1, .1), 1, ob_v3(-1, 0, .3), ob_v3(4, 0, 0), 0);
+	uint64_t random = 1;
+	hand_until(h, 6);
+	CHECK(hand_run(h, &random, 0));
+	CHECK(ob_free_complete(h->u, 6) == 6);
+	const double before = motion_of(h, 2).v.x;
+	CHECK_NEAR(before, 4 - .5 * 9.81 * .1, .1);
+	ob_passport p;
+	CHECK(ob_universe_get_passport(h->u, changed, &p));
+	p.friction = 0;
+	ob_write_passport(h->u, changed, &p);
+	hand_until(h, 12);
+	CHECK(hand_run(h, &random, 0));
+	CHECK(ob_free_complete(h->u, 12) == 12);
+	CHECK_NEAR(motion_of(h, 2).v.x, before, .02);
+	hand_destroy(h);
+}
+
 // Argument: number of worlds; 100 without one.
 int main(int argc, char **argv)
 {
@@ -273,5 +300,9 @@ int main(int argc, char **argv)
 	test_one_stopped(OB_COUPLING_OWN);
 	test_light_between_heavy();
 	test_rates();
+	for (uint32_t changed = 1; changed <= 2; changed++) {
+		test_friction_changes(OB_COUPLING_LEDGER, changed);
+		test_friction_changes(OB_COUPLING_OWN, changed);
+	}
 	return check_end();
 }
