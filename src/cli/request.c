@@ -640,6 +640,8 @@ bool ob_request_check_frames(const ob_frames_request *f, const ob_scene *s, doub
 // Checks the resolved run against the request.
 static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
+	if (!r->isolation_given && s->tour) // it kills processes
+		r->isolation = OB_ISOLATION_PROCESS;
 	if (r->run.monolith && r->explain)
 		return ob_fail(e, "--explain means nothing to --arch monolith");
 	if (r->run.monolith && r->checkpoint)

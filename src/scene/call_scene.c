@@ -9,6 +9,7 @@
 
 typedef struct scene_fields {
 	const char *title;
+	bool tour;
 	double duration;
 	uint64_t seed;
 	uint32_t room;
@@ -22,6 +23,7 @@ typedef struct scene_fields {
 #define F(member, ...) OB_FIELD(scene_fields, member, .name = #member, __VA_ARGS__)
 static const ob_field own_fields[] = {
 	F(title, .kind = OB_FIELD_TEXT, .high = sizeof((ob_scene *)0)->title - 1),
+	F(tour, .kind = OB_FIELD_BOOLEAN),
 	F(gravity, .kind = OB_FIELD_VECTOR, .low = -OB_GRAVITY_MOST, .high = OB_GRAVITY_MOST),
 	F(duration, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9),
 	F(room, .kind = OB_FIELD_COUNT, .low = 0, .high = OB_SCENE_ROOM_MAX),
@@ -143,6 +145,7 @@ int ob_scene_call_scene(lua_State *L)
 	ob_fields_read(L, 1, "scene", fields, OWN_FIELDS + SETTINGS, &f);
 	if (f.title != s->title)
 		snprintf(s->title, sizeof s->title, "%s", f.title);
+	s->tour = f.tour;
 	s->duration = f.duration;
 	s->room = f.room;
 	s->run.gravity = f.gravity;

@@ -83,6 +83,7 @@ enum { OB_SCENE_MESHES_MAX = 255 }; // limit of passports
 
 typedef struct ob_scene {
 	char title[128];
+	bool tour; // viewers are led through it (src/serve/page/tour.js)
 	ob_run_settings run; // before the command line's settings (ob_run_settings_resolve)
 	ob_free_settings free; // update_rate: Hz; 0 = in lockstep, below 0 = free at the step's. The rest: 0 = not set
 	double duration; // s

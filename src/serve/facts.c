@@ -84,8 +84,10 @@ ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_u
 	put_text(m, "universe", info->name);
 	put_text(m, "version", c->version);
 	put_text(m, "isolation", info->isolation);
+	put_text(m, "arch", info->arch);
 	put_text(m, "sync", c->free_run ? "free" : "lockstep");
-	ob_message_print(m, ",\"fixed\":%s,\"saves\":%s", c->fixed ? "true" : "false", c->saves ? "true" : "false");
+	ob_message_print(m, ",\"tour\":%s,\"fixed\":%s,\"saves\":%s", scene->tour ? "true" : "false",
+			 c->fixed ? "true" : "false", c->saves ? "true" : "false");
 	ob_message_print(m, ",\"workers\":%u,\"role\":\"%s\",\"look_only\":%s,\"step_length\":%.17g", info->workers,
 			 ob_role_name(role), role == OB_ROLE_WATCH ? "true" : "false", info->step_length);
 	put_vec3(m, "gravity", info->gravity);
@@ -157,10 +159,13 @@ ob_message *ob_facts_metrics(ob_host *h, uint32_t viewers)
 	return m;
 }
 
-ob_message *ob_facts_workers(const ob_host *h)
+ob_message *ob_facts_workers(ob_host *h)
 {
 	const ob_universe *u = ob_host_universe(h);
 	ob_worker_info w;
+	ob_death deaths[OB_DEATHS_KEPT];
+	const uint32_t n = ob_host_get_deaths(h, deaths);
+	const uint64_t now = ob_clock_ns();
 	ob_message *m = ob_message_new(true);
 	if (!m)
 		return NULL;
@@ -169,7 +174,11 @@ ob_message *ob_facts_workers(const ob_host *h)
 		const uint32_t object = ob_worker_object(u, i);
 		ob_message_print(m, "%s[%d,%u,%u,%.3f,", i ? "," : "", w.pid, ob_universe_rank_of(u, i), w.objects,
 				 1e-9 * (double)w.cpu_ns);
-		ob_message_print(m, object == OB_NO_OBJECT ? "null]" : "%u]", object);
+		ob_message_print(m, object == OB_NO_OBJECT ? "null," : "%u,", object);
+		uint32_t k = n; // its latest death is the one before
+		while (k > 0 && deaths[k - 1].worker != i)
+			k--;
+		ob_message_print(m, k > 0 ? "%.2f]" : "null]", k > 0 ? 1e-9 * (double)(now - deaths[k - 1].when) : 0);
 	}
 	ob_message_print(m, "]}");
 	return m;
@@ -202,18 +211,18 @@ static double deepest(const ob_snapshot *s, const ob_universe *u)
 	return known ? p.max_m : NAN;
 }
 
-ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy)
+ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy, bool paused)
 {
 	const ob_universe *u = ob_host_universe(h);
 	ob_universe_info info;
 	ob_snapshot s = { 0 };
 	char hash[20] = "";
 	ob_universe_get_info(u, &info);
-	const bool ended = info.state == OB_UNIVERSE_FINISHED,
-		   taken = (energy || ended) && ob_snapshot_take(&s, u, 0, NULL);
+	const bool ended = info.state == OB_UNIVERSE_FINISHED, stands = ended || paused,
+		   taken = (energy || stands) && ob_snapshot_take(&s, u, 0, NULL);
 	const double joules = taken && energy ? ob_measure_energy(&s, info.gravity) : NAN,
 		     depth = taken && energy ? deepest(&s, u) : NAN;
-	if (taken && ended)
+	if (taken && stands && (ended || is_of_one_step(&s, u)))
 		snprintf(hash, sizeof hash, "%016llx", (unsigned long long)ob_measure_hash(&s));
 	ob_snapshot_finish(&s);
 	ob_message *m = ob_message_new(true);

@@ -7,19 +7,19 @@
 #include "serve/message.h"
 #include "serve/serve.h"
 
-// {"welcome": title, isolation, sync, role, gravity, look, cameras, params, controls, avatar's name, meshes ..}: the first message. mesh: contents of the
+// {"welcome": title, isolation, arch, sync, role, gravity, look, cameras, params, controls, avatar's name, meshes ..}: the first message. mesh: contents of the
 // scene's meshes, by their numbers, less 1; NULL: they are sent otherwise.
 ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
 			     const ob_content *mesh);
-// {"statistics": objects, awake, pairs, islands, step, viewers, deaths, ended, then the hash of the state, cpu (s, of all
-// workers), energy (J), penetration (m, the deepest) ..}. energy: someone looks at the last two; else they are null.
-ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy);
+// {"statistics": objects, awake, pairs, islands, step, viewers, deaths, ended, the hash of a state that stands ("": it does not),
+// cpu (s, of all workers), energy (J), penetration (m, the deepest) ..}. energy: someone looks at the last two; else they are null.
+ob_message *ob_facts_statistics(const ob_host *h, uint32_t viewers, bool energy, bool paused);
 // {"notice": text}
 ob_message *ob_facts_notice(const char *text);
 // {"avatar": {id, generation}}
 ob_message *ob_facts_avatar(uint32_t id, uint32_t generation);
-// {"workers": [[pid, rank, objects of the last step, CPU (s), object that it is busy with, or null], ..]}
-ob_message *ob_facts_workers(const ob_host *h);
+// {"workers": [[pid, rank, objects of the last step, CPU (s), object that it is busy with, or null, s since it died last, or null], ..]}
+ob_message *ob_facts_workers(ob_host *h);
 // The universe's figures in the text format of Prometheus (version 0.0.4), of less than 4 kB
 ob_message *ob_facts_metrics(ob_host *h, uint32_t viewers);
 // {"notice": the latest failure after *since (ns) that froze objects, in words}, and sets since; NULL also if there is none

@@ -184,7 +184,7 @@ static void send_all_about(ob_server *s, ob_client *c)
 	ob_universe_get_info(ob_host_universe(s->host), &info);
 	send_one(c, ob_facts_welcome(&s->config, c->role, &info, s->own));
 	send_one(c, ob_feed_whole(s->feed, &pace));
-	send_one(c, ob_facts_statistics(s->host, s->count, c->energy));
+	send_one(c, ob_facts_statistics(s->host, s->count, c->energy, pace.paused));
 	ob_avatar_ask(s->host, s->config.scene, c);
 }
 
@@ -205,7 +205,7 @@ static void send_news(ob_server *s)
 }
 
 // Sends what need not be new in each frame.
-static void send_details(ob_server *s)
+static void send_details(ob_server *s, bool paused)
 {
 	bool energy = false;
 	for (ob_client *c = s->clients; c; c = c->next)
@@ -213,7 +213,7 @@ static void send_details(ob_server *s)
 	send_frozen(s);
 	send_joints(s);
 	send_simulators(s);
-	send_all(s, ob_facts_statistics(s->host, s->count, energy), false);
+	send_all(s, ob_facts_statistics(s->host, s->count, energy, paused), false);
 }
 
 static void look(lws_sorted_usec_list_t *tick)
@@ -241,7 +241,7 @@ static void look(lws_sorted_usec_list_t *tick)
 	if (details) {
 		ob_avatars_update(s->host, s->config.scene, s->clients, tell_avatar);
 		if (s->clients)
-			send_details(s);
+			send_details(s, pace.paused);
 		s->details_at = begin + detail_interval;
 	}
 	double wait = fmax(interval, (ob_clock_wall() - begin) / share);

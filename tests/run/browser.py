@@ -80,6 +80,10 @@ class Browser:
 	def run(self, script, *args):
 		return self.ask("POST", "/execute/sync", {"script": script, "args": list(args)})
 
+	def devtools(self, command, **words):
+		"""A command of Chromium's own protocol."""
+		return self.ask("POST", "/goog/cdp/execute", {"cmd": command, "params": words})
+
 	def wait(self, expression, patience=PATIENCE):
 		"""Waits until the expression is true; returns its value."""
 		end = time.monotonic() + patience

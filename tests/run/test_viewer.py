@@ -27,6 +27,7 @@ class Viewer(server.Case):
 		self.addCleanup(b.close)
 		b.go(f"http://127.0.0.1:{self.port}/" + (f"#token={token}" if token else ""))
 		b.wait(SEEN)
+		b.run("obsim.walk.end()")
 		return b
 
 	def keep(self, b, name):
@@ -129,9 +130,10 @@ class Viewer(server.Case):
 		b = self.open()
 		b.wait("obsim.universe.told > 2")
 		b.key("m")
-		b.wait("document.querySelectorAll('#workers tbody tr').length === 2 && obsim.universe.simulators.size === 8")
+		b.wait("document.querySelectorAll('#strip li').length === 2 && obsim.universe.simulators.size === 8")
 		colours = "const s = document.querySelector('#colours'); s.value = arguments[0]; s.dispatchEvent(new Event('change'))"
-		b.wait("document.querySelector('#statistics').textContent.includes(' 0 awake')")
+		b.key(" ")
+		b.wait("obsim.universe.paused")
 		pictures = []
 		for key in ("own", "simulator", "rest"):
 			b.run(colours, key)
@@ -140,6 +142,7 @@ class Viewer(server.Case):
 		b.wait("document.querySelector('#details dl').textContent.includes('reads')")
 		pictures.append(self.still(b))
 		self.assertEqual(len(set(pictures)), 4)
+		b.key(" ")
 		told = b.run("document.querySelector('[data-do=restart]').click(); return obsim.universe.told")
 		b.wait(f"obsim.universe.told < {told} - .5")
 		b.wait("obsim.universe.told > .5")
@@ -373,8 +376,8 @@ controls { gamepad = 2, label = "Back", sends = "go", values = { -1 } }
 		for a, expected in zip(after, (before[0] - 80 * .006, before[1] + 40 * .006, before[2] * 3)):
 			self.assertAlmostEqual(a, expected, delta=.02 * abs(expected))
 		self.assertTrue(b.run("return document.querySelector('#details').hidden"))
-		b.key("v") # the scene's viewpoint, which looks at the stack
-		b.touch([(480, 300)])
+		b.key("v") # the scene's viewpoint, which looks at the stack, beside the panels
+		b.touch([(650, 300)])
 		b.wait("document.querySelector('#details dl').textContent.includes('mass')")
 		self.assertEqual(b.console(), [])
 		self.end()
@@ -419,7 +422,7 @@ controls { gamepad = 2, label = "Back", sends = "go", values = { -1 } }
 				"sphere { name = 'mover', radius = .3, at = { 0, 1, .3 }, velocity = { 2, 0, 0 }, spin = { 0, 2 / .3, 0 } }\n")
 		self.serve_file(self.path("scene.lua"), "--paused", "--listen", "127.0.0.1:0")
 		b = self.open()
-		self.assertNotIn("0 frames", b.run("return document.querySelector('#speed').textContent"))
+		self.assertNotIn("0 pictures", b.run("return document.querySelector('#speed').textContent"))
 		seen = """const c = obsim.camera, o = [...obsim.universe.objects.values()].find((o) => o.name === 'mover'), p = obsim.universe.pose(o).p;
 			const way = p.map((x, k) => x - c.eye[k]), far = Math.hypot(...way);
 			return { x: p[0], height: c.eye[2], off: Math.acos(way.reduce((s, x, k) => s + x * c.forward[k], 0) / far) };"""

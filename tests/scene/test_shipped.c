@@ -130,10 +130,11 @@ static int files(void)
 int main(int argc, char **argv)
 {
 	folder = argc > 2 ? argv[2] : "scenes";
-	CHECK(files() == 26);
+	CHECK(files() == 27);
 	check_count("falling_boxes", NULL, 101, true);
 	check_count("falling_boxes", "n=1", 2, true);
 	check_count("falling_boxes", "n=1000", 1001, true);
+	check_count("tour", NULL, 61, false);
 	check_count("gas", NULL, 206, false);
 	check_count("gas", "n=1000", 1006, false);
 	check_count("stack", NULL, 11, false);

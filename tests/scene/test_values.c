@@ -33,15 +33,16 @@ static void check_defaults(void)
 
 static void check_settings(void)
 {
-	ob_scene *s = load_good("scene { title = 'T', gravity = { 1, 2, 3 }, step = .01, duration = 5, substeps = 4,\n"
-				"iterations = 3, solver = 'jacobi', integrator = 'ode', sleeping = false, seed = 12 }\n"
-				"record { every = 7 } sun { towards = { 0, 0, 4 } } sky { top = '#ffffff' }\n"
-				"ground { height = 2, grid = false, colour = { 1, 0, 0 } }");
+	ob_scene *s = load_good(
+		"scene { title = 'T', tour = true, gravity = { 1, 2, 3 }, step = .01, duration = 5, substeps = 4,\n"
+		"iterations = 3, solver = 'jacobi', integrator = 'ode', sleeping = false, seed = 12 }\n"
+		"record { every = 7 } sun { towards = { 0, 0, 4 } } sky { top = '#ffffff' }\n"
+		"ground { height = 2, grid = false, colour = { 1, 0, 0 } }");
 	CHECK(s);
 	if (!s)
 		return;
-	CHECK(strcmp(s->title, "T") == 0 && s->run.step_length == .01 && s->duration == 5 && s->run.substeps == 4 &&
-	      s->run.iterations == 3);
+	CHECK(strcmp(s->title, "T") == 0 && s->tour && s->run.step_length == .01 && s->duration == 5 &&
+	      s->run.substeps == 4 && s->run.iterations == 3);
 	check_vec(s->run.gravity, 1, 2, 3);
 	CHECK(s->run.solver == OB_SOLVER_JACOBI && s->run.integrator == OB_INTEGRATOR_ODE);
 	CHECK(!s->run.sleeping && s->seed == 12 && s->record_every == 7 && !s->look.grid);

@@ -7,6 +7,7 @@ const STEEPEST = 89 * Math.PI / 180;
 const LOST_RANGES = 1.5, LEFT_RANGES = 20, PRESENT = [0.05, 0.1], SPREAD = 2.05, NEAREST = 0.3; // for an
                                                                  // automatic viewpoint: see src/render/draw_list.c
 const NARROWEST = 1.3; // width over height, below which the angle of view grows with the height
+const LOWEST = 28 * Math.PI / 180; // angle above the ground of a viewpoint that follows: from lower, objects hide each other
 const FADE = 0.2; // s, in which a viewpoint approaches a followed object
 const NEAR = 30; // distance to it, in radii
 const CLEARANCE = 0.05; // height of the eye above the ground, relative to its distance
@@ -49,7 +50,7 @@ export class Camera {
 		this.target = [...target];
 		this.range = range;
 		this.azimuth = Math.atan2(d[1], d[0]);
-		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, Math.asin(d[2] / range)));
+		this.elevation = Math.max(-STEEPEST, Math.min(automatic ? -LOWEST : STEEPEST, Math.asin(d[2] / range)));
 		this.fov = fov;
 		this.first = { target: [...target], range, elevation: this.elevation, height: eye[2] };
 		this.following = automatic === true;
@@ -135,9 +136,10 @@ export class Camera {
 		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, Math.asin(d[2] / this.range)));
 	}
 
-	// Places the viewpoint to see moving objects, as ob_camera_follow of the renderer.
-	follow(bodies, width, height) {
-		const v = this.view(width, height), { target, range } = this.first, moving = [];
+	// Places the viewpoint to see moving objects, as ob_camera_follow of the renderer, but in the part of the picture that nothing
+	// covers: room, from 0 to 1.
+	follow(bodies, width, height, room = { left: 0, right: 1, top: 0, bottom: 1 }) {
+		const whole = this.view(width, height), v = { ...whole, tanX: whole.tanX * (room.right - room.left), tanY: whole.tanY * (room.bottom - room.top) }, { target, range } = this.first, moving = [];
 		const free = bodies.filter((b) => !b.fixed && Number.isFinite(b.radius)), about = lookAbout(free, target, range);
 		let all = 0, present = 0, middle = [0, 0, 0];
 		for (const b of free) {
@@ -174,7 +176,7 @@ export class Camera {
 				[high, low] = reach(axis, Math.min((high + low) / (2 * away), tangent));
 			return (high - low) / 2;
 		};
-		const goal = add(add(middle, v.right, centre('right', v.tanX)), v.up, centre('up', v.tanY));
+		const goal = add(add(middle, v.right, centre('right', v.tanX) - away * whole.tanX * (room.left + room.right - 1)), v.up, centre('up', v.tanY) + away * whole.tanY * (room.top + room.bottom - 1));
 		this.target = add(target, add(goal, target, -1), sight);
 		this.range = range + sight * (away - range);
 		this.elevation = this.first.elevation;
@@ -189,6 +191,12 @@ export class Camera {
 			eye: this.eye, forward, right, up, tanX, tanY, range: this.range,
 			near: Math.max(0.01, Math.min(0.5, 0.01 * this.range)), far: Math.max(2000, 60 * this.range),
 		};
+	}
+
+	// True if the picture has moved by half a pixel since another view: { eye, target }, or null.
+	moved(since, height) {
+		const pixel = 2 * this.range * Math.tan(this.fov / 2) / height, apart = (a, b) => Math.hypot(...add(a, b, -1));
+		return !since || apart(since.eye, this.eye) + apart(since.target, this.target) > 0.5 * pixel;
 	}
 
 	// Direction through a point of the picture, x and y from -1 to 1.

@@ -1,19 +1,14 @@
 // The panel of all objects: a tree by name with a search, plots that stream, pictures, video, and the viewpoint's address.
+import { $, element } from './page.js';
+
 const MOST = 100; // objects of an open group; beyond, the search finds them
 const SPAN = 240; // values in a plot: a minute, a quarter of a second each
-const LINES = { awake: 'objects awake', pace: 'simulated s a second', cpu: 'CPU of simulators, s a second', energy: 'energy, J', penetration: 'deepest penetration, mm', height: 'height of the picked, m', speed: 'speed of the picked, m/s' };
+const LINES = { awake: 'objects awake', pace: 'pace, simulated seconds a second', cpu: 'CPU of all simulators, cores', energy: 'energy, J', penetration: 'deepest penetration, mm', height: 'height of the picked object, m', speed: 'speed of the picked object, m/s' };
 const HIGH = 34; // px
 const FPS = 30;
 const SVG = 'http://www.w3.org/2000/svg';
 
-const $ = (selector) => document.querySelector(selector);
 const short = (x) => (Math.abs(x) >= 1e5 || (x !== 0 && Math.abs(x) < 1e-3) ? x.toExponential(1) : Number(x.toPrecision(3)).toString());
-
-function element(name, properties, ...children) {
-	const e = Object.assign(document.createElement(name), properties);
-	e.append(...children);
-	return e;
-}
 
 // An empty plot, as SVG: a canvas would compete with the picture for the GPU.
 function line() {
@@ -44,12 +39,6 @@ export class Explore extends EventTarget {
 			$('#plots').append(element('figure', { id: `plot-${name}`, hidden: true }, element('figcaption', { textContent: title }), element('output', {}), line()));
 	}
 
-	show(on) {
-		$('#objects').hidden = !on;
-		if (on)
-			this.list();
-	}
-
 	// Objects by the name without its number; those that the search leaves.
 	list() {
 		if ($('#objects').hidden)
@@ -61,18 +50,22 @@ export class Explore extends EventTarget {
 				continue;
 			groups.set(group, [...(groups.get(group) ?? []), { id: o.id, name }]);
 		}
+		const key = document.activeElement?.dataset.key;
 		$('#tree').replaceChildren(...[...groups].sort().map(([name, members]) => this.group(name, members, wanted !== '')));
+		if (key !== undefined) // the keyboard's focus stays, though objects come and go
+			[...$('#tree').querySelectorAll('[data-key]')].find((e) => e.dataset.key === key)?.focus({ preventScroll: true });
 	}
 
 	group(name, members, open) {
 		const leaf = (o) => {
 			const b = element('button', { textContent: o.name });
-			b.dataset.id = o.id;
+			b.dataset.id = b.dataset.key = o.id;
 			return b;
 		};
 		if (members.length === 1)
 			return leaf(members[0]);
 		const box = element('details', { open: open || this.open.has(name) }, element('summary', { textContent: `${name} (${members.length})` }));
+		box.firstChild.dataset.key = `group ${name}`;
 		const fill = () => {
 			if (box.open && box.children.length === 1)
 				box.append(...members.slice(0, MOST).map(leaf), ...(members.length > MOST ? [`and ${members.length - MOST} more`] : []));

@@ -13,22 +13,26 @@ import { Explore } from './explore.js';
 import { Recorder } from './recorder.js';
 import { Offers } from './offers.js';
 import { Sharpness } from './sharpness.js';
+import { count, kept } from './page.js';
+import { Walk } from './walk.js';
+import { Tour } from './tour.js';
 
 const THROWN = 12; // m/s
 const PICKED = [1, 0.7, 0.33, 1];
 const READING = [1, 0.42, 0.7, 0.9];
-const HINT = 'drag to go round · right button to move · wheel to come nearer · click an object to know it · ? for more';
-const HINT_TOUCH = 'drag to go round · two fingers to move and come nearer · tap an object to know it';
+const PALE = [0.9, 0.92, 0.95];
 const AGAIN = [0.5, 1, 2, 5]; // s: waits before attempts to reconnect
 
 const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
 const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
 const recording = document.querySelector('meta[name=recording]').content;
-const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), recorder = new Recorder(universe), sharpness = new Sharpness();
-let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '', shownForm = '';
+const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), recorder = new Recorder(universe), sharpness = new Sharpness(), walk = new Walk(), tour = new Tour(universe, workers, walk, kill);
+let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '', shownForm = '', shownView = null;
 
 // ---- the picture
+
+const paled = (colour, share) => (share > 0 ? colour.map((c, k) => c + share * (PALE[k] - c)) : colour);
 
 function bodies() {
 	const out = [], key = workers.key, others = key !== 'own';
@@ -36,7 +40,7 @@ function bodies() {
 		const pose = universe.pose(o);
 		const mesh = drawing.looks.get(o.mesh);
 		if (pose)
-			out.push({ id: o.id, name: o.id === avatar?.id ? look.avatar : o.name, attention: universe.attention(o), shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour && !others, meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, rests: universe.rests(o), kind: o.motion.kind, shown: colourBy(key, o, universe.simulators.get(o.id), workers.list),
+			out.push({ id: o.id, name: o.id === avatar?.id ? look.avatar : o.name, attention: universe.attention(o), shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour && !others && !workers.pale.has(o.id), meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, rests: universe.rests(o), kind: o.motion.kind, shown: paled(colourBy(key, o, universe.simulators.get(o.id), workers.list), workers.paleness(o.id)),
 				roughness: o.roughness, metal: o.metal, pattern: others && !isEndless(o.shape) ? 0 : o.pattern, ...pose });
 	}
 	return out;
@@ -77,6 +81,15 @@ function draw(list, view, width, height, smooth, share) {
 	drawing.draw(list, view, look, overlay(list, view), smooth, share);
 }
 
+// The part of the picture that is free of the title and the buttons, from 0 to 1.
+function freePart() {
+	const head = document.querySelector('header').getBoundingClientRect(), nav = document.querySelector('nav').getBoundingClientRect(), beside = head.right < innerWidth / 2;
+	return { left: beside ? head.right / innerWidth : 0, right: 1, top: beside ? 0 : head.bottom / innerHeight, bottom: nav.top / innerHeight };
+}
+
+// For people who want little motion the viewpoint moves when they move it, or when the scene's camera goes with an object.
+const calm = matchMedia('(prefers-reduced-motion: reduce)');
+
 let before = performance.now();
 function frame(now) {
 	const seconds = Math.min(0.25, (now - before) / 1000), scale = Math.min(2, devicePixelRatio || 1);
@@ -85,24 +98,28 @@ function frame(now) {
 	universe.advance(seconds);
 	offers.look();
 	const list = bodies();
-	if (camera.following)
-		camera.follow(list, width, height);
+	if (camera.following && !calm.matches)
+		camera.follow(list, width, height, freePart());
 	if (camera.goes)
 		camera.go(list);
-	accompany(list, seconds);
+	accompany(list, calm.matches ? Infinity : seconds);
 	const view = camera.view(width, height);
 	// An unchanged picture is not drawn again: a universe that is paused or at rest costs nothing.
-	const { on } = panel, seen = [list.every((b) => b.rests) || universe.time, universe.news, drawing.looks.size, width, height, camera.fov, camera.range, camera.target, camera.forward, picked, on.boxes,
-		on.contacts, on.joints, on.simulators, workers.key, read, hand.held?.target].join();
-	const changes = seen !== shown, share = drawing.software && !explore.recorder ? sharpness.next(seconds, changes) : 1;
+	const { on } = panel, seen = [list.every((b) => b.rests) || universe.time, universe.news, drawing.looks.size, width, height, camera.fov, picked, on.boxes,
+		on.contacts, on.joints, on.simulators, workers.key, workers.pale.size && now, read, hand.held?.target].join();
+	const changes = seen !== shown || camera.moved(shownView, height), share = drawing.software && !explore.recorder ? sharpness.next(seconds, changes) : 1;
 	const smooth = !drawing.software || !changes, form = `${share} ${smooth}`;
 	if (changes || form !== shownForm)
 		draw(list, view, Math.round(width * share), Math.round(height * share), smooth, share);
+	if (changes)
+		shownView = { eye: view.eye, target: [...camera.target] };
 	[shown, shownForm] = [seen, form];
 	panel.clock(universe.time, universe.rate, universe.paused);
 	frames++;
 	requestAnimationFrame(frame);
 }
+
+function movers() { return [...universe.objects.values()].filter((o) => !o.fixed).length; }
 
 // m: height of the highest level ground.
 function groundHeight() {
@@ -233,8 +250,28 @@ function throwOne() {
 
 // ---- requests
 
-function askSimulators() {
-	universe.send({ do: 'simulators', on: panel.on.simulators || workers.key !== 'own' || recorder.on });
+// The first steps: who simulates whom, a kill, a drag, time.
+function showSteps() {
+	const { isolation, workers: n, look_only } = look, where = isolation === 'process' ? count(n, 'process', 'processes') : `${count(n, 'thread')} of one process`;
+	const colours = { about: '#strip', begin: () => workers.choose('worker'), end: () => workers.choose('own') };
+	const kills = panel.kills ? 'Kill one: its objects turn pale, all start again from the last checkpoint, and reach the same bits.' : 'In processes (--isolation process) one may be killed: all reach the same bits.';
+	walk.start([
+		{ text: `Each object is a simulator of its own, ${count(movers(), 'simulator')} here. Click one to see what it knows and reads.` },
+		{ text: `They live in ${where}, each with its colour. ${kills}`, ...colours },
+		...look_only ? [] : [
+			{ text: 'Drag an object that you have clicked: a spring pulls it to the pointer, before all visitors.' },
+			{ text: 'Time is yours: pause, single steps, another pace, back to the start.', about: 'nav .group' },
+		],
+	], () => kept('walked', true));
+}
+
+// Kills the process of a worker, by an object that it simulates.
+function kill(worker) {
+	const id = [...workers.homes].find(([, home]) => home === worker)?.[0], o = universe.objects.get(id);
+	if (o)
+		universe.send({ do: 'kill', id, generation: o.generation });
+	else
+		panel.notice('this worker simulates no object now');
 }
 
 function askJoints() {
@@ -250,16 +287,11 @@ if (recording) {
 panel.addEventListener('rate', (e) => universe.send({ do: 'rate', rate: e.detail }));
 panel.addEventListener('contacts', (e) => universe.send({ do: 'contacts', on: e.detail }));
 panel.addEventListener('joints', askJoints);
-panel.addEventListener('simulators', (e) => {
-	workers.show(e.detail);
-	askSimulators();
-});
-workers.addEventListener('colours', askSimulators);
+workers.addEventListener('kill', (e) => kill(e.detail));
 panel.addEventListener('objects', (e) => {
-	explore.show(e.detail);
+	explore.list();
 	universe.send({ do: 'energy', on: e.detail });
 });
-panel.addEventListener('offers', (e) => { document.querySelector('#offers').hidden = !e.detail; });
 offers.addEventListener('set', (e) => universe.send({ do: 'set', ...e.detail }));
 offers.addEventListener('seed', (e) => universe.send({ do: 'seed', value: e.detail }));
 offers.addEventListener('control', ({ detail: { to, text } }) => {
@@ -281,7 +313,6 @@ function record() {
 	else
 		recorder.start();
 	document.querySelector('[data-do=record]').setAttribute('aria-pressed', recorder.on);
-	askSimulators();
 	askJoints();
 }
 panel.addEventListener('record', record);
@@ -312,6 +343,9 @@ panel.addEventListener('kill', () => {
 		universe.send({ do: 'kill', id: o.id, generation: o.generation });
 });
 panel.addEventListener('throw', throwOne);
+panel.addEventListener('walk', showSteps);
+panel.addEventListener('next', () => walk.next());
+panel.addEventListener('skip', () => walk.end());
 panel.addEventListener('follow', () => {
 	if (picked === null)
 		camera.set({ ...cameras[shownCamera], automatic: true });
@@ -333,7 +367,7 @@ panel.addEventListener('view', () => {
 });
 
 document.addEventListener('keydown', (e) => {
-	if (e.ctrlKey || e.metaKey || e.target.closest('input:not(#time), select') || (e.key === ' ' && e.target.closest('button')))
+	if (e.ctrlKey || e.metaKey || e.target.closest('input:not(#time), select') || ([' ', 'Enter'].includes(e.key) && e.target.closest('button, summary')))
 		return;
 	if (offers.key(e.key, true) || panel.key(e.key) || moveByKey(camera, e.key))
 		e.preventDefault();
@@ -346,8 +380,8 @@ control(canvas, camera, click, grab, {
 	},
 	end: () => hand.let(),
 });
-for (const [event, what] of [['pointerdown', 'push'], ['pointerup', 'let'], ['pointerleave', 'let']])
-	document.querySelector('[data-hold=push]').addEventListener(event, () => {
+for (const what of ['push', 'let'])
+	panel.addEventListener(what, () => {
 		const o = universe.objects.get(picked);
 		if (o && what === 'push')
 			hand.push(o, panel.mass);
@@ -368,20 +402,20 @@ universe.addEventListener('welcome', (e) => {
 	cameras = look.cameras;
 	panel.welcome(look);
 	avatar = null;
-	if (offers.welcome(look) && !panel.on.offers)
+	workers.welcome(look, panel.kills);
+	if (offers.welcome(look) && !panel.on.offers && (kept('panels')?.offers ?? true))
 		panel.ask('offers');
 	fetchMeshes(look.meshes);
 	if (!camera.placed)
 		camera.set(askedView() ?? cameras[0]);
 	camera.placed = true;
 	tries = 0;
-	panel.notice(frames ? '' : matchMedia('(pointer: coarse)').matches ? HINT_TOUCH : HINT, 8);
+	panel.notice('');
 	if (panel.on.contacts)
 		universe.send({ do: 'contacts', on: true });
 	if (panel.on.joints)
 		askJoints();
-	if (panel.on.simulators || workers.key !== 'own')
-		askSimulators();
+	universe.send({ do: 'simulators', on: true });
 	if (panel.on.objects)
 		universe.send({ do: 'energy', on: true });
 });
@@ -393,7 +427,16 @@ universe.addEventListener('avatar', (e) => {
 		camera.set(cameras[shownCamera = behind]);
 	camera.behind = true;
 });
-universe.addEventListener('workers', (e) => workers.hear(e.detail, (id) => universe.objects.get(id)?.name || `object ${id}`, universe.simulators));
+universe.addEventListener('workers', (e) => {
+	workers.hear(e.detail, (id) => universe.objects.get(id)?.name || `object ${id}`);
+	panel.idea(workers.idea(movers()));
+	if (recording || workers.world || walk.steps.length)
+		return;
+	if (look.tour && look.role === 'operate')
+		tour.start(look, 1 + Math.max(...workers.list.map((w) => w.rank)));
+	else if (!kept('walked'))
+		showSteps();
+});
 universe.addEventListener('simulators', (e) => workers.times(e.detail));
 // Address of a content that may need the token.
 function addressOf(path) { return token ? `${path}?token=${encodeURIComponent(token)}` : path; }
@@ -414,6 +457,7 @@ universe.addEventListener('mesh', (e) => drawing.addMesh(e.detail));
 universe.addEventListener('population', () => {
 	camera.ground = groundHeight();
 	explore.list();
+	panel.idea(workers.idea(movers()));
 });
 universe.addEventListener('film', (e) => {
 	panel.film(e.detail);
@@ -453,8 +497,8 @@ universe.addEventListener('close', (e) => {
 });
 
 async function begin() {
+	panel.restore();
 	drawing = new Drawing(canvas, asked.get('light'));
-	document.body.classList.toggle('software', drawing.software);
 	await drawing.load();
 	await new Promise((resolve, reject) => {
 		universe.addEventListener('welcome', resolve, { once: true });
@@ -464,5 +508,5 @@ async function begin() {
 }
 
 // For tests and the console
-window.obsim = { avatar: () => avatar, offers, universe, camera, panel, workers, hand, explore, recorder, pick, frames: () => frames, drawing: () => drawing };
+window.obsim = { avatar: () => avatar, offers, walk, tour, kill, universe, camera, panel, workers, hand, explore, recorder, pick, frames: () => frames, drawing: () => drawing };
 begin().catch((error) => panel.notice(error.message, 0));

@@ -1,17 +1,12 @@
 // Offers of a scene to visitors: controls (keys, buttons, sliders, a gamepad), and parameters to start it anew with.
+import { $, element, onHold } from './page.js';
+
 const WIDE = 100; // largest by smallest value, beyond which a slider is logarithmic
 const DEAD = 0.2; // part of a stick's way that means nothing
 // Keys that a gamepad's stick (axis, direction) and arrows (buttons of the standard layout) stand for
 const STICK = { w: { axis: 1, way: -1, arrow: 12 }, s: { axis: 1, way: 1, arrow: 13 }, a: { axis: 0, way: -1, arrow: 14 }, d: { axis: 0, way: 1, arrow: 15 } };
 
-const $ = (selector) => document.querySelector(selector);
 const short = (x) => Number(x.toPrecision(4)).toString();
-
-function element(name, properties, ...children) {
-	const e = Object.assign(document.createElement(name), properties);
-	e.append(...children);
-	return e;
-}
 
 export class Offers extends EventTarget {
 	constructor() {
@@ -38,8 +33,7 @@ export class Offers extends EventTarget {
 		const button = element('button', { textContent: c.label || c.sends, title: [c.sends, c.key, c.gamepad === undefined ? '' : `gamepad's button ${c.gamepad}`].filter((x) => x).join(', ') });
 		if (c.key)
 			button.append(element('kbd', { textContent: c.key }));
-		for (const [event, down] of [['pointerdown', true], ['pointerup', false], ['pointerleave', false]])
-			button.addEventListener(event, () => this.hold(c, down));
+		onHold(button, () => this.hold(c, true), () => this.hold(c, false));
 		return button;
 	}
 
@@ -55,7 +49,7 @@ export class Offers extends EventTarget {
 	// The seed as a number, and a button that chooses another one.
 	seed(now) {
 		const input = element('input', { type: 'number', min: 0, max: Number.MAX_SAFE_INTEGER, step: 1, value: now, name: 'seed' });
-		const button = element('button', { textContent: 'Another', title: 'Start anew with a seed by chance' });
+		const button = element('button', { textContent: 'Another', title: 'Start anew with a random seed' });
 		const tell = (value) => this.dispatchEvent(new CustomEvent('seed', { detail: value }));
 		input.addEventListener('change', () => tell(Number(input.value)));
 		button.addEventListener('click', () => tell(Math.floor(Math.random() * 1e6)));

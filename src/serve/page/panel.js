@@ -1,4 +1,5 @@
 // Controls around the picture: the clock, the tools, and details of the picked object. Independent of drawing.
+import { $, count, kept, onHold } from './page.js';
 import { makeShape } from './shapes.js';
 
 const MATERIALS = { // kg/m3, friction, restitution, linear RGB, roughness, metal
@@ -15,11 +16,11 @@ const EDITS = { // fields of the picked object: their numbers, as expected, and 
 	velocity: { numbers: 3, expected: 'three numbers, as 0 0 1.5', of: (d) => d.v },
 	spin: { numbers: 3, expected: 'three numbers, as 0 0 1.5', of: (d) => d.w },
 };
+const PANELS = { simulators: '#workers', objects: '#objects', offers: '#offers', make: '#maker', help: '#help' };
 const CLOCK_GAP = 100; // ms
 const MARKS_MOST = 400; // on the time bar
-const MORE = new Set(['friction', 'restitution', 'island of', 'substeps']); // details that small screens leave out
+const MORE = new Set(['friction', 'restitution', 'island', 'substeps']); // details that small screens leave out
 
-const $ = (selector) => document.querySelector(selector);
 const number = (x, digits = 3) => (Math.abs(x) < 5e-4 ? '0' : Number(x.toPrecision(digits)).toString());
 const linear = (x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
 // Changes what an element shows, if it shows something else: a changed page is composed anew.
@@ -28,7 +29,7 @@ const show = (selector, property, value) => {
 	if (e[property] !== value)
 		e[property] = value;
 };
-const vector = (v) => v.map((x) => number(x)).join('  ');
+const vector = (v, between = ', ') => v.map((x) => number(x)).join(between);
 
 // A unit quaternion (w x y z) as an axis and degrees from 0 to 180 about it, and back; the axis has any length but 0.
 function axisAndDegrees([w, ...v]) {
@@ -51,6 +52,14 @@ export class Panel extends EventTarget {
 			if (button)
 				this.ask(button.dataset.do);
 		});
+		for (const button of document.querySelectorAll('nav [title]'))
+			button.ariaLabel = button.title;
+		const folds = [...document.querySelectorAll('details.panel')];
+		for (const panel of folds) {
+			panel.open = !kept('folded')?.includes(panel.id);
+			panel.addEventListener('toggle', () => kept('folded', folds.filter((p) => !p.open).map((p) => p.id)));
+		}
+		onHold($('[data-hold=push]'), () => this.tell('push'), () => this.tell('let'));
 		$('#rate').addEventListener('change', (e) => this.tell('rate', Number(e.target.value)));
 		$('#time').addEventListener('input', (e) => this.tell('seek', Number(e.target.value)));
 		$('#talk').addEventListener('submit', (e) => {
@@ -91,14 +100,22 @@ export class Panel extends EventTarget {
 			return undefined;
 		if (what in this.on) {
 			this.on[what] = !this.on[what];
-			$(`[data-do=${what}]`).setAttribute('aria-pressed', this.on[what]);
-			$('#maker').hidden = !this.on.make;
-			$('#help').hidden = !this.on.help;
+			$(`[aria-pressed][data-do=${what}]`).setAttribute('aria-pressed', this.on[what]);
+			if (what in PANELS)
+				$(PANELS[what]).hidden = !this.on[what];
 			$('#picture').classList.toggle('making', this.on.make);
-			document.body.classList.toggle('shows-workers', this.on.simulators);
+			const { make, help, ...lasting } = this.on;
+			kept('panels', lasting);
 		}
 		this.tell(what, this.on[what]);
 		return undefined;
+	}
+
+	// Opens what was open at the last visit.
+	restore() {
+		for (const [what, on] of Object.entries(kept('panels') ?? {}))
+			if (on && !this.on[what])
+				this.ask(what);
 	}
 
 	// A changed field of the picked object.
@@ -118,7 +135,7 @@ export class Panel extends EventTarget {
 		$('#edit').hidden = d.gone || !(d.mass > 0) || !this.operates;
 		for (const field of fields) {
 			if (field !== document.activeElement && field.name !== 'colour')
-				field.value = d.gone ? '' : vector(EDITS[field.name].of(d));
+				field.value = d.gone ? '' : vector(EDITS[field.name].of(d), '  ');
 		}
 	}
 
@@ -148,17 +165,20 @@ export class Panel extends EventTarget {
 		$('[data-do=save]').hidden = !(operates && w.saves);
 		this.looksOnly = w.look_only;
 		this.isolation = w.isolation;
+		this.kills = operates && w.isolation === 'process';
 		this.free = w.sync === 'free';
 		$('#colours [value=lag]').hidden = !this.free;
-		this.pool = `one of ${w.workers} ${w.isolation === 'process' ? 'processes' : 'threads'}`;
+		this.pool = `one of ${w.isolation === 'process' ? count(w.workers, 'process', 'processes') : count(w.workers, 'thread')}`;
 	}
+
+	idea(text) { show('#idea', 'textContent', text); }
 
 	// Shows if the viewpoint follows the picked object
 	follows(on) { $('[data-do=follow]').setAttribute('aria-pressed', on); }
 
-	// Shows frames per second, from the first on; software rendering has few.
+	// Shows pictures per second, from the first on; software rendering has few.
 	speed(frames, software, began) {
-		$('#speed').textContent = !began ? '' : `${frames} frame${frames === 1 ? '' : 's'}/s${software ? ', drawn without a GPU' : ''}`;
+		$('#speed').textContent = !began ? '' : `${count(frames, 'picture')} a second${software ? ', drawn without a GPU' : ''}`;
 	}
 
 	// Shows the controls of a recording: a time bar, and none that change objects.
@@ -183,18 +203,19 @@ export class Panel extends EventTarget {
 			const mark = document.createElement('i');
 			mark.className = kind > 0 ? 'came' : 'went'; // 0: a joint breaks
 			mark.style.left = `${100 * (time - f.begin) / span}%`;
-			mark.title = `${name} ${['goes', 'breaks', 'comes'][kind + 1]}`;
+			mark.title = `${name} ${['ends', 'breaks', 'begins'][kind + 1]}`;
 			return mark;
 		}));
 	}
 
 	statistics(s) {
-		$('#statistics').textContent = `${s.objects} objects, ${s.awake} awake, ${s.islands} islands, ` +
-			`${s.viewers} viewer${s.viewers === 1 ? '' : 's'}${s.frozen ? `, ${s.frozen} frozen` : ''}${s.deaths ? `, ${s.deaths} death${s.deaths === 1 ? '' : 's'}` : ''}`;
+		const parts = [s.ended && `ended after ${count(s.step, 'step')}`, `${s.awake} of ${count(s.objects, 'object')} awake`, count(s.islands, 'island'), count(s.viewers, 'viewer'),
+			s.frozen && `${s.frozen} frozen`, s.deaths && count(s.deaths, 'death'), s.hash && `hash ${s.hash}`];
+		show('#statistics', 'textContent', parts.filter((part) => part).join(', '));
 		if (this.deaths !== undefined && s.deaths > this.deaths)
 			this.notice(`${s.last_death}. ${this.free ? 'It goes on where it had published.' : 'All simulators were started again from the last checkpoint, and reach the same bits.'}`, 8);
 		else if (s.ended && !this.ended)
-			this.notice(`The run has ended after step ${s.step}${s.deaths ? `, with ${s.deaths} deaths` : ''}; hash of its state: ${s.hash}`, 0);
+			this.notice(`The run has ended after ${count(s.step, 'step')}${s.deaths ? `, with ${count(s.deaths, 'death')}` : ''}; hash of its state: ${s.hash}`, 0);
 		this.deaths = s.deaths;
 		this.ended = s.ended;
 	}
@@ -217,21 +238,21 @@ export class Panel extends EventTarget {
 		$('#details').hidden = !d;
 		if (!d)
 			return;
-		$('#details h2').textContent = d.gone ? `object ${d.id} has gone` : d.name || `object ${d.id}`;
-		const facts = d.gone ? [] : [['id', d.id], ['state', d.state]];
+		$('#details h2').textContent = d.gone ? `object ${d.id} no longer exists` : d.name || `object ${d.id}`;
+		const facts = d.gone ? [] : [['number', d.id], ['state', d.state]];
 		if (!d.gone && d.mass > 0)
 			facts.push(['mass', `${number(d.mass, 4)} kg`], ['friction', number(d.friction)], ['restitution', number(d.restitution)],
 				['position', `${vector(d.p)} m`], ['velocity', `${vector(d.v)} m/s`], ['rotation', `${vector(d.w)} rad/s`]);
 		if (!d.gone && d.mass > 0 && d.island !== undefined)
-			facts.push(...(this.free ? [] : [['island of', d.island], ['substeps', d.substeps || 'none: it rests']]));
+			facts.push(...(this.free ? [] : [['island', `of object ${d.island}`], ['substeps', d.substeps || 'none: it rests']]));
 		if (d.script)
 			facts.push(['script', d.script]);
 		if (d.home !== undefined)
-			facts.push(['simulator', `worker ${d.home}, pid ${d.pid}`], ['CPU used', `${d.cpu_s.toFixed(2)} s`], ['reads', d.reads === undefined ? 'many' : `${d.reads.length} others`]);
+			facts.push(['simulator', `worker ${d.home}, process ${d.pid}`], ['CPU of worker', `${d.cpu_s.toFixed(2)} s`], ['reads', d.reads === undefined ? 'many objects' : count(d.reads.length, 'object')]);
 		else if (d.island !== undefined && d.mass > 0)
 			facts.push(['simulator', this.pool]);
 		else if (d.reads && d.mass > 0) // of a recording
-			facts.push(['reads', `${d.reads.length} others`]);
+			facts.push(['reads', count(d.reads.length, 'object')]);
 		if (d.ahead_s !== undefined && d.mass > 0)
 			facts.push(['own time', `${number(1000 * d.ahead_s)} ms ahead`], ['waits for', d.waits_for === undefined ? 'none' : `object ${d.waits_for}`]);
 		this.mass = d.mass;

@@ -3,6 +3,7 @@
 import { save } from './explore.js';
 
 const MOTIONS = 1, SIMULATORS = 4, JOINTS = 5, VOID = 1, FLAGS_AT = 1, TIME_AT = 8; // of a message
+const DIED = 5; // place of the last death in a worker's row
 const MOST = 2 ** 26; // bytes
 const EMPTY = '<script type="text/plain" id="recording"><' + '/script>'; // in one piece it would end this script in a page
 
@@ -28,7 +29,7 @@ export class Recorder extends EventTarget {
 		this.universe = universe;
 		this.page = null; // the last record: a promise of its text
 		this.workers = null; // rows of the last message of them
-		universe.addEventListener('workers', (e) => { this.workers = e.detail; });
+		universe.addEventListener('workers', (e) => { this.workers = e.detail.map((w) => w.slice(0, DIED)); });
 	}
 
 	get on() { return this.universe.tap !== null; }

@@ -75,7 +75,7 @@ export class Universe extends EventTarget {
 	tell(name, detail) { this.dispatchEvent(new CustomEvent(name, { detail })); }
 
 	send(command) {
-		if (this.socket.readyState === WebSocket.OPEN)
+		if (this.socket?.readyState === WebSocket.OPEN)
 			this.socket.send(JSON.stringify(command));
 	}
 
@@ -94,7 +94,7 @@ export class Universe extends EventTarget {
 		else if (kind === CONTACTS)
 			this.hearContacts(r);
 		else if (kind === SIMULATORS)
-			this.hearSimulators(r);
+			this.hearSimulators(r, data);
 		else if (kind === JOINTS)
 			this.hearJoints(r);
 		else if (kind === MESH)
@@ -189,7 +189,10 @@ export class Universe extends EventTarget {
 		});
 	}
 
-	hearSimulators(r) {
+	// The picture changes with them only if they do.
+	hearSimulators(r, data) {
+		const bytes = new Uint8Array(data, 16), same = bytes.length === this.simulatorsTold?.length && bytes.every((x, i) => x === this.simulatorsTold[i]);
+		this.simulatorsTold = bytes;
 		const free = (r.u8() & FREE_RUN) !== 0;
 		r.u16();
 		const n = r.u32();
@@ -199,7 +202,7 @@ export class Universe extends EventTarget {
 			id = (id + r.number()) % 2 ** 32;
 			this.simulators.set(id, { home: r.number() - 1, island: r.number(), substeps: r.number(), state: r.u8(), lead: free ? r.f32() : NaN });
 		}
-		this.news++;
+		this.news += !same;
 		this.tell('simulators', this.simulators);
 	}
 

@@ -1,0 +1,295 @@
+"""The viewer's page as people see and use it: nothing clipped, nothing over anything else, text that can be read, all controls by
+keyboard, the first steps, and a death that is seen.
+
+If OBSIM_PICTURES names a directory, screenshots of all panels are kept there.
+"""
+
+import os
+import unittest
+
+import browser
+import program
+import server
+
+SIZES = (1280, 720), (390, 844), (1920, 1080)
+SCENES = sorted(name[:-4] for name in os.listdir(os.environ["SCENES"]) if name.endswith(".lua"))
+PICTURES = os.environ.get("OBSIM_PICTURES")
+SEEN = "window.obsim && obsim.frames() > 1 && obsim.universe.objects.size > 0 && document.querySelector('#statistics').textContent"
+
+# Elements with text of their own, controls and pictures; the part of their rectangle that the columns show.
+LEAVES = """
+const card = 'header, #strip, .panel, nav .group, #notice', own = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim());
+const name = (e) => `${e.localName}${e.id && '#' + e.id}${e.dataset.do ? ' ' + e.dataset.do : ''} "${e.textContent.trim().slice(0, 30)}"`;
+const scrolls = (e) => ['auto', 'scroll'].includes(getComputedStyle(e).overflowY);
+const shown = (e) => {
+	let { left, top, right, bottom } = e.getBoundingClientRect();
+	for (let p = e.parentElement; p; p = p.parentElement) {
+		if (!scrolls(p))
+			continue;
+		const box = p.getBoundingClientRect();
+		[left, top, right, bottom] = [left, Math.max(top, box.top), right, Math.min(bottom, box.bottom)];
+	}
+	return { left, top, right, bottom };
+};
+const visible = (e) => e.checkVisibility() && (({ left, top, right, bottom }) => right - left > 1 && bottom - top > 1)(shown(e));
+const all = [...document.querySelectorAll('#page *')].filter(visible), cards = all.filter((e) => e.matches(card));
+const leaves = all.filter((e) => e.matches('button, select, input, svg, #strip i, #strip b') || own(e) && !e.closest('svg, select'));
+"""
+
+FAULTS = LEAVES + """
+const faults = [];
+for (const e of leaves) {
+	const box = e.getBoundingClientRect(), text = document.createRange();
+	text.selectNodeContents(e);
+	const wide = own(e) && !e.matches('select, input') ? text.getBoundingClientRect() : box;
+	if (e.matches('input') && e.placeholder && !e.value ? e.scrollWidth > e.clientWidth + 1 : e.scrollWidth > e.clientWidth + 1 && e.clientWidth > 0)
+		faults.push(`clipped: ${name(e)}: ${e.scrollWidth} of ${e.clientWidth} px`);
+	for (let p = e; p && p.id !== 'page'; p = p.parentElement) {
+		const room = p.matches(card) || scrolls(p) ? p.getBoundingClientRect() : null;
+		if (room && (wide.left < room.left - 1 || wide.right > room.right + 1 || (!scrolls(p) && (wide.top < room.top - 1 || wide.bottom > room.bottom + 1))))
+			faults.push(`beyond its ${p.id || p.className || p.localName}: ${name(e)}`);
+	}
+	const seen = shown(e);
+	if (seen.left < 0 || seen.right > innerWidth + .5 || seen.top < 0 || seen.bottom > innerHeight + .5)
+		faults.push(`out of the window: ${name(e)}`);
+}
+const over = (list) => list.forEach((a, i) => list.slice(i + 1).forEach((b) => {
+	if (a.contains(b) || b.contains(a))
+		return;
+	const p = shown(a), q = shown(b);
+	if (Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 1)
+		faults.push(`${name(a)} over ${name(b)}`);
+}));
+over(cards);
+over(leaves);
+return faults;
+"""
+
+# Draws nothing: without a GPU pictures take most of the time, and these tests look at the page around them.
+BLIND = "for (const what of ['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced']) WebGL2RenderingContext.prototype[what] = () => {}"
+
+# Contrast as in WCAG 2.2, 1.4.3, over the lighter and the darker of all pictures.
+CONTRAST = LEAVES + """
+const parse = (text) => { const [r, g, b, a = 1] = text.match(/[\\d.]+/g).map(Number); return { rgb: [r, g, b], a }; };
+const onto = (under, { rgb, a }) => under.map((u, k) => u + a * (rgb[k] - u));
+const light = (rgb) => rgb.map((x) => (x /= 255) <= .04045 ? x / 12.92 : ((x + .055) / 1.055) ** 2.4).reduce((s, x, k) => s + x * [.2126, .7152, .0722][k], 0);
+const faint = [];
+for (const e of leaves.filter((x) => (own(x) || x.matches('select, input')) && !x.matches(':disabled'))) {
+	const grounds = [];
+	for (let p = e; p; p = p.parentElement)
+		if (p.id === 'page') break; else grounds.unshift(parse(getComputedStyle(p).backgroundColor));
+	for (const pseudo of e.placeholder ? [undefined, '::placeholder'] : [undefined])
+		for (const picture of [0, 255]) {
+			const under = grounds.reduce(onto, [picture, picture, picture]);
+			const [a, b] = [light(onto(under, parse(getComputedStyle(e, pseudo).color))), light(under)].sort((x, y) => y - x);
+			if ((a + .05) / (b + .05) < 4.5)
+				faint.push(`${name(e)}: ${((a + .05) / (b + .05)).toFixed(2)} over ${picture}`);
+		}
+}
+return faint;
+"""
+
+
+@unittest.skipUnless(browser.CHROMIUM and browser.DRIVER, "no Chromium with its driver")
+class Page(server.Case):
+	def setUp(self):
+		super().setUp()
+		self.driver = browser.Driver()
+		self.addCleanup(self.driver.end)
+
+	def open(self, size=SIZES[0], **media):
+		"""A window with a page of just this size, and with preferences of its visitor."""
+		b = browser.Browser(self.driver)
+		self.addCleanup(b.close)
+		self.emulate(b, size, **media)
+		if not PICTURES:
+			b.devtools("Page.addScriptToEvaluateOnNewDocument", source=BLIND)
+		b.go(f"http://127.0.0.1:{self.port}/")
+		b.wait(SEEN)
+		return b
+
+	def emulate(self, b, size, **media):
+		b.devtools("Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=size[0] < 500)
+		b.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-" + k.replace("_", "-"), "value": v} for k, v in media.items()])
+
+	def keep(self, b, *words):
+		if PICTURES:
+			b.picture(os.path.join(PICTURES, "-".join(map(str, words)) + ".png"))
+
+	def test_panels(self):
+		"""All panels of all scenes, one by one and together, at three sizes: nothing is clipped or over anything else."""
+		for scene in SCENES:
+			self.serve("--isolation", "process", "--workers", "3", scene=scene)
+			b = self.open()
+			b.wait("obsim.workers.list.length === 3")
+			picked = b.run("return [...obsim.universe.objects.values()].find((o) => !o.fixed)?.id ?? 0")
+			for size in SIZES:
+				self.emulate(b, size)
+				for panel in "walk", "offers", "simulators", "objects", "details", "make", "help":
+					b.run("""const [panel, picked] = arguments, { on } = obsim.panel, set = (what, value) => on[what] === value || obsim.panel.ask(what);
+						for (const what of ['offers', 'simulators', 'objects', 'make', 'help'])
+							set(what, what === panel || panel === 'help');
+						obsim.pick(panel === 'details' || panel === 'help' ? picked : null);
+						if (panel === 'walk')
+							obsim.panel.ask('walk');
+						else if (panel !== 'help')
+							obsim.walk.end();
+						document.querySelector('#edit').open = true;""", panel, picked)
+					if panel in ("details", "help"): # help: all at once
+						b.wait("document.querySelector('#details dl').childElementCount > 4")
+					with self.subTest(scene=scene, size=size, panel=panel):
+						self.assertEqual(b.run(FAULTS), [])
+					self.keep(b, scene, *size, panel)
+			self.assertEqual(b.console(), [])
+			b.close()
+			self.end()
+
+	def test_reading(self):
+		"""Text has a contrast of 4.5 to 1 at least, in the dark and in the light scheme."""
+		self.serve("--isolation", "process", "--workers", "3", scene="plaza")
+		for scheme in "dark", "light":
+			b = self.open(color_scheme=scheme)
+			b.wait("obsim.workers.list.length === 3")
+			b.run("for (const what of ['simulators', 'objects', 'make', 'help', 'boxes']) obsim.panel.ask(what); obsim.pick([...obsim.universe.objects.values()].find((o) => !o.fixed).id)")
+			b.wait("document.querySelector('#details dl').childElementCount > 4")
+			b.run("document.querySelector('#edit').open = true; obsim.panel.notice('a notice', 0); document.querySelector('#strip li').classList.add('died')")
+			for size in SIZES[1], (1280, 4000): # all panels are in sight
+				self.emulate(b, size, color_scheme=scheme)
+				self.assertEqual(b.run(CONTRAST), [])
+			self.keep(b, "scheme", scheme)
+			b.close()
+		self.end()
+
+	def test_keyboard(self):
+		"""Each control is reached by Tab, with a focus that is seen, and in sight."""
+		self.serve("--isolation", "process", "--workers", "3", scene="plaza")
+		b = self.open()
+		b.wait("obsim.workers.list.length === 3")
+		b.run("for (const what of ['simulators', 'objects', 'make', 'help']) obsim.panel.ask(what); obsim.pick([...obsim.universe.objects.values()].find((o) => !o.fixed).id)")
+		b.wait("document.querySelector('#details dl').childElementCount > 4")
+		b.run("""document.querySelector('#edit').open = true;
+			window.controls = () => [...document.querySelectorAll('canvas, button, select, input, summary')].filter((e) => e.checkVisibility() && !e.disabled);
+			window.met = new Map();
+			window.nameOf = (e) => `${e.localName} ${e.id || e.dataset.key || e.dataset.do || e.name || e.textContent}`;
+			document.addEventListener('focusin', ({ target }) => {
+				const { outlineStyle, outlineWidth } = getComputedStyle(target), box = target.getBoundingClientRect();
+				met.set(nameOf(target), outlineStyle !== 'none' && parseFloat(outlineWidth) >= 2 && box.top > -1 && box.bottom < innerHeight + 1 && box.right < innerWidth + 1);
+			});""")
+		for _ in range(b.run("return controls().length") + 10):
+			b.key("\ue004")
+		self.assertEqual(b.run("return controls().map(nameOf).filter((e) => !met.has(e) && !/^button (sphere|[0-9])/.test(e))"), [], "not reached") # drops come and go
+		self.assertEqual(b.run("return [...met].filter(([, seen]) => !seen).map(([e]) => e)"), [], "the focus is not seen")
+		self.assertEqual(b.run("return [...document.querySelectorAll('button')].filter((e) => !(e.ariaLabel || /\\w/.test(e.textContent))).map((e) => e.outerHTML)"), [])
+		b.run("document.querySelector('[data-hold=push]').focus(); window.sent = []; obsim.universe.send = (c) => sent.push(c.do)")
+		b.key(" ")
+		self.assertEqual(b.run("return sent.filter((what) => what !== 'pause')"), ["push", "release"])
+		self.assertEqual(b.console(), [])
+		self.end()
+
+	def test_calm(self):
+		"""Where a visitor wants little motion, the viewpoint stands until they move it."""
+		self.serve("--paused", scene="falling_boxes")
+		calm, other = self.open(reduced_motion="reduce"), self.open(reduced_motion="no-preference")
+		eye = lambda b: b.run("return obsim.camera.eye")
+		before = eye(calm), eye(other)
+		calm.run("obsim.universe.send({ do: 'step', steps: 60 })")
+		for b in calm, other:
+			b.wait("obsim.universe.time > .99")
+		self.assertEqual(eye(calm), before[0])
+		other.wait(f"obsim.camera.eye.some((x, k) => Math.abs(x - {before[1]}[k]) > .05)")
+		self.end()
+
+	def test_visits(self):
+		"""The first visit shows four steps, which can be walked or skipped; a later one does not. Panels stay as they were left."""
+		self.serve("--isolation", "process", "--workers", "3", scene="falling_boxes")
+		b = self.open()
+		text = "document.querySelector('#walk p').textContent"
+		button = lambda what: b.run("document.querySelector(`[data-do=${arguments[0]}]`).click()", what)
+		hidden = lambda: b.run("return document.querySelector('#walk').hidden")
+		again = lambda: (b.go("about:blank"), b.go(f"http://127.0.0.1:{self.port}/"), b.wait(SEEN))
+		steps = []
+		b.wait("!document.querySelector('#walk').hidden")
+		keys = []
+		while not hidden():
+			steps.append(b.run(f"return {text}"))
+			keys.append(b.run("return obsim.workers.key"))
+			button("next")
+		self.assertEqual((len(set(steps)), keys), (4, ["own", "worker", "own", "own"]))
+		self.assertEqual(b.run("return [obsim.workers.key, document.querySelectorAll('.shown').length]"), ["own", 0])
+		button("objects")
+		b.run("document.querySelector('#objects').open = false")
+		b.wait("localStorage['obsim.folded']?.includes('objects')")
+		again()
+		self.assertTrue(hidden())
+		self.assertEqual(b.run("const o = document.querySelector('#objects'); return [o.hidden, o.open]"), [False, False])
+		button("objects")
+		b.run("localStorage.removeItem('obsim.walked')")
+		again()
+		self.assertFalse(hidden())
+		button("skip")
+		again()
+		self.assertEqual(b.run("return [document.querySelector('#walk').hidden, document.querySelector('#objects').hidden]"), [True, True])
+		self.assertEqual(b.console(), [])
+		self.end()
+
+	def test_death(self):
+		"""A death is seen in the strip and in the picture: the dead one's objects turn pale, and come back. The hash is as without it."""
+		self.serve("-D", "n=8", "--isolation", "process", "--workers", "3", "--paused", scene="falling_boxes")
+		b = self.open()
+		b.run("obsim.universe.send({ do: 'until', value: 1 })")
+		b.wait("obsim.workers.list.length === 3 && obsim.universe.told > .9 && obsim.universe.paused && [...obsim.workers.homes.values()].every((w) => w >= 0)")
+		self.assertIn("8 simulators in 3 processes: click one, kill one", b.run("return document.querySelector('#idea').textContent"))
+		b.run("""window.dead = new Set(); const die = obsim.workers.die;
+			obsim.workers.die = (...words) => { die.apply(obsim.workers, words); for (const id of obsim.workers.pale.keys()) dead.add(id); };
+			document.querySelectorAll('#strip .kill')[[...obsim.workers.homes.values()][0]].click();""")
+		b.wait("document.querySelector('#strip .died')?.textContent.includes('died')")
+		self.keep(b, "death")
+		self.assertGreater(b.run("obsim.universe.send({ do: 'until', value: 3 }); return dead.size"), 0)
+		self.assertLess(b.run("return dead.size"), 8)
+		b.wait("!document.querySelector('#strip .died') && [...dead].every((id) => obsim.workers.paleness(id) === 0)")
+		b.wait("document.querySelector('#statistics').textContent.includes(', 1 death') && obsim.universe.told > 2.99")
+		self.assertIn("hash " + program.report(program.scene("falling_boxes"), "-D", "n=8", "--duration", "3")["state_hash"],
+			b.wait("document.querySelector('#statistics').textContent.match(/.*hash.*/)?.[0]"))
+		self.assertEqual(b.console(), [])
+		self.end(saying="was killed by SIGKILL")
+
+	def test_tour(self):
+		"""The tour goes to its end: simulators are killed and come back, one is slow, and the hash is the same each time."""
+		self.serve(scene="tour")
+		b = self.open()
+		loaded = b.run("return performance.getEntries().reduce((sum, e) => sum + (e.transferSize ?? 0), 0) + obsim.universe.bytes")
+		self.assertLess(loaded, 1e6, "bytes to load")
+		told, text = [], "document.querySelector('#walk p').textContent"
+		b.wait("obsim.walk.steps.length")
+		while not b.run("return document.querySelector('#walk').hidden"):
+			b.wait("!obsim.tour.act || obsim.tour.act.done", 900) # the slow one is, on a machine that does other work
+			told.append(b.run(f"return {text}"))
+			self.keep(b, "tour", len(told))
+			b.run("document.querySelector('[data-do=next]').click()")
+		self.assertEqual(len(told), 5, told)
+		hashes = [line.split("hash at 4 s: ")[1][:16] for line in told[:4]]
+		self.assertEqual(len(set(hashes)), 1, told)
+		self.assertEqual(hashes[0], program.report(program.scene("tour"), "--duration", "4")["state_hash"])
+		self.assertEqual([("the same as before" in line, " 1 death;" in line, " 3 deaths;" in line) for line in told[:4]],
+			[(False, False, False), (True, True, False), (True, False, True), (True, False, False)], told)
+		self.assertIn("simulated seconds a second", told[3])
+		b.wait("!obsim.universe.paused")
+		self.assertEqual(b.console(), [])
+		self.end(saying="was killed by SIGKILL")
+
+	def test_free_tour(self):
+		"""In a free run the tour pauses and kills, too, and nobody waits."""
+		self.serve("--sync", "free", scene="tour")
+		b = self.open()
+		b.wait("obsim.walk.steps.length === 4")
+		b.wait("obsim.tour.act?.done", 900)
+		self.assertIn("ms ahead", b.run("return document.querySelector('#walk p').textContent"))
+		b.run("document.querySelector('[data-do=next]').click()")
+		b.wait("obsim.tour.act?.deaths === 1 && obsim.tour.act.done", 900)
+		self.assertIn("1 death; at most ", b.run("return document.querySelector('#walk p').textContent"))
+		self.assertEqual(b.console(), [])
+		self.end(saying="was killed by SIGKILL")
+
+
+if __name__ == "__main__":
+	unittest.main()
