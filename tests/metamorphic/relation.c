@@ -6,15 +6,18 @@
 #include "motion/random.h"
 
 static const double tolerance = 1e-9; // m
+static const double pebble_mass = 1e-9; // mass, relative to the body on which it lies
+static const double pebble_size = .1; // half extent, relative to that body's least one
+static const double pebble_limit = 1e-6; // m: largest deviation
 static const double disturbance = 1e-12; // m, for the twin
 // Pairs of twins: for each scene, and for one in which a relation seems to fail. Where motion forks, half of all twins
 // may take the other way.
 enum { TWINS = 1, TWINS_IN_DOUBT = 8 };
 static const double pi = 3.14159265358979323846;
 
-const char *const relation_name[RELATIONS] = { "again",   "workers",   "mirrored", "turned",  "tilted", "moved",
-					       "boosted", "reordered", "rescaled", "refined", "far",    "momentum",
-					       "spin",    "energy",    "lifted",   "reframed" };
+const char *const relation_name[RELATIONS] = { "again",   "workers",   "mirrored", "turned",   "tilted", "moved",
+					       "boosted", "reordered", "rescaled", "refined",  "far",    "momentum",
+					       "spin",    "energy",    "lifted",   "reframed", "pebble", "neighbour" };
 
 // ---- one scene, transformed
 
@@ -322,6 +325,68 @@ static void add_far_body(random_scene *s, uint64_t *seed)
 	s->body[s->bodies++] = b;
 }
 
+// Puts a box on the face of a box, or a sphere on a sphere, where "up" leaves it; it moves along with the surface.
+static void add_pebble(random_scene *s, uint32_t on, ob_vec3 up)
+{
+	const scene_body *o = &s->body[on];
+	const bool box = o->shape == OB_SHAPE_BOX;
+	const ob_mat3 r = ob_quat_matrix(o->state.pose.q);
+	const ob_vec3 way = ob_rotate_back(&r, up);
+	const double d[3] = { way.x, way.y, way.z }, half[3] = { o->size.x, o->size.y, o->size.z };
+	const double size = pebble_size * (box ? fmin(fmin(half[0], half[1]), half[2]) : o->size.x);
+	ob_vec3 from = ob_scale(up, o->size.x + size);
+	if (box) {
+		int face = 0;
+		for (int i = 1; i < 3; i++)
+			face = half[i] * fabs(d[face]) < half[face] * fabs(d[i]) ? i : face;
+		from = ob_madd(ob_scale(up, half[face] / fabs(d[face])), copysign(size, d[face]), ob_column(&r, face));
+	}
+	scene_body b = *o;
+	b.size = ob_scale(ob_v3(1, box, box), size);
+	b.mass = pebble_mass * o->mass;
+	b.restitution = 0;
+	b.pushed = false;
+	b.state.pose.p = ob_add(o->state.pose.p, from);
+	b.state.v = ob_add(o->state.v, ob_cross(o->state.w, from));
+	s->body[s->bodies++] = b;
+}
+
+// Adds so many pebbles, one on the other, to the highest body of all. Returns false if there is no room, or none to lie on.
+static bool add_pebbles(random_scene *s, int pebbles, uint64_t *seed)
+{
+	const ob_vec3 up = ob_norm(s->run.gravity) > 0 ? vertical(s) : random_direction(seed);
+	uint32_t on = SCENE_BODIES;
+	for (uint32_t i = 0; i < s->bodies; i++) {
+		const scene_body *b = &s->body[i];
+		if (b->mass > 0 && (b->shape == OB_SHAPE_BOX || b->shape == OB_SHAPE_SPHERE) &&
+		    (on == SCENE_BODIES || ob_dot(up, b->state.pose.p) > ob_dot(up, s->body[on].state.pose.p)))
+			on = i;
+	}
+	if (on == SCENE_BODIES || s->bodies + (uint32_t)pebbles > SCENE_BODIES)
+		return false;
+	for (int i = 0; i < pebbles; i++, on = s->bodies - 1)
+		add_pebble(s, on, up);
+	return true;
+}
+
+// Compares the original's bodies with those of the same scene with more.
+static void judge_more(const original *o, const random_scene *more, uint64_t steps, judged *j)
+{
+	played other;
+	const view same = same_view(o->scene);
+	play(more, 0, steps, &other);
+	memcpy(j->why, other.why, sizeof j->why);
+	j->applies = other.depth < 1e-6; // they overlap nothing
+	j->counted = o->samples == PLAY_SAMPLES;
+	j->limit = pebble_limit;
+	for (int k = 0; k < o->samples; k++) {
+		const double d = difference(o->scene, &o->base, &other, &same, k, steps);
+		if (d > pebble_limit && j->error <= pebble_limit)
+			j->when = sample_time(o->scene, k, steps);
+		j->error = fmax(j->error, d);
+	}
+}
+
 static void judge_bits(const original *o, const random_scene *s, uint32_t workers, uint64_t steps, judged *j)
 {
 	played other;
@@ -404,6 +469,12 @@ static judged judge(relation_id r, const original *o, uint64_t seed, uint64_t st
 			add_far_body(&more, &seed);
 			judge_bits(o, &more, 0, steps, &j);
 		}
+		break;
+	case RELATION_PEBBLE:
+	case RELATION_NEIGHBOUR:
+		j.applies = add_pebbles(&more, r == RELATION_PEBBLE ? 1 : 2, &seed);
+		if (j.applies)
+			judge_more(o, &more, steps, &j);
 		break;
 	case RELATION_REFINED:
 		judge_refined(o, steps, &j);

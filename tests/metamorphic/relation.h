@@ -25,6 +25,8 @@ typedef enum relation_id {
 	RELATION_ENERGY, // never above its earlier least, net of position recovery; without work from outside
 	RELATION_LIFTED, // all supports accelerate, with as much more gravity: no effect
 	RELATION_REFRAMED, // the points of hulls in another frame and order
+	RELATION_PEBBLE, // a body of 1e-9 of another's mass that lies on it, or leans on it
+	RELATION_NEIGHBOUR, // a second one on the first: a pair that touches elsewhere in the island
 	RELATIONS
 } relation_id;
 
