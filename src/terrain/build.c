@@ -221,6 +221,18 @@ static void columns_of(const draft *d, uint32_t triangle, uint32_t begin[2], uin
 		begin[i] = column_of(d, i, low[i]), end[i] = column_of(d, i, high[i]);
 }
 
+// Number of columns that triangles lie in, all together.
+static uint64_t count_entries(const draft *d)
+{
+	uint64_t n = 0;
+	for (uint32_t i = 0; i < d->triangles; i++) {
+		uint32_t begin[2], end[2];
+		columns_of(d, i, begin, end);
+		n += (end[0] - begin[0] + 1ull) * (end[1] - begin[1] + 1ull);
+	}
+	return n;
+}
+
 // Enters a triangle into its columns. entry NULL: counts it there.
 static void enter(draft *d, uint32_t triangle, uint32_t *at)
 {
@@ -258,14 +270,23 @@ static bool fill_columns(draft *d)
 	return d->entry;
 }
 
+static void divide(draft *d, int axis, uint32_t columns)
+{
+	const double size = d->high[axis] - d->low[axis];
+	d->columns[axis] = size > 0 ? columns : 1;
+	d->per_metre[axis] = size > 0 ? d->columns[axis] / size : 0;
+}
+
+// Takes wider columns where triangles are larger than these, or lie above each other: so the size of the index is linear
+// in the triangles, whatever they are. A search then finds few more than it would find in any case.
 static void plan_columns(draft *d, const uint32_t cells[2])
 {
 	enum { MOST = 1024 };
-	for (int i = 0; i < 2; i++) {
-		const double size = d->high[i] - d->low[i];
-		d->columns[i] = size > 0 ? (cells[i] < 1 ? 1 : cells[i] < MOST ? cells[i] : MOST) : 1;
-		d->per_metre[i] = size > 0 ? d->columns[i] / size : 0;
-	}
+	for (int i = 0; i < 2; i++)
+		divide(d, i, cells[i] < 1 ? 1 : cells[i] < MOST ? cells[i] : MOST);
+	while (count_entries(d) > (uint64_t)OB_TERRAIN_ENTRIES_PER_TRIANGLE * d->triangles)
+		for (int i = 0; i < 2; i++)
+			divide(d, i, (d->columns[i] + 1) / 2);
 }
 
 // ---- all together

@@ -12,6 +12,7 @@
 enum {
 	OB_TERRAINS_MAX = 64, // of a universe
 	OB_TERRAIN_TRIANGLES_MAX = 500000,
+	OB_TERRAIN_ENTRIES_PER_TRIANGLE = 64, // in columns, on average
 	OB_TERRAIN_REGIONS_MAX = (1 << 20) - 1, // as pairs count them, from 1
 };
 
@@ -69,7 +70,7 @@ static inline const uint32_t *ob_terrain_first(const ob_terrain *t)
 }
 
 // Builds a terrain of these triangles. Each has an area; neighbours have an edge's two vertices in common. cells: about
-// as many columns along x and y. Returns NULL and e, without a place: *e names the first bad triangle or vertex, from 1.
+// as many columns along x and y, or fewer: OB_TERRAIN_ENTRIES_PER_TRIANGLE. Returns NULL and e, without a place: *e names the first bad triangle or vertex, from 1.
 // The caller frees it.
 ob_terrain *ob_terrain_build(const ob_vec3 *vertex, uint32_t vertices, const uint32_t (*corner)[3], uint32_t triangles,
 			     const uint32_t cells[2], bool solid, ob_error *e);

@@ -235,6 +235,38 @@ static void sets(void)
 	free(other);
 }
 
+// The index has at most so many entries a triangle, whatever the triangles are: all equal, half of them large, or thin.
+static void sizes(void)
+{
+	enum { EQUAL, MIXED, CROSSED, KINDS, N = 93000 };
+	for (int kind = EQUAL; kind < KINDS; kind++) {
+		ob_vec3 *vertex = malloc(3 * N * sizeof *vertex);
+		uint32_t(*corner)[3] = malloc(N * sizeof *corner);
+		const uint32_t side = 216, cells[2] = { side, side };
+		uint64_t seed = 7;
+		ob_error e;
+		for (uint32_t i = 0; i < N; i++) {
+			const ob_vec3 at = ob_splitmix_vector(&seed, 49);
+			const bool large = kind == EQUAL || (kind == MIXED && i % 2);
+			const double x = large ? 100 : kind == CROSSED && i % 2 ? 200 : .1,
+				     y = large ? 100 : kind == CROSSED && i % 2 == 0 ? 200 : .1;
+			vertex[3 * i] = large ? ob_v3(-50, -50, 0) : ob_v3(at.x - .5 * x, at.y - .5 * y, at.z);
+			vertex[3 * i + 1] = ob_add(vertex[3 * i], ob_v3(x, 0, 0));
+			vertex[3 * i + 2] = ob_add(vertex[3 * i], ob_v3(0, y, 0));
+			for (uint32_t k = 0; k < 3; k++)
+				corner[i][k] = 3 * i + k;
+		}
+		ob_terrain *t = ob_terrain_build(vertex, 3 * N, (const uint32_t(*)[3])corner, N, cells, false, &e);
+		CHECK(t && t->triangles == N);
+		if (t)
+			printf("%u x %u columns, %u entries\n", t->columns[0], t->columns[1], t->entries);
+		CHECK(t && t->entries >= N && t->entries <= OB_TERRAIN_ENTRIES_PER_TRIANGLE * N);
+		free(t);
+		free(vertex);
+		free(corner);
+	}
+}
+
 int main(void)
 {
 	regions();
@@ -243,5 +275,6 @@ int main(void)
 	rays();
 	refusals();
 	sets();
+	sizes();
 	return check_end();
 }
