@@ -73,9 +73,9 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 			      &r->free.update_rate, e) &&
 	       read_max_lag(r, a->value[OB_OPTION_MAX_LAG], e) &&
 	       (!a->value[OB_OPTION_JITTER] || strcmp(a->value[OB_OPTION_JITTER], "0") == 0 ||
-		ob_number_real("jitter", a->value[OB_OPTION_JITTER], 0, .9, &r->free.jitter, e)) &&
+		ob_number_real("jitter", a->value[OB_OPTION_JITTER], 0, OB_JITTER_MOST, &r->free.jitter, e)) &&
 	       (!a->value[OB_OPTION_DELAY] || strcmp(a->value[OB_OPTION_DELAY], "0") == 0 ||
-		ob_number_real("delay", a->value[OB_OPTION_DELAY], 0, 10, &r->free.delay, e));
+		ob_number_real("delay", a->value[OB_OPTION_DELAY], 0, OB_DELAY_MOST, &r->free.delay, e));
 }
 
 static bool has_compounds(const ob_scene *s)

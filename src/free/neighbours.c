@@ -169,9 +169,12 @@ static void replay(ob_free_sim *s, ob_free_scratch *x)
 			s->neighbour[i] = s->neighbour[--s->neighbours];
 	}
 	for (uint32_t k = 0; k < n; k++)
-		if (id[k] < ob_universe_ids(x->u) && find(s, id[k]) == s->neighbours) {
+		if (find(s, id[k]) == s->neighbours) {
 			const ob_free_kind kind = ob_free_kind_of(x->u, id[k], &generation);
-			add(s, x, id[k], kind, generation);
+			if (kind == OB_FREE_ABSENT)
+				ob_free_schedule_refuse(x->schedule);
+			else
+				add(s, x, id[k], kind, generation);
 		}
 	sort(s);
 }

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,13 +12,16 @@
 #include "base/allocate.h"
 #include "base/file.h"
 #include "base/hash.h"
+#include "base/log.h"
 
-static const uint64_t most_bytes = UINT64_C(1) << 32;
+static const uint64_t most_bytes = UINT64_C(128) << 20;
+static const char misfit[] = "it does not fit the scene: steps are missing, or in another order";
 
 typedef struct file_head {
 	char mark[8];
-	uint32_t format, objects; // objects: ids of the universe are below; 0 = not known
-	uint64_t digest, hash; // hash: of the settings
+	uint64_t format;
+	uint64_t hash; // checksum of all after it
+	uint64_t digest;
 	ob_free_settings settings;
 } file_head;
 
@@ -30,22 +34,23 @@ typedef struct step_head {
 } step_head;
 
 static const char file_mark[8] = "obsched";
-enum { FORMAT = 1, STEP_MARK = 0x70657473, LOST_MARK = 0x74736f6c, END_MARK = 0x2e646e65 };
+enum { FORMAT = 2, STEP_MARK = 0x70657473, LOST_MARK = 0x74736f6c, END_MARK = 0x2e646e65 };
 
 // A version that steps to come will read.
 typedef struct kept {
 	struct kept *next;
+	size_t bytes;
 	uint64_t version;
 	uint32_t readers;
 	ob_motion motion;
 	ob_ledger ledger; // as many accounts as it has
 } kept;
 
-// Versions of an object.
+// Versions that steps read, ascending: id << 32 | number.
 typedef struct versions {
-	uint32_t *readers; // [max] readers of each version in steps to come
-	uint64_t max;
-	kept *first;
+	uint64_t *name; // [n]
+	uint32_t *readers; // [n] in steps to come
+	size_t n;
 } versions;
 
 struct ob_free_schedule {
@@ -59,7 +64,9 @@ struct ob_free_schedule {
 	size_t size, at; // at: of the next step
 	uint32_t taken; // reads of it so far
 	uint32_t objects;
-	versions *of; // [objects]
+	versions wanted;
+	kept **kept; // [objects]
+	size_t kept_bytes;
 };
 
 static bool says_why(const char *path, ob_error *e)
@@ -69,12 +76,18 @@ static bool says_why(const char *path, ob_error *e)
 
 // ---- the program
 
+static uint64_t hash_of_head(const file_head *h)
+{
+	const size_t from = offsetof(file_head, digest);
+	return ob_hash_on(OB_HASH_BEGIN, (const char *)h + from, sizeof *h - from);
+}
+
 bool ob_free_schedule_create(const char *path, const ob_free_settings *f, uint64_t digest, ob_error *e)
 {
 	file_head head = { .format = FORMAT, .digest = digest, .settings = *f };
 	memset(head.settings.schedule, 0, sizeof head.settings.schedule);
 	memcpy(head.mark, file_mark, sizeof head.mark);
-	head.hash = ob_hash_on(OB_HASH_BEGIN, &head.settings, sizeof head.settings);
+	head.hash = hash_of_head(&head);
 	const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 	if (fd < 0)
 		return says_why(path, e);
@@ -97,18 +110,10 @@ bool ob_free_schedule_end(const char *path, ob_error *e)
 		return says_why(path, e);
 	step_head end = { .mark = END_MARK, .version = (uint64_t)file.st_size };
 	end.hash = hash_of(&end, NULL);
+	if (end.version + sizeof end > most_bytes)
+		ob_log_warn("%s cannot be replayed: it is larger than %" PRIu64 " MiB", path, most_bytes >> 20);
 	const bool fine = write(fd, &end, sizeof end) == sizeof end;
 	return (close(fd) == 0 && fine) || says_why(path, e);
-}
-
-// True if a step reads versions that a file of this size cannot have: memory is reserved by their numbers.
-static bool reads_too_far(const step_head *h, const uint32_t *word, size_t size)
-{
-	enum { BIRTHS = 1 << 16 }; // versions that the host made, at most
-	bool any = false;
-	for (uint32_t i = 0; h->mark == STEP_MARK && i < h->reads; i++)
-		any |= word[2 * i + 1] >> 1 > size / sizeof *h + BIRTHS;
-	return any;
 }
 
 // Copies the head of the step at a place. NULL: it is whole; else what is wrong.
@@ -126,8 +131,6 @@ static const char *read_step(const char *bytes, size_t size, size_t at, step_hea
 	if (out->mark == STEP_MARK &&
 	    (2 * (uint64_t)out->reads + (out->listed ? out->listed - 1 : 0) != out->words || !isfinite(out->end)))
 		return "the step makes no sense";
-	if (reads_too_far(out, (const uint32_t *)(bytes + at + sizeof *out), size))
-		return "the step reads a version that nobody published";
 	return NULL;
 }
 
@@ -137,7 +140,7 @@ static size_t after(const step_head *h, size_t at)
 }
 
 // Checks all steps from the first on.
-static bool check_steps(const char *path, const char *bytes, size_t size, uint32_t objects, ob_error *e)
+static bool check_steps(const char *bytes, size_t size, uint32_t objects, ob_error *e)
 {
 	step_head h = { 0 };
 	size_t at = sizeof(file_head);
@@ -148,19 +151,26 @@ static bool check_steps(const char *path, const char *bytes, size_t size, uint32
 		if (!wrong && h.mark == STEP_MARK && h.id >= objects)
 			wrong = "the step is of an object that does not exist";
 		if (wrong)
-			return ob_fail(e, "%s: damaged at byte %zu: %s", path, at, wrong);
+			return ob_fail(e, "damaged at byte %zu: %s", at, wrong);
 	}
 	return true;
 }
 
-static const char *check_head(const file_head *h, size_t size)
+static const char *check_head(const file_head *h, size_t size, uint64_t digest)
 {
 	if (size < sizeof *h || memcmp(h->mark, file_mark, sizeof h->mark) != 0)
 		return "it is no schedule of a free run (obsim run --record-schedule)";
 	if (h->format != FORMAT)
 		return "it was written by another version of obsim";
-	if (h->hash != ob_hash_on(OB_HASH_BEGIN, &h->settings, sizeof h->settings))
-		return "damaged at byte 0: the settings do not bear their checksum";
+	if (h->hash != hash_of_head(h))
+		return "damaged at byte 0: the head does not bear its checksum";
+	if (h->digest != digest)
+		return "it was recorded with another scene, -D, --seed or option of the solver";
+	const ob_free_settings *f = &h->settings;
+	if (!(f->update_rate > 0 && f->update_rate <= OB_UPDATE_RATE_MOST && f->max_lag >= 0 && f->jitter >= 0 &&
+	      f->jitter <= OB_JITTER_MOST && f->delay >= 0 && f->delay <= OB_DELAY_MOST && f->pace > 0 &&
+	      f->coupling <= OB_COUPLING_LEDGER && f->heavy <= 1))
+		return "damaged at byte 0: the settings are out of range";
 	return NULL;
 }
 
@@ -172,15 +182,13 @@ bool ob_free_schedule_check(const char *path, uint64_t digest, ob_free_settings 
 	if (!bytes)
 		return ob_fail(e, "%s: %s", path, why.text);
 	const file_head *h = (const file_head *)bytes;
-	const char *wrong = check_head(h, size);
-	if (!wrong && h->digest != digest)
-		wrong = "it was recorded with another scene, -D, --seed or option of the solver";
-	bool fine = !wrong || ob_fail(e, "%s: %s", path, wrong);
-	fine = fine && check_steps(path, bytes, size, UINT32_MAX, e);
+	const char *wrong = check_head(h, size, digest);
+	bool fine = !wrong || ob_fail(&why, "%s", wrong);
+	fine = fine && check_steps(bytes, size, UINT32_MAX, &why);
 	if (fine)
 		*f = h->settings;
 	free(bytes);
-	return fine;
+	return fine || ob_fail(e, "%s: %s", path, why.text);
 }
 
 // ---- a worker
@@ -188,17 +196,6 @@ bool ob_free_schedule_check(const char *path, uint64_t digest, ob_free_settings 
 static const uint32_t *words_at(const ob_free_schedule *s, size_t at)
 {
 	return (const uint32_t *)(s->bytes + at + sizeof(step_head));
-}
-
-static void count_reader(versions *v, uint64_t version)
-{
-	if (version >= v->max) {
-		const uint64_t max = 2 * version + 64;
-		v->readers = ob_reallocate(v->readers, max * sizeof *v->readers);
-		memset(v->readers + v->max, 0, (max - v->max) * sizeof *v->readers);
-		v->max = max;
-	}
-	v->readers[version]++;
 }
 
 // Marks steps that were recorded, but not published before their simulator was killed.
@@ -223,22 +220,65 @@ static bool mark_lost(ob_free_schedule *s)
 	return last != NULL;
 }
 
-static bool count_readers(ob_free_schedule *s)
+// Objects that a step names exist: those that it reads, and its neighbours, which are others, each once, ascending.
+static bool names_objects(const ob_free_schedule *s, const step_head *h, const uint32_t *word)
 {
-	step_head h = { 0 };
-	for (size_t at = s->at; h.mark != END_MARK; at = after(&h, at)) {
-		memcpy(&h, s->bytes + at, sizeof h);
-		const uint32_t *read = words_at(s, at);
-		for (uint32_t i = 0; h.mark == STEP_MARK && i < h.reads; i++) {
-			const uint32_t id = read[2 * i], version = read[2 * i + 1] >> 1;
-			if (id >= s->objects)
-				return false;
-			count_reader(&s->of[id], version);
-			if (read[2 * i + 1] & 1)
-				count_reader(&s->of[id], version + 1);
-		}
+	bool fine = true;
+	for (uint32_t i = 0; i < h->reads; i++)
+		fine &= word[2 * i] < s->objects;
+	for (uint32_t i = 2 * h->reads; i < h->words; i++)
+		fine &= word[i] < s->objects && word[i] != h->id && (i == 2 * h->reads || word[i] > word[i - 1]);
+	return fine;
+}
+
+static int ascending(const void *x, const void *y)
+{
+	const uint64_t a = *(const uint64_t *)x, b = *(const uint64_t *)y;
+	return a < b ? -1 : a > b;
+}
+
+// Lists the versions that steps read, each once, with the number of its readers.
+static void count_readers(versions *v, size_t reads)
+{
+	if (reads)
+		qsort(v->name, reads, sizeof *v->name, ascending);
+	for (size_t i = 0; i < reads; i++) {
+		if (!i || v->name[i] != v->name[v->n - 1])
+			v->name[v->n++] = v->name[i];
+		v->readers[v->n - 1]++;
 	}
+}
+
+// Finds all reads of all steps. false and e: a step names an object that does not exist, or there is no memory.
+static bool find_reads(ob_free_schedule *s, ob_error *e)
+{
+	const size_t most = 2 * (s->size / (2 * sizeof(uint32_t)));
+	step_head h = { 0 };
+	size_t n = 0;
+	s->wanted.name = malloc(most * sizeof *s->wanted.name);
+	for (size_t at = s->at; s->wanted.name && h.mark != END_MARK; at = after(&h, at)) {
+		memcpy(&h, s->bytes + at, sizeof h);
+		const uint32_t *word = words_at(s, at);
+		if (h.mark == STEP_MARK && !names_objects(s, &h, word))
+			return ob_fail(e, "damaged at byte %zu: the step names an object that does not exist", at);
+		for (uint32_t i = 0; h.mark == STEP_MARK && i < h.reads; i++)
+			for (uint32_t next = 0; next <= (word[2 * i + 1] & 1); next++)
+				s->wanted.name[n++] = (uint64_t)word[2 * i] << 32 | ((word[2 * i + 1] >> 1) + next);
+	}
+	s->wanted.readers = calloc(n + 1, sizeof *s->wanted.readers);
+	if (!s->wanted.name || !s->wanted.readers)
+		return ob_fail(e, "no memory");
+	count_readers(&s->wanted, n);
 	return true;
+}
+
+// Readers of a version in steps to come; NULL: it never had any.
+static uint32_t *readers_of(const ob_free_schedule *s, uint32_t id, uint64_t version)
+{
+	const uint64_t name = (uint64_t)id << 32 | version;
+	const uint64_t *found =
+		version > UINT32_MAX ? NULL : bsearch(&name, s->wanted.name, s->wanted.n, sizeof name, ascending);
+	return found ? &s->wanted.readers[found - s->wanted.name] : NULL;
 }
 
 // Finds the next step from a place on.
@@ -254,19 +294,18 @@ static void seek(ob_free_schedule *s, size_t at)
 
 static bool load(ob_free_schedule *s, const char *path, uint32_t objects, ob_error *e)
 {
-	ob_error why;
-	s->bytes = ob_file_load(path, most_bytes, &s->size, &why);
+	s->bytes = ob_file_load(path, most_bytes, &s->size, e);
 	if (!s->bytes)
-		return ob_fail(e, "%s: %s", path, why.text);
+		return false;
 	s->objects = objects;
 	s->at = sizeof(file_head);
-	s->of = calloc(objects, sizeof *s->of);
-	if (!s->of)
-		return ob_fail(e, "no memory for %s", path);
-	if (!check_steps(path, s->bytes, s->size, objects, e))
+	s->kept = calloc(objects, sizeof(kept *));
+	if (!check_steps(s->bytes, s->size, objects, e))
 		return false;
-	if (!mark_lost(s) || !count_readers(s))
-		return ob_fail(e, "%s: a step reads an object that does not exist", path);
+	if (!s->kept || !mark_lost(s))
+		return ob_fail(e, "no memory");
+	if (!find_reads(s, e))
+		return false;
 	seek(s, s->at);
 	return true;
 }
@@ -284,21 +323,21 @@ bool ob_free_schedule_open(ob_free_schedule **out, ob_universe *u, ob_error *e)
 	if (f->replays)
 		return load(s, f->schedule, ob_universe_capacity(u), e);
 	s->fd = open(f->schedule, O_WRONLY | O_APPEND | O_CLOEXEC);
-	return s->fd >= 0 || says_why(f->schedule, e);
+	return s->fd >= 0 || ob_fail(e, "%s", strerror(errno));
 }
 
 void ob_free_schedule_close(ob_free_schedule *s)
 {
 	if (!s)
 		return;
-	for (uint32_t id = 0; s->of && id < s->objects; id++) {
-		for (kept *k = s->of[id].first, *next; k; k = next)
+	for (uint32_t id = 0; s->kept && id < s->objects; id++)
+		for (kept *k = s->kept[id], *next; k; k = next)
 			next = k->next, free(k);
-		free(s->of[id].readers);
-	}
 	if (s->fd >= 0)
 		close(s->fd);
-	free(s->of);
+	free(s->kept);
+	free(s->wanted.name);
+	free(s->wanted.readers);
 	free(s->bytes);
 	free(s->read);
 	free(s->neighbour);
@@ -312,7 +351,12 @@ bool ob_free_schedule_replays(const ob_free_schedule *s)
 
 bool ob_free_schedule_is_fine(const ob_free_schedule *s, ob_error *e)
 {
-	return !s || !s->wrong || ob_fail(e, "the schedule: %s", s->wrong);
+	return !s || !s->wrong || ob_fail(e, "%s", s->wrong);
+}
+
+void ob_free_schedule_refuse(ob_free_schedule *s)
+{
+	s->wrong = misfit;
 }
 
 bool ob_free_schedule_next(const ob_free_schedule *s, ob_free_planned_step *out)
@@ -341,18 +385,24 @@ static void note_read(ob_free_schedule *s, uint32_t id, uint64_t version, bool n
 
 static kept *keep(ob_free_schedule *s, uint32_t id, uint64_t version, const ob_motion *m, const ob_ledger *l)
 {
-	const size_t accounts = l ? l->head.accounts : 0, without = offsetof(ob_ledger, account);
-	versions *v = &s->of[id];
-	if (version >= v->max || v->readers[version] == 0)
+	const size_t accounts = l ? l->head.accounts : 0, without = offsetof(ob_ledger, account),
+		     bytes = offsetof(kept, ledger) + without + accounts * sizeof(ob_account);
+	const uint32_t *readers = readers_of(s, id, version);
+	if (!readers || *readers == 0)
 		return NULL;
-	kept *k = ob_reallocate(NULL, offsetof(kept, ledger) + without + accounts * sizeof(ob_account));
-	k->next = v->first;
+	if (s->kept_bytes + bytes > most_bytes) {
+		s->wrong = "more versions wait for their readers than there is memory for";
+		return NULL;
+	}
+	kept *k = ob_reallocate(NULL, bytes);
+	s->kept_bytes += k->bytes = bytes;
+	k->next = s->kept[id];
 	k->version = version;
-	k->readers = v->readers[version];
+	k->readers = *readers;
 	k->motion = *m;
 	if (l)
 		memcpy(&k->ledger, l, without + accounts * sizeof(ob_account));
-	return v->first = k;
+	return s->kept[id] = k;
 }
 
 // Keeps the newest version, which the host may have made.
@@ -361,7 +411,7 @@ static void keep_newest(ob_free_schedule *s, const ob_universe *u, uint32_t id)
 	ob_motion m, next;
 	ob_ledger l;
 	const uint64_t version = ob_free_version(u, id);
-	for (const kept *k = s->of[id].first; k; k = k->next)
+	for (const kept *k = s->kept[id]; k; k = k->next)
 		if (k->version == version)
 			return;
 	const bool mail = ob_free_settings_of(u)->coupling == OB_COUPLING_LEDGER;
@@ -374,24 +424,26 @@ static const kept *find_kept(ob_free_schedule *s, const ob_universe *u, uint32_t
 {
 	if (version == ob_free_version(u, id))
 		keep_newest(s, u, id);
-	kept *k = s->of[id].first;
+	kept *k = s->kept[id];
 	while (k && k->version != version)
 		k = k->next;
-	s->wrong = k ? s->wrong : "it does not fit the scene";
+	if (!k)
+		ob_free_schedule_refuse(s);
 	return k;
 }
 
 // Forgets a version after its last reader.
 static void release(ob_free_schedule *s, uint32_t id, uint64_t version)
 {
-	kept **at = &s->of[id].first;
-	s->of[id].readers[version]--;
+	kept **at = &s->kept[id];
+	--*readers_of(s, id, version);
 	while (*at && (*at)->version != version)
 		at = &(*at)->next;
 	kept *k = *at;
 	if (!k || --k->readers > 0)
 		return;
 	*at = k->next;
+	s->kept_bytes -= k->bytes;
 	free(k);
 }
 
@@ -400,7 +452,7 @@ static uint64_t take_read(ob_free_schedule *s, uint32_t id, bool *next)
 {
 	const uint32_t *read = words_at(s, s->at) + 2 * s->taken;
 	if (s->taken >= s->step.reads || read[0] != id) {
-		s->wrong = "it does not fit the scene";
+		ob_free_schedule_refuse(s);
 		return 0;
 	}
 	s->taken++;
@@ -514,7 +566,7 @@ void ob_free_schedule_put(ob_free_schedule *s, const ob_universe *u, uint32_t id
 		return;
 	}
 	if (version != s->step.version)
-		s->wrong = "it does not fit the scene";
+		ob_free_schedule_refuse(s);
 	keep_newest(s, u, id);
 	keep(s, id, version, m, ledger);
 }

@@ -10,7 +10,7 @@
 // that it has read. If its simulator is killed between the two, a successor appends the step again, and the last one counts.
 //
 // Replay: the steps are made one after the other, by one worker. A step may need older versions than the rings keep: the
-// worker keeps a version until the last of its readers has had it.
+// worker keeps a version until the last of its readers has had it. A file may hold anything: memory is bounded by its size.
 //
 // Not repeated: clocks, waits, and the counters of the report. Integers and doubles are this machine's. Thread-safety: a
 // schedule belongs to one worker; several append to one file.
@@ -41,12 +41,15 @@ bool ob_free_schedule_check(const char *path, uint64_t digest, ob_free_settings 
 
 // ---- a worker
 
-// Opens the schedule that the run's settings name. *s NULL: none. false and e: it cannot be read or written.
+// Opens the schedule that the run's settings name. *s NULL: none. false and e, without the path: it cannot be read or
+// written.
 bool ob_free_schedule_open(ob_free_schedule **s, ob_universe *u, ob_error *e);
 void ob_free_schedule_close(ob_free_schedule *s); // NULL: nothing
 bool ob_free_schedule_replays(const ob_free_schedule *s); // s may be NULL
 // False and e: a step could not be written, or does not fit the universe.
 bool ob_free_schedule_is_fine(const ob_free_schedule *s, ob_error *e);
+// Replay: the next step cannot be made, for it does not fit the universe.
+void ob_free_schedule_refuse(ob_free_schedule *s);
 
 // Replay: the next step; it stays the next one until it is taken. false: there are no more.
 bool ob_free_schedule_next(const ob_free_schedule *s, ob_free_planned_step *out);

@@ -168,18 +168,34 @@ static void work(worker *w)
 	}
 }
 
+// Waits until the host lets simulators go on. It does not if steps are missing: each waits for the other then.
+static void wait_for_host(worker *w)
+{
+	const uint32_t looks = ob_free_looks(w->u);
+	turn_to(w, OB_TRACE_WAIT, 0, 0);
+	while (!ob_gate_stopped(w->u) && ob_free_until(w->u) == w->until) {
+		if (ob_free_looks(w->u) - looks >= 2) {
+			ob_free_schedule_refuse(w->scratch.schedule);
+			return;
+		}
+		ob_free_wait_for_host(w->u, w->until);
+	}
+}
+
 // Makes the next step of a replayed schedule, once the host has come so far.
 static void replay(worker *w)
 {
 	ob_free_planned_step step;
 	if (!ob_free_schedule_next(w->scratch.schedule, &step) || step.end > w->until * w->scratch.boundary) {
-		turn_to(w, OB_TRACE_WAIT, 0, 0);
-		ob_free_wait_for_host(w->u, w->until);
+		wait_for_host(w);
 		return;
 	}
 	turn_to(w, OB_TRACE_STEPS, 0, 0);
 	ob_free_sim *s = &w->sim[step.id]; // there is one worker
-	if (!step.anew || ob_free_sim_begin(s, w->u, step.id))
+	const bool begun = !step.anew || ob_free_sim_begin(s, w->u, step.id);
+	if (!begun || !s->present || s->failed || !(step.end > s->time))
+		ob_free_schedule_refuse(w->scratch.schedule);
+	else
 		ob_free_sim_step(s, &w->scratch);
 	w->span.a++;
 	ob_free_schedule_take(w->scratch.schedule);
@@ -188,8 +204,9 @@ static void replay(worker *w)
 bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
 {
 	worker w;
-	bool fine = begin(&w, u, number) || ob_fail(e, "worker %u: no memory", number);
-	fine = fine && ob_free_schedule_open(&w.scratch.schedule, u, e);
+	if (!begin(&w, u, number))
+		return ob_fail(e, "worker %u: no memory", number);
+	bool fine = ob_free_schedule_open(&w.scratch.schedule, u, e);
 	const bool replays = ob_free_schedule_replays(w.scratch.schedule);
 	while (fine && !ob_gate_stopped(u)) {
 		const uint32_t until = ob_free_until(u);
@@ -197,7 +214,7 @@ bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
 			w.until = until;
 			ob_counters_copy(ob_worker_counters(u, number),
 					 &w.scratch.solver.counters); // their host looks now and then
-			fine = adopt(&w) || ob_fail(e, "worker %u: no memory", number);
+			fine = adopt(&w) || ob_fail(e, "no memory for worker %u", number);
 		}
 		if (fine && replays)
 			replay(&w);
@@ -205,8 +222,13 @@ bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
 			work(&w);
 		fine = fine && ob_free_schedule_is_fine(w.scratch.schedule, e);
 	}
+	if (!fine) {
+		ob_step_misses_plan(u, e->text);
+		while (!ob_gate_stopped(u))
+			ob_free_wait_for_host(u, w.until);
+	}
 	turn_to(&w, OB_TRACE_NONE, 0, 0);
 	ob_counters_copy(ob_worker_counters(u, number), &w.scratch.solver.counters);
 	finish(&w);
-	return fine;
+	return true;
 }

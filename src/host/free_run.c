@@ -63,7 +63,10 @@ bool ob_host_free_wait(ob_host *h, double timeout)
 			ob_population_update(h->population, ob_step_count(h->u), h->requests);
 			ob_host_free_resume(h);
 		}
+		const uint32_t until = ob_free_until(h->u);
 		extend(h);
+		if (!reached && !h->free_hold && ob_free_until(h->u) == until)
+			ob_free_looked(h->u);
 		if (reached || ob_step_failed(h->u, NULL) != OB_STEP_OK)
 			return true;
 		if (ob_clock_wall() >= end)

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "step/sim.h"
+#include "table/free.h"
 
 enum { NAMED = 120 }; // bytes of "object 4294967295 (" and a name
 
@@ -105,6 +106,11 @@ const char *ob_sim_failure(const ob_universe *u)
 	case OB_STEP_BROKEN:
 		snprintf(text, sizeof text, "what simulators share is wrong when %llu steps are complete: %.*s",
 			 step - 1, (int)sizeof data->count->blamed_for - 1, data->count->blamed_for);
+		return text;
+	case OB_STEP_UNPLANNED:
+		snprintf(text, sizeof text, "%.*s: %.*s", (int)sizeof ob_free_settings_of(u)->schedule,
+			 ob_free_settings_of(u)->schedule, (int)sizeof data->count->blamed_for - 1,
+			 data->count->blamed_for);
 		return text;
 	case OB_STEP_LEFT:
 		return ob_universe_ranks(u) > 1 ? "another rank has left the run" : "the run was stopped";

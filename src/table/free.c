@@ -407,6 +407,16 @@ void ob_free_run_until(ob_universe *u, uint64_t step)
 	ob_futex_wake(&c->until, ~0u);
 }
 
+void ob_free_looked(ob_universe *u)
+{
+	__atomic_add_fetch(&u->free.control->looks, 1, __ATOMIC_RELEASE);
+}
+
+uint32_t ob_free_looks(const ob_universe *u)
+{
+	return __atomic_load_n(&u->free.control->looks, __ATOMIC_ACQUIRE);
+}
+
 uint32_t ob_free_until(const ob_universe *u)
 {
 	return __atomic_load_n(&u->free.control->until, __ATOMIC_ACQUIRE);

@@ -111,7 +111,7 @@ typedef struct ob_free_group {
 typedef struct ob_free_control {
 	ob_free_settings settings;
 	_Alignas(64) uint32_t until; // futex word: step (from 0) at which simulators stop and wait; the host's
-	uint32_t zero;
+	uint32_t looks; // of the host, after which it did nothing but wait
 	uint64_t begun_ns; // clock at which own time 0 was due; 0 = not yet
 	double pace; // s a second of that clock; infinity: simulators follow none
 	double stands; // s: own time at which the clock stands; infinity: it goes on
@@ -139,6 +139,8 @@ void ob_free_run_until(ob_universe *u, uint64_t step);
 // Sets the clock of all simulators: own time t (s) is due now, later times at this pace, and none from `stands` (s) on.
 // While it changes, a step may begin that is due by neither clock. Infinity: no pace; it goes on.
 void ob_free_set_clock(ob_universe *u, double t, double pace, double stands);
+// Counts a look at all simulators after which the host waits for them, with `until` as it was.
+void ob_free_looked(ob_universe *u);
 // Wakes all that sleep in flight: something has changed.
 void ob_free_wake(ob_universe *u);
 // Wakes all that wait, so that they see that the run stops.
@@ -161,6 +163,8 @@ uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint3
 bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_ledger *out);
 // Step at which simulators stop and wait.
 uint32_t ob_free_until(const ob_universe *u);
+// Looks of the host so far. If two begin while simulators wait at one `until`, they wait for ever.
+uint32_t ob_free_looks(const ob_universe *u);
 // Clock (ob_clock_ns) from which on a simulator at own time t (s) may step; UINT64_MAX: the clock stands before.
 uint64_t ob_free_due_ns(const ob_universe *u, double t);
 void ob_free_get_counts(const ob_universe *u, uint32_t id, ob_free_counts *out);

@@ -249,6 +249,13 @@ void ob_step_break(ob_universe *u, const char *what)
 	snprintf(count->blamed_for, sizeof count->blamed_for, "%s", what);
 }
 
+void ob_step_misses_plan(ob_universe *u, const char *why)
+{
+	struct ob_step_counts *count = u->step_data.count;
+	snprintf(count->blamed_for, sizeof count->blamed_for, "%s", why);
+	ob_step_fail(u, OB_STEP_UNPLANNED, 0);
+}
+
 // Within a phase the stack only shrinks, so no other worker gets the same record.
 uint32_t ob_record_take(ob_universe *u)
 {

@@ -270,6 +270,7 @@ typedef enum ob_step_failure {
 	OB_STEP_OVERWORKED, // the step's budget of work is spent
 	OB_STEP_LEFT, // the run was stopped meanwhile
 	OB_STEP_MEMORY_FULL, // the memory file system has no more pages
+	OB_STEP_UNPLANNED, // the schedule that a free run replays does not fit it
 	OB_STEP_BROKEN, // shared data breaks an invariant (step/invariants.h)
 	OB_STEP_DAMAGED, // this and beyond: an id or index is out of its range, a stray write
 } ob_step_failure;

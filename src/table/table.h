@@ -287,6 +287,8 @@ void ob_step_blame(ob_universe *u, uint32_t worker, const char *what);
 // Fails the step with OB_STEP_BROKEN: shared data breaks an invariant, named in this line (truncated if it is too
 // long). Called by the scheduling worker, or the host at a pause.
 void ob_step_break(ob_universe *u, const char *what);
+// Fails a free run whose schedule cannot be replayed, or recorded: the reason in one line. Called by a worker.
+void ob_step_misses_plan(ob_universe *u, const char *why);
 // Takes a record for a pair that begins to touch: any worker. Its two versions have no stamp. There are as many as
 // pairs. OB_NO_RECORD: out of memory, which is a failure of the step.
 uint32_t ob_record_take(ob_universe *u);

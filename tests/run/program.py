@@ -12,6 +12,7 @@ import signal
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -26,6 +27,12 @@ OLDER_PROCESSOR = "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"  # the C library then uses
 SANITIZED = bool(os.environ.get("SANITIZED"))
 PATIENCE = 600  # s, for one call; a sanitizer slows it down about ten times, and so may other users of the machine
 
+# Runs its arguments; then the last line of standard error is the peak, kB.
+PEAK = """import resource, subprocess, sys
+limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (300, 300))
+code = subprocess.run(sys.argv[1:], preexec_fn=limit).returncode
+print(end="\\n" + str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss), file=sys.stderr)
+sys.exit(code if code >= 0 else 128 - code)"""
 LEAK_DETECTOR_FAILED = "LeakSanitizer has encountered a fatal error"
 
 
@@ -51,6 +58,15 @@ def call(*words, timeout=PATIENCE, **more):
 	if done.stderr:
 		done.stderr = re.sub(r"^\[#* *\] \d+ of \d+, .* left: .*\n", "", done.stderr, flags=re.MULTILINE)
 	return done
+
+
+def peak(*words, timeout=PATIENCE):
+	"""obsim WORDS to its end, as its exit code, its standard error, and the most memory that a process of it held, MB.
+	A process that computes for very long is ended."""
+	done = subprocess.run([sys.executable, "-c", PEAK, OBSIM, *map(str, words)], timeout=timeout, text=True, stdout=subprocess.DEVNULL,
+		stderr=subprocess.PIPE)
+	*lines, last = done.stderr.split("\n")
+	return done.returncode, "\n".join(lines), int(last) >> 10
 
 
 def start(*words, **more):

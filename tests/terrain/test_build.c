@@ -248,8 +248,12 @@ static void sizes(void)
 		for (uint32_t i = 0; i < N; i++) {
 			const ob_vec3 at = ob_splitmix_vector(&seed, 49);
 			const bool large = kind == EQUAL || (kind == MIXED && i % 2);
-			const double x = large ? 100 : kind == CROSSED && i % 2 ? 200 : .1,
-				     y = large ? 100 : kind == CROSSED && i % 2 == 0 ? 200 : .1;
+			const double x = large                      ? 100
+					 : kind == CROSSED && i % 2 ? 200
+								    : .1,
+				     y = large                           ? 100
+					 : kind == CROSSED && i % 2 == 0 ? 200
+									 : .1;
 			vertex[3 * i] = large ? ob_v3(-50, -50, 0) : ob_v3(at.x - .5 * x, at.y - .5 * y, at.z);
 			vertex[3 * i + 1] = ob_add(vertex[3 * i], ob_v3(x, 0, 0));
 			vertex[3 * i + 2] = ob_add(vertex[3 * i], ob_v3(0, y, 0));
