@@ -1,5 +1,6 @@
 #include "import/import.h"
 
+#include <dlfcn.h>
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -11,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/file.h"
 #include "base/sanitizer.h"
 #include "base/utf8.h"
 #include "import/part.h"
@@ -18,19 +20,55 @@
 #define MUJOCO "libmujoco2.2.2"
 
 enum {
-	SECONDS = OB_SANITIZED ? 100 : 20, // of CPU
+	SECONDS = OB_SANITIZED ? 100 : 10, // of CPU
 	WALL_PER_CPU = 10,
 	TEXT_MOST = 256 << 20, // bytes
 	FILE_MOST = 64 << 20,
 	FILES = 64,
 };
-#define MEMORY ((rlim_t)2 << 30) // bytes of addresses
+#define MEMORY ((rlim_t)1 << 30) // bytes of addresses
 
 // Message of the child: this, then the scene, then the list.
 typedef struct report {
 	uint64_t scene, omitted; // bytes
 	ob_error e; // empty: none
 } report;
+
+// ---- files of the model
+
+static bool guarded; // in the child
+
+typedef FILE *opener(const char *path, const char *mode);
+
+// Opens a file for the program, or a library. What a model names is a regular file of a bounded size: at a pipe its reader
+// would wait.
+static FILE *open_guarded(const char *real, const char *path, const char *mode)
+{
+	uint64_t size;
+	ob_error e;
+	opener *open_any;
+	if (!guarded || *mode != 'r') {
+		*(void **)&open_any = dlsym(RTLD_NEXT, real);
+		return open_any(path, mode);
+	}
+	const int fd = ob_file_open(path, FILE_MOST, &size, &e);
+	return fd < 0 ? NULL : fdopen(fd, mode);
+}
+
+// In place of the C library's, by which MuJoCo and its libraries open all files.
+__attribute__((visibility("default"))) FILE *open_long(const char *path, const char *mode) __asm__("fopen64");
+FILE *open_long(const char *path, const char *mode)
+{
+	return open_guarded("fopen64", path, mode);
+}
+
+__attribute__((visibility("default"))) FILE *open_plain(const char *path, const char *mode) __asm__("fopen");
+FILE *open_plain(const char *path, const char *mode)
+{
+	return open_guarded("fopen", path, mode);
+}
+
+// ---- the child
 
 static void limit(void)
 {
@@ -68,6 +106,7 @@ static _Noreturn void be_child(const char *path, const char *folder, int link, p
 		_exit(EXIT_FAILURE);
 	const ob_import_part *part = ob_part_load("import", sizeof *part, false, MUJOCO, &r.e);
 	limit();
+	guarded = true;
 	FILE *scene = open_memstream(&text[0], &size[0]), *omitted = open_memstream(&text[1], &size[1]);
 	if (part && scene && omitted && part->convert(path, folder, scene, omitted, &r.e))
 		*r.e.text = 0;

@@ -328,6 +328,20 @@ static int drop_element(source *u, const char *name)
 	return n;
 }
 
+// Adds a section at the beginning of MuJoCo's part.
+static bool add_section(source *u, const char *section)
+{
+	const char *root = strstr(u->t.at, "<mujoco"), *end = root ? strchr(root, '>') : NULL;
+	return end && end[-1] != '/' && replace(u, (size_t)(end + 1 - u->t.at), (size_t)(end + 1 - u->t.at), section);
+}
+
+// Sets the size of MuJoCo's stack, in numbers. By itself it grows with the square of the bodies, and then overflows.
+static void set_stack(source *u)
+{
+	drop_attribute(u, "nstack");
+	add_section(u, "<size nstack=\"40000000\"/>");
+}
+
 // Drops an element or an attribute that a newer MuJoCo reads, by the parser's message.
 static bool mend_mjcf(source *u, const char *why)
 {
@@ -344,9 +358,7 @@ static bool mend_mjcf(source *u, const char *why)
 	if (n && !u->bounded && !strstr(u->t.at, "autolimits")) {
 		// Since MuJoCo 3 a range is a limit.
 		u->bounded = true;
-		const char *root = strstr(u->t.at, "<mujoco"), *end = root ? strchr(root, '>') : NULL;
-		return end && replace(u, (size_t)(end + 1 - u->t.at), (size_t)(end + 1 - u->t.at),
-				      "<compiler autolimits=\"true\"/>");
+		return add_section(u, "<compiler autolimits=\"true\"/>");
 	}
 	return n > 0;
 }
@@ -499,6 +511,7 @@ static bool load(const char *path, bool looks, FILE *omitted, ob_drawn *out, ob_
 		place_meshes(&u);
 		list_mimics(&u);
 	}
+	set_stack(&u);
 	out->model = load_source(&u, urdf ? mend_urdf : mend_mjcf, why, sizeof why);
 	free(u.t.at);
 	if (!out->model)

@@ -139,6 +139,10 @@ static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_
 	static const ob_scene_options none = { 0 };
 	if (!text)
 		return NULL;
+	if (size > FILE_MAX) {
+		free(text);
+		return ob_fail(e, "%s: cannot read the scene: it is larger than %zu MiB", path, FILE_MAX >> 20), NULL;
+	}
 	ob_builder *b = calloc(1, sizeof *b);
 	ob_scene *s = calloc(1, sizeof *s);
 	bool good = false;

@@ -301,6 +301,56 @@ class Import(program.Case):
 		text = "<mujoco><size nstack='2000000000' njmax='2000000000' nconmax='2000000000'/></mujoco>"
 		self.refuse("import", self.write("huge.xml", text), saying="huge.xml: ")
 
+	def test_no_file(self):
+		"""All files that a model names are regular ones: nothing waits for a pipe, or reads a device."""
+		model = "<mujoco><asset>%s</asset><worldbody><geom type='%s'/><body pos='0 0 1'><freejoint/><geom size='.1'/></body></worldbody></mujoco>"
+		for name in ("pipe", "pipe.stl", "pipe.png", "pipe.skn", "pipe.xml"):
+			os.mkfifo(self.path(name))
+		for text in (model % ("<hfield name='h' file='pipe' size='1 1 1 1'/>", "hfield' hfield='h"),
+				model % ("<hfield name='h' file='/dev/zero' size='1 1 1 1'/>", "hfield' hfield='h"),
+				model % ("<hfield name='h' file='pipe.png' size='1 1 1 1'/>", "hfield' hfield='h"),
+				model % ("<mesh name='m' file='pipe.stl'/>", "mesh' mesh='m"),
+				model % ("<texture name='t' type='2d' file='pipe.png'/>", "sphere' size='1"),
+				model % ("<skin file='pipe.skn'/>", "sphere' size='1"),
+				"<mujoco><include file='pipe.xml'/></mujoco>", "<mujoco><include file='/dev/zero'/></mujoco>"):
+			with self.subTest(text=text):
+				self.refuse("import", self.write("model.xml", text), saying="model.xml: ")
+		path = self.write("pipe.urdf", """<robot name="r"><link name="l"><inertial><mass value="1"/>
+			<inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial>
+			<collision><geometry><mesh filename="pipe.stl"/></geometry></collision></link></robot>""")
+		self.assertRegex(self.convert(path)[2], r"mesh \S*pipe.stl is left out: MuJoCo cannot read it")
+
+	def test_read_back(self):
+		"""A scene that was written can be read; a model with other numbers is one line."""
+		body = "<mujoco>%s<worldbody><body pos='%s'><freejoint/><geom type='sphere' size='%s'/></body></worldbody></mujoco>"
+		for text, saying in ((body % ("<option gravity='nan 0 1'/>", "0 0 1", ".1"), "nan"), (body % ("", "1.4e153 0 1", ".1"), "sphere.at"),
+				(body % ("", "0 0 1", "1e50"), "sphere.radius"), (body % ("<option gravity='0 0 1e9'/>", "0 0 1", "1"), "scene.gravity")):
+			with self.subTest(text=text):
+				self.refuse("import", self.write("model.xml", text), saying="makes no scene: model.lua:")
+				self.refuse("import", self.write("model.xml", text), "--out", self.path("out"), saying=saying)
+				self.assertFalse(os.path.exists(os.path.join(self.path("out"), "model.lua")))
+		draw = random.Random(3)
+		whole = {name: pathlib.Path(MODELS, name).read_text() for name in ("arm.xml", "springs.xml", "quadruped.xml", "rover.urdf")}
+		for i in range(8 if program.SANITIZED else 40):
+			name = draw.choice(list(whole))
+			numbers = list(re.finditer(r'(?<=[" ])-?[0-9.]+(?=[" ])', whole[name]))
+			at = draw.choice(numbers)
+			text = whole[name][:at.start()] + draw.choice(["nan", "inf", "-1", "0", "1e-300", "1e300", "1e9", "1e-9", "7"]) + whole[name][at.end():]
+			done = program.call("import", self.write("model.xml", text))
+			self.assertIn(done.returncode, (0, 2), done.stderr)
+			if done.returncode == 0:
+				with open(self.path("model.lua"), "w") as f:
+					f.write(done.stdout)
+				self.assertNotEqual(program.call("run", self.path("model.lua"), "--duration", "1/60").returncode, 2, text[at.start() - 80:at.end()])
+			else:
+				self.assertRegex(done.stderr, r"^obsim: [^\n]*\n$")
+
+	def test_many(self):
+		"""MuJoCo's stack does not overflow by the number of bodies."""
+		bodies = "".join(f"<body pos='{i} 0 1'><freejoint/><geom size='.1'/></body>" for i in range(2000))
+		scene, found, _ = self.convert(self.write("many.xml", f"<mujoco><worldbody>{bodies}</worldbody></mujoco>"))
+		self.assertEqual(len(found), 2000)
+
 	def test_damaged(self):
 		"""Files with random damage are a scene or one line."""
 		draw = random.Random(1)
