@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/budget.h"
+
 static int check(int fd, uint64_t most, uint64_t *size, ob_error *e)
 {
 	struct stat st;
@@ -58,8 +60,11 @@ char *ob_file_load(const char *path, size_t most, size_t *size, ob_error *e)
 	const int fd = ob_file_open(path, most, &bytes, e);
 	if (fd < 0)
 		return NULL;
-	char *text = malloc(bytes + 1);
-	int good = text ? ob_file_read(fd, text, bytes, e) : ob_fail(e, "no memory");
+	const bool allowed = ob_budget_allows(bytes, e);
+	char *text = allowed ? malloc(bytes + 1) : NULL;
+	if (allowed && !text)
+		ob_fail(e, "no memory");
+	const bool good = text && ob_file_read(fd, text, bytes, e);
 	close(fd);
 	if (good) {
 		text[bytes] = 0;

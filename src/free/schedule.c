@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/allocate.h"
+#include "base/budget.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/log.h"
@@ -255,6 +256,8 @@ static bool find_reads(ob_free_schedule *s, ob_error *e)
 	const size_t most = 2 * (s->size / (2 * sizeof(uint32_t)));
 	step_head h = { 0 };
 	size_t n = 0;
+	if (!ob_budget_allows(2 * most * sizeof *s->wanted.name, e))
+		return false;
 	s->wanted.name = malloc(most * sizeof *s->wanted.name);
 	for (size_t at = s->at; s->wanted.name && h.mark != END_MARK; at = after(&h, at)) {
 		memcpy(&h, s->bytes + at, sizeof h);

@@ -12,15 +12,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/budget.h"
 #include "base/file.h"
-#include "base/sanitizer.h"
 #include "base/utf8.h"
 #include "import/part.h"
 
 #define MUJOCO "libmujoco2.2.2"
 
 enum {
-	SECONDS = OB_SANITIZED ? 100 : 10, // of CPU
+	SECONDS = OB_SANITIZED ? 100 : OB_BUDGET_SECONDS, // of CPU
 	WALL_PER_CPU = 10,
 	TEXT_MOST = 256 << 20, // bytes
 	FILE_MOST = 64 << 20,
@@ -40,8 +40,8 @@ static bool guarded; // in the child
 
 typedef FILE *opener(const char *path, const char *mode);
 
-// Opens a file for the program, or a library. What a model names is a regular file of a bounded size: at a pipe its reader
-// would wait.
+// Opens a file for the program, or a library. In the child regular files of a bounded size alone are read: at a pipe the
+// parser would wait.
 static FILE *open_guarded(const char *real, const char *path, const char *mode)
 {
 	uint64_t size;

@@ -15,6 +15,7 @@
 #include <tiny_gltf.h>
 
 extern "C" {
+#include "base/budget.h"
 #include "mesh/gltf.h"
 #include "mesh/image.h"
 }
@@ -26,7 +27,7 @@ enum { DEPTH_MAX = 32, STRIDE_MAX = 65536 };
 // Limit of the work to read a file: corners of triangles, plus WORK_OF_PART for each part. Nodes that share a mesh
 // multiply both.
 enum { WORK_MAX = 4 * 3 * OB_MESH_TRIANGLES_MAX, WORK_OF_PART = 16 };
-enum { JSON_OBJECTS_MAX = 65536 }; // each becomes up to 3.5 kB
+enum { JSON_OBJECTS_MAX = 65536, BYTES_OF_OBJECT = 3500 }; // memory of each object, at most
 
 // Error text of a damaged file, thrown.
 struct fault {
@@ -41,8 +42,8 @@ struct fault {
 // ---- checks before tinygltf
 
 // Counts brackets and buffers: tinygltf recurses once a bracket, makes a large structure of each, and copies all bytes
-// for each buffer.
-void look_through(const char *json, size_t size)
+// for each buffer. Returns the number of objects and lists.
+size_t look_through(const char *json, size_t size)
 {
 	std::string text, key;
 	size_t depth = 0, buffers = 0, objects = 0;
@@ -72,6 +73,7 @@ void look_through(const char *json, size_t size)
 	}
 	if (buffers > 1)
 		fail("it has several buffers: expected one, in the file itself");
+	return objects;
 }
 
 bool starts_with(const std::string &text, const char *with)
@@ -100,7 +102,10 @@ void parse(tinygltf::Model &model, const unsigned char *bytes, size_t size)
 	std::string error, warning;
 	uint32_t json;
 	memcpy(&json, bytes + 12, sizeof json);
-	look_through(reinterpret_cast<const char *>(bytes) + 20, json);
+	const size_t objects = look_through(reinterpret_cast<const char *>(bytes) + 20, json);
+	ob_error e;
+	if (!ob_budget_allows(objects * BYTES_OF_OBJECT + size, &e))
+		fail(e.text);
 	loader.SetImageLoader(skip_picture, nullptr);
 	loader.SetFsCallbacks({ nullptr, nullptr, nullptr, nullptr, nullptr });
 	if (!loader.LoadBinaryFromMemory(&model, &error, &warning, bytes, static_cast<unsigned>(size)))

@@ -10,6 +10,8 @@
 #include <jpeglib.h>
 #include <png.h>
 
+#include "base/budget.h"
+
 // Limit of scans of a JPEG: each covers the whole picture.
 enum { JPEG_SCANS_MAX = 64 };
 
@@ -21,6 +23,8 @@ static bool make_room(ob_mesh_image *out, uint32_t width, uint32_t height, size_
 			       OB_MESH_IMAGE_SIDE_MAX, OB_MESH_IMAGE_SIDE_MAX);
 	if ((size_t)width * height > most)
 		return ob_fail(e, "its pictures have more than %d pixels", OB_MESH_PIXELS_MAX);
+	if (!ob_budget_allows(8 * (uint64_t)width * height, e)) // a decoder holds as much again
+		return false;
 	*out = (ob_mesh_image){ width, height, malloc(4 * (size_t)width * height) };
 	return out->rgba || ob_fail(e, "no memory for it");
 }

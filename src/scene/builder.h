@@ -89,6 +89,10 @@ void ob_builder_find_file(lua_State *L, const ob_builder *b, const char *where, 
 // field: the one that names the file.
 uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const char *field,
 			const ob_mesh_source *source);
+// Raises an error if the looks of the scene are too large.
+void ob_builder_check_looks(lua_State *L, const ob_scene *s, const char *where);
+// Raises an error if so much more memory is beyond the budget (base/budget.h).
+void ob_builder_allow(lua_State *L, const char *where, uint64_t bytes);
 // Number of the script in an object's field `script`, which is added if it is new. Raises an error if it is invalid.
 uint32_t ob_builder_script(lua_State *L, ob_builder *b, const char *where, const char *script);
 // Adds a script, and takes ownership of its text, from malloc; NULL: no memory. Raises an error if there are too many.

@@ -268,6 +268,7 @@ ob_object_def *ob_builder_add(lua_State *L, ob_builder *b, const char *kind, con
 		take_name(L, kind, name);
 	if (s->objects == b->objects_room) {
 		uint32_t room = b->objects_room ? 2 * b->objects_room : 64;
+		ob_builder_allow(L, kind, room * sizeof *s->object);
 		if (!OB_GROW(s->object, room))
 			ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
 		b->objects_room = room;

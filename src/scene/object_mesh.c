@@ -8,12 +8,21 @@
 
 enum { MESH_INSTRUCTIONS = 10000, MESH_BYTES = 64 }; // cost of reading one, plus one instruction for each MESH_BYTES
 
-static size_t bytes_of_all(const ob_scene *s)
+void ob_builder_check_looks(lua_State *L, const ob_scene *s, const char *where)
 {
 	size_t bytes = 0;
 	for (uint32_t i = 0; i < s->meshes; i++)
 		bytes += ob_mesh_bytes(&s->mesh[i]);
-	return bytes;
+	if (bytes > OB_SCENE_MESH_BYTES)
+		ob_sandbox_fail(L, "%s: all meshes of the scene are larger than %u MiB", where,
+				OB_SCENE_MESH_BYTES >> 20);
+}
+
+void ob_builder_allow(lua_State *L, const char *where, uint64_t bytes)
+{
+	ob_error e;
+	if (!ob_budget_allows(bytes, &e))
+		ob_sandbox_fail(L, "%s: %s", where, e.text);
 }
 
 static void make_room(lua_State *L, ob_builder *b, const char *where, const char *field)
@@ -45,8 +54,6 @@ uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ch
 	ob_sandbox_spend(L, MESH_INSTRUCTIONS + (unsigned)(ob_mesh_bytes(m) / MESH_BYTES));
 	if (!ob_mesh_place(m, source->scale, source->pose, &e))
 		ob_sandbox_fail(L, "%s.%s: cannot place %s: %s", where, field, path, e.text);
-	if (bytes_of_all(s) > OB_SCENE_MESH_BYTES)
-		ob_sandbox_fail(L, "%s.%s: all meshes of the scene are larger than %u MiB", where, field,
-				OB_SCENE_MESH_BYTES >> 20);
+	ob_builder_check_looks(L, s, where);
 	return (uint8_t)s->meshes;
 }

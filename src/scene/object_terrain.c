@@ -11,6 +11,7 @@
 #include <lauxlib.h>
 
 enum { CELLS_MAX = OB_TERRAIN_TRIANGLES_MAX / 2 };
+enum { TRIANGLE_INSTRUCTIONS = 10 }; // cost of one, beside its heights
 
 // ---- heightfields
 
@@ -175,15 +176,17 @@ static void find_normals(ob_mesh *m)
 	}
 }
 
-// Makes the look of a terrain. false: no memory.
-static bool make_look(const ob_terrain *t, ob_mesh *m)
+// Makes the look of a terrain. false and e: no memory.
+static bool make_look(const ob_terrain *t, ob_mesh *m, ob_error *e)
 {
 	*m = (ob_mesh){ .vertices = t->vertices, .indices = 3 * t->triangles };
+	if (!ob_budget_allows(ob_mesh_bytes(m), e))
+		return false;
 	m->vertex = calloc(m->vertices, sizeof *m->vertex);
 	m->index = malloc(m->indices * sizeof *m->index);
 	if (!m->vertex || !m->index) {
 		ob_mesh_finish(m);
-		return false;
+		return ob_fail(e, "no memory left on this machine");
 	}
 	for (uint32_t i = 0; i < m->vertices; i++) {
 		const ob_vec3 p = ob_terrain_vertices(t)[i];
@@ -194,21 +197,24 @@ static bool make_look(const ob_terrain *t, ob_mesh *m)
 	for (uint32_t i = 0; i < m->indices; i++)
 		m->index[i] = ob_terrain_triangles(t)[i / 3].corner[i % 3];
 	find_normals(m);
-	return ob_mesh_makes_sense(m);
+	return ob_mesh_makes_sense(m) || ob_fail(e, "its numbers are out of range");
 }
 
 uint32_t ob_builder_terrain(lua_State *L, ob_builder *b, const char *kind, ob_terrain *t, uint8_t *look)
 {
 	ob_scene *s = b->scene;
 	const uint32_t number = s->terrains ? (uint32_t)s->terrains->count : 0;
-	bool fine = ob_terrain_set_add(&s->terrains, t);
+	const uint32_t triangles = t->triangles;
+	ob_error e = { "no memory left on this machine" };
+	bool fine = ob_terrain_set_add(&s->terrains, t, &e);
 	if (fine && !*look && s->meshes < OB_SCENE_MESHES_MAX) {
-		fine = OB_GROW(s->mesh, s->meshes + 1) && make_look(t, &s->mesh[s->meshes]);
+		fine = OB_GROW(s->mesh, s->meshes + 1) && make_look(t, &s->mesh[s->meshes], &e);
 		*look = fine ? (uint8_t)++s->meshes : 0;
 	}
 	free(t);
 	if (!fine)
-		ob_sandbox_fail(L, "%s: expected at most %d heightfields and meshes, and memory for them", kind,
-				OB_TERRAINS_MAX);
+		ob_sandbox_fail(L, "%s: %s", kind, e.text);
+	ob_builder_check_looks(L, s, kind);
+	ob_sandbox_spend(L, triangles * TRIANGLE_INSTRUCTIONS);
 	return number;
 }

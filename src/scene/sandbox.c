@@ -102,7 +102,7 @@ void ob_sandbox_extend(lua_State *L, unsigned instructions)
 #define TEXT_OF(number) #number
 #define SECONDS_TEXT(number) TEXT_OF(number)
 static const char too_late[] =
-	"stopped after " SECONDS_TEXT(OB_SANDBOX_SECONDS) " s of CPU time: does it compute too much?";
+	"stopped after " SECONDS_TEXT(OB_BUDGET_SECONDS) " s of CPU time: does it compute too much?";
 
 // True if the thread's CPU time is up. The clock is looked at first, as it costs a tenth.
 static bool is_late(ob_sandbox *s)
@@ -360,7 +360,7 @@ ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, 
 		.memory = OB_SANDBOX_MEMORY,
 		.string = OB_SANDBOX_STRING,
 		.instructions = OB_SANDBOX_INSTRUCTIONS,
-		.seconds = OB_SANDBOX_SECONDS,
+		.seconds = OB_BUDGET_SECONDS,
 		.out_of_memory = "the scene needs more than 64 MiB of memory",
 		.out_of_string = "a string grew beyond 1 MiB",
 		.out_of_instructions = "stopped after 50 million instructions: does a loop never end?",

@@ -15,17 +15,11 @@
 #include <lua.h>
 #include <ob/error.h>
 
-#include "base/sanitizer.h"
+#include "base/budget.h"
 
 #define OB_SANDBOX_MEMORY ((size_t)64 << 20) // bytes, all that Lua holds
 #define OB_SANDBOX_STRING ((size_t)1 << 20) // bytes, one string
 #define OB_SANDBOX_INSTRUCTIONS 50000000 // instructions of the Lua machine
-// s, CPU of its thread. A sanitizer needs three times as much for the same.
-#if OB_SANITIZED
-#define OB_SANDBOX_SECONDS 30
-#else
-#define OB_SANDBOX_SECONDS 10
-#endif
 
 typedef struct ob_sandbox ob_sandbox;
 

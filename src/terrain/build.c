@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/budget.h"
 #include "terrain/terrain.h"
 
 // Triangles this near to one plane are one region: relative to the size of the terrain.
@@ -262,7 +263,6 @@ static bool fill_columns(draft *d)
 		d->first[c + 1] = d->first[c] + at[c];
 		at[c] = d->first[c];
 	}
-	d->entries = d->first[columns];
 	d->entry = malloc(d->entries * sizeof *d->entry);
 	for (uint32_t i = 0; d->entry && i < d->triangles; i++)
 		enter(d, i, at);
@@ -284,21 +284,31 @@ static void plan_columns(draft *d, const uint32_t cells[2])
 	enum { MOST = 1024 };
 	for (int i = 0; i < 2; i++)
 		divide(d, i, cells[i] < 1 ? 1 : cells[i] < MOST ? cells[i] : MOST);
-	while (count_entries(d) > (uint64_t)OB_TERRAIN_ENTRIES_PER_TRIANGLE * d->triangles)
+	uint64_t entries;
+	while ((entries = count_entries(d)) > (uint64_t)OB_TERRAIN_ENTRIES_PER_TRIANGLE * d->triangles)
 		for (int i = 0; i < 2; i++)
 			divide(d, i, (d->columns[i] + 1) / 2);
+	d->entries = (uint32_t)entries;
 }
 
 // ---- all together
+
+// Size of the terrain as packed; before its regions are known, at most.
+static uint64_t packed_bytes(const draft *d)
+{
+	const uint64_t regions = d->regions ? d->regions : d->triangles, columns = d->columns[0] * d->columns[1] + 1;
+	return (sizeof(ob_terrain) + d->vertices * sizeof *d->vertex + regions * sizeof *d->region +
+		d->triangles * (sizeof *d->triangle + sizeof *d->by_region) + columns * sizeof *d->first +
+		d->entries * sizeof *d->entry + 63) /
+	       64 * 64;
+}
 
 static ob_terrain *pack(const draft *d, bool solid)
 {
 	const size_t vertices = d->vertices * sizeof *d->vertex, regions = d->regions * sizeof *d->region,
 		     triangles = d->triangles * sizeof *d->triangle, by_region = d->triangles * sizeof *d->by_region,
 		     columns = (d->columns[0] * d->columns[1] + 1) * sizeof *d->first,
-		     entries = d->entries * sizeof *d->entry;
-	const size_t bytes =
-		(sizeof(ob_terrain) + vertices + regions + triangles + by_region + columns + entries + 63) / 64 * 64;
+		     entries = d->entries * sizeof *d->entry, bytes = packed_bytes(d);
 	ob_terrain *t = calloc(1, bytes);
 	if (!t)
 		return NULL;
@@ -331,6 +341,9 @@ ob_terrain *ob_terrain_build(const ob_vec3 *vertex, uint32_t vertices, const uin
 		ob_fail(e, "expected 1 to %d triangles, got %u", OB_TERRAIN_TRIANGLES_MAX, triangles);
 		return NULL;
 	}
+	if (!ob_budget_allows(
+		    triangles * (sizeof *d.triangle + sizeof *d.region + sizeof *d.by_region + 6 * sizeof(edge)), e))
+		return NULL;
 	d.triangle = calloc(triangles, sizeof *d.triangle);
 	d.region = calloc(triangles, sizeof *d.region);
 	d.by_region = malloc(triangles * sizeof *d.by_region);
@@ -338,11 +351,12 @@ ob_terrain *ob_terrain_build(const ob_vec3 *vertex, uint32_t vertices, const uin
 		ob_fail(e, "no memory left on this machine");
 	} else if (check_vertices(&d, e) && take_triangles(&d, corner, e)) {
 		plan_columns(&d, cells);
-		const bool fine = connect(&d) && fill_columns(&d);
+		const bool allowed = ob_budget_allows(packed_bytes(&d) + d.entries * sizeof *d.entry, e);
+		const bool fine = allowed && connect(&d) && fill_columns(&d);
 		if (fine)
 			find_regions(&d);
 		t = fine ? pack(&d, solid) : NULL;
-		if (!t)
+		if (allowed && !t)
 			ob_fail(e, "no memory left on this machine");
 	}
 	free(d.triangle);
@@ -376,14 +390,19 @@ ob_terrain *ob_terrain_of_heights(const double *height, const uint32_t cells[2],
 	return t;
 }
 
-bool ob_terrain_set_add(ob_terrain_set **set, const ob_terrain *t)
+bool ob_terrain_set_add(ob_terrain_set **set, const ob_terrain *t, ob_error *e)
 {
-	const uint64_t bytes = *set ? (*set)->bytes : (sizeof **set + 63) / 64 * 64, most = UINT64_C(1) << 30;
-	if ((*set && (*set)->count == OB_TERRAINS_MAX) || bytes + t->bytes > most)
+	const uint64_t bytes = *set ? (*set)->bytes : (sizeof **set + 63) / 64 * 64;
+	if (*set && (*set)->count == OB_TERRAINS_MAX)
+		return ob_fail(e, "expected at most %d heightfields and meshes", OB_TERRAINS_MAX);
+	if (bytes + t->bytes > OB_TERRAIN_SET_BYTES)
+		return ob_fail(e, "all heightfields and meshes together are larger than %u MiB",
+			       (unsigned)(OB_TERRAIN_SET_BYTES >> 20));
+	if (!ob_budget_allows(bytes + t->bytes, e))
 		return false;
 	ob_terrain_set *grown = realloc(*set, bytes + t->bytes);
 	if (!grown)
-		return false;
+		return ob_fail(e, "no memory left on this machine");
 	if (!*set)
 		memset(grown, 0, bytes);
 	*set = grown;

@@ -16,6 +16,7 @@ enum {
 	OB_TERRAIN_REGIONS_MAX = (1 << 20) - 1, // as pairs count them, from 1
 };
 
+#define OB_TERRAIN_SET_BYTES ((uint64_t)256 << 20) // of all terrains of a universe
 #define OB_TERRAIN_FARTHEST 1e6 // m, of a vertex along an axis
 
 typedef struct ob_terrain_triangle {
@@ -133,8 +134,9 @@ typedef struct ob_terrain_set {
 	uint64_t offset[OB_TERRAINS_MAX]; // from its beginning
 } ob_terrain_set;
 
-// Appends a terrain. *set: NULL, or as made before; it grows. Returns false if there is no memory, or no room.
-bool ob_terrain_set_add(ob_terrain_set **set, const ob_terrain *t);
+// Appends a terrain. *set: NULL, or as made before; it grows. false and e, without a place: there are too many, or they are
+// too large.
+bool ob_terrain_set_add(ob_terrain_set **set, const ob_terrain *t, ob_error *e);
 
 // True if the set, of so many bytes, is plausible: counts, numbers of vertices, triangles and regions.
 bool ob_terrain_set_makes_sense(const ob_terrain_set *set, uint64_t bytes);

@@ -141,8 +141,9 @@ ob_world_body ob_world_compound(ob_world *w, double mass, const ob_hull_part *pa
 ob_world_body ob_world_terrain(ob_world *w, ob_terrain *t, ob_vec3 p)
 {
 	const uint32_t number = w->terrains ? (uint32_t)w->terrains->count : 0;
-	if (!t || !ob_terrain_set_add(&w->terrains, t)) {
-		fprintf(stderr, "terrain: there is none, or no room\n");
+	ob_error e = { "there is none" };
+	if (!t || !ob_terrain_set_add(&w->terrains, t, &e)) {
+		fprintf(stderr, "terrain: %s\n", e.text);
 		abort();
 	}
 	const ob_world_body b = ob_world_add(w, OB_SHAPE_TERRAIN, ob_terrain_size(t), 0, p);

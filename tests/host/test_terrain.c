@@ -20,7 +20,7 @@ static ob_scene hilly_scene(void)
 			height[y][x] = .2 * sin(x) * cos(y);
 	ob_terrain *t = ob_terrain_of_heights(height[0], (uint32_t[2]){ CELLS, CELLS }, (double[2]){ size, size }, &e);
 	ob_scene s = little_scene(BALLS);
-	CHECK(t && ob_terrain_set_add(&s.terrains, t));
+	CHECK(t && ob_terrain_set_add(&s.terrains, t, &e));
 	ob_passport *p = &s.object[0].passport;
 	p->shape = OB_SHAPE_TERRAIN;
 	p->size = ob_terrain_size(t);

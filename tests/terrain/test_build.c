@@ -224,7 +224,8 @@ static void sets(void)
 {
 	ob_terrain_set *set = NULL;
 	ob_terrain *one = heights(rough), *other = heights(level);
-	CHECK(ob_terrain_set_add(&set, one) && ob_terrain_set_add(&set, other) && set->count == 2);
+	ob_error e;
+	CHECK(ob_terrain_set_add(&set, one, &e) && ob_terrain_set_add(&set, other, &e) && set->count == 2);
 	CHECK(ob_terrain_set_makes_sense(set, set->bytes) && !ob_terrain_set_makes_sense(set, set->bytes - 64));
 	CHECK(ob_terrain_at(set, 1)->regions == 1 && !ob_terrain_at(set, 2) && !ob_terrain_at(NULL, 0));
 	ob_terrain *damaged = (ob_terrain *)((char *)set + set->offset[0]);

@@ -1,0 +1,28 @@
+// Budget of what files may make of the program: memory, and CPU time. A file may come from anybody, and name others. All
+// readers ask here before they take memory in proportion to what a file says, so that all files together stay below it,
+// whatever they are. Limits of a reader's own (docs/reliability.md) bound the rest: sizes of files, counts.
+//
+// Memory is what the allocator holds, of the whole program: what is freed counts no more, and nobody keeps accounts.
+// Thread-safe.
+#ifndef OB_BASE_BUDGET_H
+#define OB_BASE_BUDGET_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <ob/error.h>
+
+#include "base/sanitizer.h"
+
+#define OB_BUDGET_BYTES ((uint64_t)768 << 20) // with the universe, which copies some of it, a process holds 1 GB
+// s of CPU, for a file with all that it names. A sanitizer needs three times as much for the same.
+#if OB_SANITIZED
+#define OB_BUDGET_SECONDS 30
+#else
+#define OB_BUDGET_SECONDS 10
+#endif
+
+// True if so many bytes more fit; else e: "it needs more than 768 MiB of memory". A sanitizer's allocator counts nothing.
+bool ob_budget_allows(uint64_t bytes, ob_error *e);
+
+#endif
