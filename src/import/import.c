@@ -26,7 +26,7 @@ enum {
 	FILE_MOST = 64 << 20,
 	FILES = 64,
 };
-#define MEMORY ((rlim_t)1 << 30) // bytes of addresses
+#define MEMORY ((rlim_t)OB_BUDGET_BYTES) // of addresses
 
 // Message of the child: this, then the scene, then the list.
 typedef struct report {

@@ -1,5 +1,5 @@
 // Hostile glTF files: mutants of good ones, read in this process. Each is rejected with a message, or becomes a
-// consistent mesh; none may crash, hang, or allocate more memory than is reasonable for its size. 20000 in a minute or
+// consistent mesh, and a terrain of it; none may crash, hang, or allocate more memory than is reasonable for its size. 20000 in a minute or
 // so:
 //
 //   meshes FOLDER [COUNT [SEED]]    mutants of FOLDER/*.glb, and of cubes with and without pictures
@@ -13,6 +13,7 @@
 #include "../mesh/pictures.h"
 #include "base/random.h"
 #include "mesh/mesh.h"
+#include "terrain/terrain.h"
 
 enum { SEEDS_MAX = 12, BYTES_MAX = 1 << 20, CHANGES = 5 };
 
@@ -198,10 +199,36 @@ static glb mutant(const glb *of)
 	return out;
 }
 
+// Makes a terrain of the triangles: one that makes sense, or a message.
+static bool stands(const ob_mesh *m)
+{
+	const uint32_t triangles = m->indices / 3, side = 1 + below(300), cells[2] = { side, 1 + below(300) };
+	ob_vec3 *vertex = malloc(m->vertices * sizeof *vertex);
+	uint32_t(*corner)[3] = malloc(triangles * sizeof *corner);
+	ob_terrain_set *set = NULL;
+	ob_error e = { "" };
+	for (uint32_t i = 0; i < m->vertices; i++)
+		vertex[i] = ob_v3(m->vertex[i].position[0], m->vertex[i].position[1], m->vertex[i].position[2]);
+	memcpy(corner, m->index, triangles * sizeof *corner);
+	ob_terrain *t =
+		ob_terrain_build(vertex, m->vertices, (const uint32_t(*)[3])corner, triangles, cells, false, &e);
+	if (t) {
+		CHECK(t->entries <= OB_TERRAIN_ENTRIES_PER_TRIANGLE * (uint64_t)triangles);
+		CHECK(ob_terrain_set_add(&set, t, &e) && ob_terrain_set_makes_sense(set, set->bytes));
+	}
+	CHECK(t || e.text[0]);
+	const bool built = t;
+	free(set);
+	free(t);
+	free(vertex);
+	free(corner);
+	return built;
+}
+
 int main(int argc, char **argv)
 {
 	const long count = argc > 2 ? strtol(argv[2], NULL, 10) : 2000;
-	long good = 0;
+	long good = 0, standing = 0;
 	state = argc > 3 ? strtoul(argv[3], NULL, 10) : 1;
 	read_seeds(argc > 1 ? argv[1] : ".");
 	CHECK(seeds > 1);
@@ -212,6 +239,7 @@ int main(int argc, char **argv)
 		if (ob_mesh_read(&m, g.bytes, g.size, &e)) {
 			good++;
 			CHECK(ob_mesh_makes_sense(&m) && isfinite(m.radius));
+			standing += stands(&m);
 			ob_mesh_finish(&m);
 		} else {
 			CHECK(e.text[0] && !m.vertex && !m.index);
@@ -220,7 +248,7 @@ int main(int argc, char **argv)
 	}
 	for (uint32_t i = 0; i < seeds; i++)
 		free(seed[i].bytes);
-	printf("%ld of %ld were good\n", good, count);
+	printf("%ld of %ld were good, and %ld of these stand\n", good, count, standing);
 	CHECK(good > 0 && good < count);
 	return check_end();
 }

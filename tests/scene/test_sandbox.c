@@ -55,7 +55,7 @@ static void *load_slow(void *text)
 	ob_error e = { "" };
 	const double begun = ob_clock_thread_cpu();
 	const bool stopped = !load_text(text, &e) && strstr(e.text, ":1: stopped after");
-	return stopped && ob_clock_thread_cpu() - begun < OB_SANDBOX_SECONDS + .5 ? NULL : text;
+	return stopped && ob_clock_thread_cpu() - begun < OB_BUDGET_SECONDS + .5 ? NULL : text;
 }
 
 static int wait_long(lua_State *L)
