@@ -12,7 +12,9 @@ static int smaller(int a, int b)
 int ob_spelling_distance(const char *a, const char *b)
 {
 	int rows[3][LENGTH_MAX + 1]; // last three rows of the table of distances of prefixes
-	int na = (int)strnlen(a, LENGTH_MAX), nb = (int)strnlen(b, LENGTH_MAX);
+	const size_t length_a = strlen(a), length_b = strlen(b);
+	const int na = length_a < LENGTH_MAX ? (int)length_a : LENGTH_MAX;
+	const int nb = length_b < LENGTH_MAX ? (int)length_b : LENGTH_MAX;
 	int *before = rows[0], *above = rows[1], *line = rows[2];
 	for (int j = 0; j <= nb; j++)
 		line[j] = j;
