@@ -136,7 +136,7 @@ class Page(server.Case):
 							obsim.walk.end();
 						document.querySelector('#edit').open = true;""", panel, picked)
 					if panel in ("details", "help"): # help: all at once
-						b.wait("document.querySelector('#details dl').childElementCount > 4")
+						b.wait("!document.querySelector('#details').hidden && document.querySelector('#details dl').childElementCount > 0")
 					with self.subTest(scene=scene, size=size, panel=panel):
 						self.assertEqual(b.run(FAULTS), [])
 					self.keep(b, scene, *size, panel)
