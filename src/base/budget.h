@@ -14,7 +14,7 @@
 
 #include "base/sanitizer.h"
 
-#define OB_BUDGET_BYTES ((uint64_t)768 << 20) // with the universe, which copies some of it, a process holds 1 GB
+#define OB_BUDGET_BYTES ((uint64_t)768 << 20)
 // s of CPU, for a file with all that it names. A sanitizer needs three times as much for the same.
 #if OB_SANITIZED
 #define OB_BUDGET_SECONDS 30
