@@ -9,6 +9,11 @@ The requests of each run are logged and replayed with --check, in one thread: th
 
 Prints a line for each run: what was asked for, kills, restarts, frozen objects. Exits with 1 if a universe has ended, or if a
 replay differs.
+
+    strangers.py OBSIM greedy [SECONDS [SCENE...]]
+
+Greedy visitors instead (tests/run/greedy.py), of each role for SECONDS (60) in each installed scene, or in those named. Prints
+how long another visitor has waited for a change, in seconds and in CPU seconds of the server, and how many objects were frozen.
 """
 
 import base64
@@ -154,7 +159,26 @@ def live(obsim, seconds, seed):
 	return alive and not differs, said + (", " + differs if differs else ", replayed")
 
 
+def greedy(obsim, seconds=60, *names):
+	"""Greedy visitors in each scene. Returns whether a universe has ended."""
+	os.environ.update(OBSIM=obsim, SCENES=os.path.dirname(SCENE))
+	sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "tests", "run"))
+	import greedy as visitors # pylint: disable=import-outside-toplevel # it reads the environment
+	ended = 0
+	for name in names or sorted(file[:-4] for file in os.listdir(os.path.dirname(SCENE)) if file.endswith(".lua")):
+		for role in visitors.ROLES:
+			visit = visitors.Visit(os.path.join(os.path.dirname(SCENE), name + ".lua"), roles=[role], seconds=float(seconds))
+			alive = visit.alive and visit.code == 0
+			ended += not alive
+			wall, cpu = (max(times, default=0) for times in (zip(*visit.waits) if visit.waits else ([], [])))
+			print(f"{name}, {role}: {visit.sent} sent, {visit.frozen} frozen, {len(visit.waits)} waits of up to {wall:.2f} s, "
+				f"{cpu:.2f} s of CPU; {'alive' if alive else 'ended with %d: %s' % (visit.code, visit.err[-1:])}", flush=True)
+	return ended > 0
+
+
 def main():
+	if sys.argv[2:3] == ["greedy"]:
+		return greedy(sys.argv[1], *sys.argv[3:])
 	obsim, runs, seconds, seed, together = (sys.argv[1:] + [None] * 5)[:5]
 	runs, seconds, seed, together = int(runs or 8), float(seconds or 30), int(seed or 1), int(together or 4)
 	ended = 0

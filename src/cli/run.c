@@ -132,7 +132,7 @@ static void keep_checkpoint(run *r)
 		.duration = q->duration,
 		.settings = q->run,
 	};
-	now.settings.timed = now.settings.freezes = now.settings.verify = 0;
+	now.settings.timed = now.settings.freezes = now.settings.budget = now.settings.verify = 0;
 	now.settings.fault = (ob_fault_plan){ 0 };
 	ob_observer_save(&r->observer, &now.figures);
 	now.figures.each_step = measures_all(r);

@@ -13,7 +13,7 @@ bool ob_save_led_run(const ob_run_request *r, const ob_scene *s, ob_host *h, con
 			     .options = r->scene_options,
 			     .duration = r->duration,
 			     .settings = r->run };
-	now.settings.timed = now.settings.freezes = now.settings.verify = 0;
+	now.settings.timed = now.settings.freezes = now.settings.budget = now.settings.verify = 0;
 	now.settings.fault = (ob_fault_plan){ 0 };
 	bool fine = !r->run.monolith || ob_fail(e, "the one ODE world cannot be saved: take object simulators");
 	fine = fine && ob_output_fits("save", path, 0, e);

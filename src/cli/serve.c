@@ -24,6 +24,9 @@
 static const double patience = .05; // s, in which requests are taken while no step is due
 static const double go_time = .02; // s that the universe runs between checks if it cannot keep its pace
 static const uint64_t paced_steps = 8; // in one go at least, if paced: it is not further behind at a usual rate
+// Work of an island, in units of 2^15, with one more for each object of the scene: a quarter of a second of a core. Visitors
+// wait for each other's objects.
+static const uint32_t shared_budget = 256;
 static const double free_window = .25; // s, of a free run: changes take effect when all simulators have come so far
 
 typedef struct serve_request {
@@ -108,6 +111,8 @@ static bool start(serving *s, ob_error *e)
 {
 	const ob_run_request *q = &s->q.run;
 	ob_host_config config = ob_request_host(q);
+	if (!s->a->value[OB_OPTION_ON_DEATH] && ob_on_death_freezes_failed(config.on_death))
+		config.budget = shared_budget + s->scene->objects;
 	config.free_window = free_window;
 	config.spare = s->q.room;
 	config.returns = !q->record;

@@ -377,6 +377,8 @@ static const char *commit_neighbours(ob_committer *c, ob_universe *u, const ob_m
 	const uint32_t ids = ob_universe_ids(u);
 	if (from->bytes < sizeof *r || r->id >= ids || c->query_owner[r->id] != from->worker)
 		return "has looked for neighbours of what it was not given";
+	if (ob_step_failed(u, NULL) != OB_STEP_OK) // there was no room for an earlier part
+		return NULL;
 	if (r->count > OB_CHANGES_AT_ONCE || from->bytes != sizeof *r + (r->count + 1) / 2 * sizeof(uint64_t) ||
 	    r->first != c->had[r->id] || r->first > r->total || r->neighbours > ids ||
 	    r->total > ids + ob_pairs_end(data) || r->count > r->total - r->first || (!r->count && r->total))

@@ -187,6 +187,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 	};
 	setup.run.one_per_object = one_per_object;
 	setup.run.freezes = ob_on_death_freezes_failed(c->on_death);
+	setup.run.budget = c->budget;
 	setup.workers += has_outboxes(c); // the arranger
 	ob_free_settings settings;
 	if (c->free) {

@@ -55,6 +55,7 @@ typedef struct ob_host_config {
 	uint32_t harden; // measures that confine processes (confine.h): bits, 1 << ob_harden_measure; 0 = none
 	ob_on_death on_death; // policy for deaths of simulators; a monolith's end ends the run in any case
 	ob_restart_limit limit;
+	uint32_t budget; // ob_run_settings.budget; 0: as of any run
 	bool check; // checks the state that simulators share after each step (step/invariants.h)
 	const char *trace; // file for the timeline of workers and host (timeline.h); NULL = none
 	ob_run_settings run; // one_per_object is set by the host from workers

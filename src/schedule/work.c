@@ -5,7 +5,8 @@ static const uint64_t base = UINT64_C(1) << 27, per_object = 1 << 15;
 
 uint64_t ob_work_limit(const ob_universe *u)
 {
-	return base + per_object * ob_universe_ids(u);
+	const uint32_t given = ob_universe_settings(u)->budget;
+	return given ? per_object * given : base + per_object * ob_universe_ids(u);
 }
 
 bool ob_work_add(ob_universe *u, uint64_t work, uint32_t object)

@@ -109,7 +109,7 @@ typedef struct ob_run_settings {
 	uint32_t load; // > 0: each test of two axis-aligned boxes adds up 1 + 2 + .. + load
 	uint32_t freezes; // 1 = unsolvable bodies are frozen: budgets are per island; set by the host
 	uint32_t verify; // 1 = a sample of islands is solved finely besides, to know their errors
-	uint32_t zero;
+	uint32_t budget; // > 0: most work of a step, or an island, in units of 2^15 (schedule/work.h); set by the host
 	ob_fault_plan fault;
 } ob_run_settings;
 

@@ -1,6 +1,9 @@
 // Reasons why a run cannot go on, as the host shows them.
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "base/allocate.h"
+#include "step/crowd.h"
 #include "step/sim.h"
 #include "table/free.h"
 
@@ -17,22 +20,75 @@ static const char *name_of(const ob_universe *u, uint32_t id)
 	return text;
 }
 
-// Names the object that is near most others: the one that is too large, or too fast.
-static void describe_neighbours(const ob_universe *u, const char *what, uint32_t most, uint32_t blamed, char *text,
-				size_t size)
+static bool is_crowded(ob_step_failure why)
+{
+	return why == OB_STEP_PAIRS_FULL || why == OB_STEP_NEIGHBOURS_FULL;
+}
+
+// Size of an object's share in the pairs that are too many: their number, or the extent of its fat AABB while the queries
+// are not complete, as those that find no room depend on the order of workers.
+static double crowding(const ob_universe *u, uint32_t id, const uint32_t *pairs)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
-	uint32_t id = blamed;
-	uint64_t near = 0;
-	for (uint32_t i = 0; i < ob_universe_ids(u); i++)
-		if (data->neighbours[i].count != UINT32_MAX && data->neighbours[i].count > near)
-			near = data->neighbours[i].count, id = i;
-	char others[32] = "most";
-	if (near)
-		snprintf(others, sizeof others, "%u", (uint32_t)near);
+	const float *b = data->bounds[id];
+	if (!ob_schedule_is_dynamic(&data->schedule[id]))
+		return 0;
+	return ob_step_failed(u, NULL) == OB_STEP_PAIRS_FULL
+		       ? pairs[id]
+		       : (double)(b[3] - b[0]) + (double)(b[4] - b[1]) + (double)(b[5] - b[2]);
+}
+
+// Counts the pairs of each object. The caller frees them.
+static uint32_t *count_pairs(const ob_universe *u)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	uint32_t *pairs = ob_allocate_zeroed((data->objects_max + 1) * sizeof *pairs);
+	for (uint32_t i = 0; i < ob_pairs_end(data); i++) {
+		const ob_pair_key *k = &data->pair[i];
+		if (k->a == k->b || k->a >= data->objects_max || k->b >= data->objects_max)
+			continue;
+		pairs[k->a]++, pairs[k->b]++;
+	}
+	return pairs;
+}
+
+// Lists objects that have at least half as large a share as the most crowded one, which comes first.
+static uint32_t list_crowd(const ob_universe *u, const uint32_t *pairs, uint32_t *ids, uint32_t most)
+{
+	uint32_t worst = 0, n = 0;
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
+		if (crowding(u, id, pairs) > crowding(u, worst, pairs))
+			worst = id;
+	if (most > 0)
+		ids[n++] = worst;
+	for (uint32_t id = 0; id < ob_universe_ids(u) && n < most; id++)
+		if (id != worst && crowding(u, id, pairs) * 2 >= crowding(u, worst, pairs) &&
+		    crowding(u, id, pairs) > 0)
+			ids[n++] = id;
+	return n;
+}
+
+uint32_t ob_crowd(const ob_universe *u, uint32_t *ids, uint32_t most)
+{
+	uint32_t *pairs = count_pairs(u);
+	const uint32_t n = list_crowd(u, pairs, ids, most);
+	free(pairs);
+	return n;
+}
+
+// Names the object with most pairs, or the largest: it is too large, or too fast.
+static void describe_crowd(const ob_universe *u, uint32_t most, char *text, size_t size)
+{
+	uint32_t *pairs = count_pairs(u), id;
+	char count[32] = "";
+	list_crowd(u, pairs, &id, 1);
+	if (ob_step_failed(u, NULL) == OB_STEP_PAIRS_FULL)
+		snprintf(count, sizeof count, ", which has %u,", pairs[id]);
 	snprintf(text, size,
-		 "more than %u %s: %s alone is near %s others; make it smaller or slower, or try a smaller --step",
-		 most, what, name_of(u, id), others);
+		 "more than %u pairs of neighbours, with each other and with surfaces of terrain; make %s%s smaller or "
+		 "slower, or try a smaller --step",
+		 most, name_of(u, id), count);
+	free(pairs);
 }
 
 // Names some objects of the island that took so much work.
@@ -81,10 +137,8 @@ const char *ob_sim_failure(const ob_universe *u)
 	uint32_t object;
 	switch (ob_step_failed(u, &object)) {
 	case OB_STEP_PAIRS_FULL:
-		describe_neighbours(u, "pairs of neighbours", data->pairs_max, object, text, sizeof text);
-		return text;
 	case OB_STEP_NEIGHBOURS_FULL:
-		describe_neighbours(u, "neighbours", data->neighbours_max, object, text, sizeof text);
+		describe_crowd(u, data->pairs_max, text, sizeof text);
 		return text;
 	case OB_STEP_DIVERGED:
 		snprintf(text, sizeof text,
@@ -132,7 +186,9 @@ uint32_t ob_sim_culprit(const ob_universe *u)
 bool ob_sim_failed_alone(const ob_universe *u, uint32_t *object)
 {
 	const ob_step_failure why = ob_step_failed(u, object);
-	return why == OB_STEP_OVERWORKED || why == OB_STEP_DIVERGED || why == OB_STEP_ENGINE;
+	if (is_crowded(why))
+		ob_crowd(u, object, 1);
+	return is_crowded(why) || why == OB_STEP_OVERWORKED || why == OB_STEP_DIVERGED || why == OB_STEP_ENGINE;
 }
 
 bool ob_sim_damaged(const ob_universe *u)

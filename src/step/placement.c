@@ -8,6 +8,7 @@
 #include "shape/shape.h"
 #include "solver/solver.h"
 #include "step/broadphase.h"
+#include "step/crowd.h"
 #include "step/now.h"
 #include "step/pairs.h"
 #include "step/sim.h"
@@ -283,8 +284,11 @@ uint32_t ob_sim_failed_objects(const ob_universe *u, uint32_t object, uint32_t *
 	const ob_step_data *data = ob_universe_step_data(u);
 	if (object >= data->objects_max)
 		return 0;
+	const ob_step_failure why = ob_step_failed(u, NULL);
+	if (why == OB_STEP_PAIRS_FULL || why == OB_STEP_NEIGHBOURS_FULL)
+		return ob_crowd(u, ids, most);
 	const uint32_t place = data->result_island[object];
-	const bool solved = ob_gate_phase(u) == OB_PHASE_ISLANDS || ob_step_failed(u, NULL) == OB_STEP_OVERWORKED;
+	const bool solved = ob_gate_phase(u) == OB_PHASE_ISLANDS || why == OB_STEP_OVERWORKED;
 	const ob_island *is = solved && place < data->objects_max ? &data->island[place] : NULL;
 	if (!is || is->members > data->objects_max || is->first_member > data->objects_max - is->members) {
 		ids[0] = object;

@@ -13,6 +13,7 @@ import program
 OPEN, PONG, CLOSE, PING = 0x81, 0x8a, 8, 9
 MOTIONS, VOID, PAUSED = 1, 1, 2
 HULL = 6 # shape
+SWINGS = 3 # kind of motion
 
 
 class Refused(Exception):
@@ -99,13 +100,11 @@ class Viewer:
 		for _ in range(created):
 			i, generation, shape, what, name, _ = struct.unpack_from("<IIBBBB", m, at)
 			at += 48
-			hulls = int(shape == HULL)
-			while hulls:
-				corners, faces, parts = m[at:at + 3]
+			for _ in range(1 + m[at + 2] if shape == HULL else 0):
+				corners, faces = m[at], m[at + 1]
 				at += 5 + 12 * corners
 				for _ in range(faces):
 					at += 1 + m[at]
-				hulls += parts - 1
 			mesh = 0
 			if what & 4:
 				mesh, at = m[at], at + 1
@@ -125,7 +124,7 @@ class Viewer:
 			kind, at = m[at], at + 1
 			self.objects[i]["p"] = struct.unpack_from("<3f", m, at)
 			self.objects[i]["kind"] = kind & 3
-			at += 20 + (4 if kind & 16 else 0) + (12 if kind & 8 else 0) + (24 if kind & 4 else 12 if kind & 3 else 0)
+			at += 20 + (4 if kind & 16 else 0) + (12 if kind & 8 else 0) + (8 if kind & 3 == SWINGS else 0) + (24 if kind & 4 else 12 if kind & 3 else 0)
 		assert at == len(m), (at, len(m))
 
 	def until(self, condition):

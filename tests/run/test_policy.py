@@ -91,6 +91,26 @@ class Policy(program.Case):
 		r = program.report(*words, *PROCESS, "--harden", "--workers", "2")
 		self.assertEqual(seen, {(r["state_hash"], r["frozen"])})
 
+	def test_freeze_crowd(self):
+		"""More pairs of neighbours than there is room for, all found in one step or in time: those with most are frozen, the same
+		in threads and processes, with any number of workers."""
+		for n in 725, 1200:
+			with open(self.path("rods.lua"), "w") as f: # side by side, aslant: their bounds overlap, and none touches another
+				f.write(f"""
+scene {{ gravity = {{ 0, 0, 0 }}, duration = .05 }}
+for i = 1, {n} do
+	box {{ size = {{ .002, .002, 5 }}, rotation = {{ axis = {{ 0, 1, 0 }}, degrees = 45 }}, at = {{ i * .002, 0, -i * .002 }} }}
+end""")
+			seen = set()
+			for words in program.ways(["--workers", "1"], ["--workers", "2"], [*PROCESS, "--workers", "2"], [*PROCESS, "--harden"]):
+				r = program.report(self.path("rods.lua"), "--on-death", "keep", *words)
+				self.assertGreater(r["frozen"], 500)
+				seen.add((r["state_hash"], r["frozen"]))
+			self.assertEqual(len(seen), 1)
+			done = program.call("run", self.path("rods.lua"))
+			self.assertEqual(done.returncode, 1)
+			self.assertRegex(done.stderr, r"more than 262144 pairs of neighbours, .*; make object \d+ \(box#\d+\).* smaller or slower")
+
 	def test_frozen_goes_on(self):
 		"""Frozen objects stay frozen in a checkpoint, and obsim top shows it."""
 		file = self.path("run.ck")
