@@ -323,8 +323,12 @@ bool ob_free_schedule_open(ob_free_schedule **out, ob_universe *u, ob_error *e)
 	if (!s)
 		return ob_fail(e, "no memory");
 	s->fd = -1;
-	if (f->replays)
-		return load(s, f->schedule, ob_universe_capacity(u), e);
+	if (f->replays) {
+		ob_budget_begin();
+		const bool good = load(s, f->schedule, ob_universe_capacity(u), e);
+		ob_budget_end();
+		return good;
+	}
 	s->fd = open(f->schedule, O_WRONLY | O_APPEND | O_CLOEXEC);
 	return s->fd >= 0 || ob_fail(e, "%s", strerror(errno));
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/budget.h"
 #include "base/file.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
@@ -173,18 +174,24 @@ static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_
 ob_scene *ob_scene_load(const char *path, const ob_scene_options *o, ob_error *e)
 {
 	size_t size = 0;
+	ob_budget_begin();
 	char *text = read_file(path, &size, e);
-	return make_scene(path, text, size, o, e);
+	ob_scene *s = make_scene(path, text, size, o, e);
+	ob_budget_end();
+	return s;
 }
 
 ob_scene *ob_scene_load_text(const char *path, const char *text, size_t size, const ob_scene_options *o, ob_error *e)
 {
+	ob_budget_begin();
 	char *copy = malloc(size + 1);
 	if (copy)
 		memcpy(copy, text, size);
 	else
 		ob_fail(e, "%s: no memory", path);
-	return make_scene(path, copy, size, o, e);
+	ob_scene *s = make_scene(path, copy, size, o, e);
+	ob_budget_end();
+	return s;
 }
 
 void ob_scene_free(ob_scene *s)

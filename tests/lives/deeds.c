@@ -80,10 +80,12 @@ static void put_command(run *r, writer *w)
 	ob_passport p = { .mass = 1 };
 	put(w, "{\"do\":\"%s\"", name);
 	draw_object(r, &w->seed, &p);
+	char own[32];
+	snprintf(own, sizeof own, ",\"id\":%u", p.id);
 	if (strcmp(name, "create") == 0)
 		put_object_fields(w);
 	else if (strcmp(name, "release") == 0)
-		put(w, one_in(w, 2) ? "" : ",\"id\":%u", p.id);
+		put(w, "%s", one_in(w, 2) ? "" : own);
 	else if (strcmp(name, "motor") == 0 || strcmp(name, "unjoin") == 0)
 		put(w, ",\"name\":\"%s\"", draw_joint(r, &w->seed, joint) ? joint : "none");
 	else if (strcmp(name, "pause") != 0 && strcmp(name, "step") != 0)
