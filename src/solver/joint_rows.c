@@ -324,7 +324,7 @@ void ob_joints_find_impulses(ob_island_work *w)
 void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
 {
 	enum { PASSES = 3 };
-	for (int pass = 0; pass < PASSES; pass++) {
+	for (int pass = 0; w->joints.count && pass < PASSES; pass++) {
 		for (uint32_t i = 0; i < w->joints.count; i++) {
 			ob_held_joint *j = &w->joints.joint[i];
 			for (uint32_t r = 0; r < j->rows.rows; r++)
