@@ -9,7 +9,7 @@ ob_journal_place ob_journal_here(const ob_universe *u)
 {
 	const ob_script_counts *scripts = ob_universe_step_data(u)->script_counts;
 	const uint64_t step = ob_step_count(u);
-	return (ob_journal_place){ step, scripts && scripts->ran_for == step + 1 };
+	return (ob_journal_place){ step, scripts && ob_scripts_ran_for(scripts) == step + 1 };
 }
 
 void ob_journal_finish(ob_journal *j)

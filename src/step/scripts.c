@@ -18,7 +18,7 @@
 
 static bool pauses_after(const ob_script_counts *count)
 {
-	return count->pause_for > 0 && count->pause_for == count->ran_for;
+	return count->pause_for > 0 && count->pause_for == ob_scripts_ran_for(count);
 }
 
 bool ob_scripts_due(ob_universe *u)
@@ -26,9 +26,9 @@ bool ob_scripts_due(ob_universe *u)
 	ob_step_data *data = ob_universe_step_data(u);
 	ob_script_counts *count = data->script_counts;
 	const uint64_t step = ob_step_count(u);
-	if (!count || count->ran_for == step + 1)
+	if (!count || ob_scripts_ran_for(count) == step + 1)
 		return false;
-	count->ran_for = (uint32_t)step + 1;
+	ob_scripts_set_ran_for(count, (uint32_t)step + 1);
 	count->due = 0;
 	for (uint32_t i = 0; i < count->cells && i < data->script_cells; i++)
 		if (ob_script_is_due(&data->script_turn[i], step))

@@ -148,6 +148,17 @@ typedef struct ob_script_counts {
 	uint64_t calls; // of objects' scripts
 } ob_script_counts;
 
+// Step, as ob_script_counts.ran_for. The host looks while workers run, and again when they pause.
+static inline uint32_t ob_scripts_ran_for(const ob_script_counts *c)
+{
+	return __atomic_load_n(&c->ran_for, __ATOMIC_RELAXED);
+}
+
+static inline void ob_scripts_set_ran_for(ob_script_counts *c, uint32_t step)
+{
+	__atomic_store_n(&c->ran_for, step, __ATOMIC_RELAXED);
+}
+
 static inline bool ob_script_is_due(const ob_script_turn *t, uint64_t step)
 {
 	enum { NOW = OB_SCRIPT_EACH_STEP | OB_SCRIPT_TOUCHED | OB_SCRIPT_MAIL | OB_SCRIPT_LEAVING | OB_SCRIPT_BROKE };
