@@ -130,10 +130,12 @@ static void read_joints(ob_sim *s, uint32_t id)
 	ob_island_scratch *x = &s->scratch;
 	for (uint32_t j = ob_joint_first(s->data, id); j; j = ob_joint_next(s->data, j, id)) {
 		const ob_joint_passport *joint = &s->data->joint[j - 1];
+		if (joint->kind == OB_JOINT_APART || !ob_joint_holds(s->u, joint))
+			continue; // its other object may be another worker's
 		const uint32_t other = joint->object[joint->object[0] == id];
 		const bool moves = other != OB_JOINT_WORLD && other < s->data->objects_max &&
 				   ob_schedule_is_dynamic(&s->data->schedule[other]);
-		if ((moves && joint->object[1] == id) || joint->kind == OB_JOINT_APART || !ob_joint_holds(s->u, joint))
+		if (moves && joint->object[1] == id)
 			continue;
 		if (x->in.joints == x->joints_max) {
 			x->joints_max = 2 * x->joints_max + 16;
