@@ -321,52 +321,44 @@ void ob_joints_find_impulses(ob_island_work *w)
 		ob_sparse_joint_impulses(&set->sparse, &set->joint[i].rows, set->joint[i].child, set->joint[i].parent);
 }
 
-void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
+// Lets rows move as their targets say, or not at all by a change of velocities: then their impulses are its share.
+static void solve(ob_island_work *w, ob_body_row *rows, bool change, int passes)
 {
-	enum { PASSES = 3 };
-	for (int pass = 0; w->joints.count && pass < PASSES; pass++) {
+	static const ob_body_row none;
+	for (int pass = 0; w->joints.count && pass < passes; pass++) {
 		for (uint32_t i = 0; i < w->joints.count; i++) {
 			ob_held_joint *j = &w->joints.joint[i];
+			const double *sum = change ? j->share : j->sum;
+			const double soft = j->along.softness;
 			for (uint32_t r = 0; r < j->rows.rows; r++)
-				j->rows.y[r] = j->target[r] - ob_joint_row_velocity(j, r, rows);
-			if (j->along.softness != 0)
-				j->rows.y[j->base + j->along.engaged] -=
-					j->along.softness * j->sum[j->base + j->along.engaged];
+				j->rows.y[r] = change ? -row_velocity(j, r, rows, none)
+						      : j->target[r] - ob_joint_row_velocity(j, r, rows);
+			if (soft != 0)
+				j->rows.y[j->base + j->along.engaged] -= soft * sum[j->base + j->along.engaged];
 		}
 		ob_joints_find_impulses(w);
 		for (uint32_t i = 0; i < w->joints.count; i++) {
 			ob_held_joint *j = &w->joints.joint[i];
+			double *sum = change ? j->share : j->sum;
 			ob_joint_respond(j, j->rows.x, rows);
-			ob_joint_note(j, j->rows.x);
+			if (!change)
+				ob_joint_note(j, j->rows.x);
 			for (uint32_t r = 0; r < j->rows.rows; r++)
-				j->sum[r] += j->rows.x[r];
+				sum[r] += j->rows.x[r];
 		}
 	}
 }
 
+void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
+{
+	solve(w, rows, false, 3);
+}
+
 void ob_joints_follow(ob_island_work *w, ob_body_row *change)
 {
-	enum { PASSES = 2 };
-	static const ob_body_row none;
 	for (uint32_t i = 0; i < w->joints.count; i++)
 		memset(w->joints.joint[i].share, 0, sizeof w->joints.joint[i].share);
-	for (int pass = 0; w->joints.count && pass < PASSES; pass++) {
-		for (uint32_t i = 0; i < w->joints.count; i++) {
-			ob_held_joint *j = &w->joints.joint[i];
-			const uint32_t soft = j->base + j->along.engaged;
-			for (uint32_t r = 0; r < j->rows.rows; r++)
-				j->rows.y[r] = -row_velocity(j, r, change, none);
-			if (j->along.softness != 0)
-				j->rows.y[soft] -= j->along.softness * j->share[soft];
-		}
-		ob_joints_find_impulses(w);
-		for (uint32_t i = 0; i < w->joints.count; i++) {
-			ob_held_joint *j = &w->joints.joint[i];
-			ob_joint_respond(j, j->rows.x, change);
-			for (uint32_t r = 0; r < j->rows.rows; r++)
-				j->share[r] += j->rows.x[r];
-		}
-	}
+	solve(w, change, true, 2); // a line search takes up what is left
 }
 
 void ob_joints_add_share(ob_island_work *w, double part)

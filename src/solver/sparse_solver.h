@@ -85,6 +85,7 @@ static inline bool ob_sparse_is_linked(const ob_sparse_solver *t, uint32_t body)
 {
 	return t->node[body].linked;
 }
+// Sets the body's inertia.
 void ob_sparse_set_inertia(ob_sparse_solver *t, uint32_t body, double (*m)[6]);
 void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent);
 void ob_sparse_solve(ob_sparse_solver *t);
