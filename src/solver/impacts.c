@@ -65,7 +65,8 @@ static double curvature(const ob_island_work *w, const ob_contact *contact)
 		const ob_body *body = &w->body[row];
 		if (body->surface)
 			bend += 2 * ob_surface_bend(w, row);
-		if ((!(body->inv_mass > 0) && !body->surface) || body->rolls || ob_shape_is(body->shape, OB_ISOTROPIC))
+		if ((!(body->inv_mass > 0) && !body->surface) || body->rolls ||
+		    ob_shape_is(body->shape, OB_ISOTROPIC | OB_UNBOUNDED))
 			continue;
 		const double rate = ob_norm(ob_row_angular(w->v[row]));
 		turn += rate;

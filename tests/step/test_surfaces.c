@@ -245,11 +245,55 @@ static void test_kiln(void)
 	}
 }
 
+// ---- bodies that tumble on a running ground: those on one that stands, seen by who goes by
+
+enum { TUMBLING = 3 };
+
+static void tumble(bool running, ob_state *end)
+{
+	const ob_vec3 belt = ob_v3(1.5, -.5, 0);
+	little_scene *s = usual_scene();
+	const ob_world_body b[TUMBLING] = { ob_world_cylinder(&s->world, 1, .1, .05, ob_v3(0, 0, .3)),
+					    ob_world_cylinder(&s->world, 1, .05, .4, ob_v3(1, 0, .4)),
+					    ob_world_capsule(&s->world, 1, .05, .3, ob_v3(3, 0, .4)) };
+	for (int i = 0; i < TUMBLING; i++) {
+		b[i].state->pose.q = ob_quat_turn(ob_quat_identity(), ob_v3(.5 + .2 * i, .3, -.4));
+		b[i].state->v = running ? ob_v3(.5, 1, 0) : ob_sub(ob_v3(.5, 1, 0), belt);
+		b[i].state->w = ob_v3(-3, -8 + 2 * i, 1);
+	}
+	const ob_world_body ground = ob_world_ground(&s->world);
+	if (running)
+		ground.passport->surface_velocity = belt;
+	ob_world_material(&s->world, .4, 0);
+	little_universe l;
+	little_open(&l, s);
+	little_run(&l, 60);
+	for (uint32_t i = 0; i < TUMBLING; i++) {
+		end[i] = little_state(&l, i);
+		if (!running)
+			end[i].pose.p = ob_add(end[i].pose.p, belt), end[i].v = ob_add(end[i].v, belt);
+	}
+	done(&l, s);
+}
+
+static void test_running_ground(void)
+{
+	ob_state on_running[TUMBLING], on_standing[TUMBLING];
+	tumble(true, on_running);
+	tumble(false, on_standing);
+	for (int i = 0; i < TUMBLING; i++) {
+		const double apart = ob_norm(ob_sub(on_running[i].pose.p, on_standing[i].pose.p));
+		printf("body %d tumbles on a running ground, and on one that stands: %.1e m apart\n", i, apart);
+		CHECK(apart < 1e-4);
+	}
+}
+
 int main(void)
 {
 	test_hits_on_swinging_table();
 	test_rollers();
 	test_balls();
 	test_kiln();
+	test_running_ground();
 	return check_end();
 }
