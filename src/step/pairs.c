@@ -245,7 +245,7 @@ static void keep_regions(ob_universe *u, uint32_t terrain, uint32_t id, const ui
 		const uint32_t place = place_of(region, n, k->region - 1u);
 		if (place < n)
 			had[place] = true;
-		else if (k->record == OB_NO_RECORD)
+		else if (k->record == OB_NO_RECORD && !data->count->merged)
 			drop_pair(u, at.pair);
 	}
 }
@@ -334,11 +334,12 @@ static void add_change(changes *c, uint32_t change)
 }
 
 // True if the pair may end: a pair with a record stays until the step is over, as it may have to be solved again, and so
-// do all pairs of its two objects.
+// do all pairs of its two objects. No pair ends once islands have been merged: each merge then adds one to those that are
+// solved, so a step ends.
 static bool may_end(const ob_step_data *data, uint32_t id, const ob_pair_key *k)
 {
 	ob_pair_place at;
-	bool kept = k->record != OB_NO_RECORD;
+	bool kept = k->record != OB_NO_RECORD || data->count->merged;
 	for (uint32_t link = ob_pair_parts(k) ? data->first_pair[id] : 0; !kept && ob_pair_at(data, link, &at);
 	     link = ob_pair_next(data, at)) {
 		const ob_pair_key *x = &data->pair[at.pair];

@@ -637,7 +637,8 @@ static bool free_broken(const scheduler *c)
 
 static ob_phase complete_step(const scheduler *c)
 {
-	const struct ob_step_counts *count = c->data->count;
+	struct ob_step_counts *count = c->data->count;
+	count->merged = 0; // queries between steps end pairs as they do after a resume
 	ob_step_complete(c->u, count->awake, count->pairs - count->pairs_idle, ob_cluster_islands(c->cluster, c->u));
 	ob_step_work_reset(c->u);
 	if (!ob_cluster_gather(c->cluster, c->u) || !ob_invariants_check(c->u, OB_INVARIANTS_AFTER_STEP))
