@@ -97,7 +97,8 @@ static double apart_by_box(const contact *c)
 	return most;
 }
 
-// Looks at the triangles near the body. own: some are the region's; returns true if all are, and none ends there.
+// Looks at the triangles near the body. own: some are the region's; returns true if all are, none ends there, and one is as
+// near as the body's box.
 static bool is_endless(const contact *c, double border, bool *own)
 {
 	const ob_terrain_triangle *triangle = ob_terrain_triangles(c->terrain);
@@ -105,7 +106,7 @@ static bool is_endless(const contact *c, double border, bool *own)
 	ob_terrain_search s;
 	uint32_t i;
 	const uint32_t *listed = ob_terrain_by_region(c->terrain) + c->region->first;
-	bool endless = true;
+	bool endless = true, enters = false;
 	*own = false;
 	box_of(c, border, low, high);
 	for (i = 0; i < c->region->triangles && i < FEW; i++)
@@ -117,10 +118,11 @@ static bool is_endless(const contact *c, double border, bool *own)
 		const bool in = triangle[i].region == c->number;
 		*own |= in;
 		endless &= in && triangle[i].across[0] && triangle[i].across[1] && triangle[i].across[2];
+		enters = enters || ob_terrain_enters(c->terrain, i, low, high);
 		if (*own && !endless)
 			break;
 	}
-	return endless;
+	return endless && enters;
 }
 
 // ---- points

@@ -36,21 +36,29 @@ uint32_t ob_terrain_near(const ob_universe *u, uint32_t terrain, uint32_t other,
 	return ob_terrain_find_regions(ob_terrain_of(u, ob_passport_of(u, terrain)), low, high, out, max);
 }
 
-// True if all triangles of the box are the region's, none of them ends there, and the ground below is solid, or the box
-// lies above it.
+// True if the surface in the box is the region's plane, or the box lies above that: all triangles near the box are the
+// region's, none of them ends there, and one enters it.
 static bool is_flat(const ob_terrain *t, uint32_t region, const double low[3], const double high[3])
 {
 	const ob_terrain_triangle *triangle = ob_terrain_triangles(t);
+	const ob_terrain_region *r = &ob_terrain_regions(t)[region];
+	const ob_vec3 middle = ob_v3(.5 * (low[0] + high[0]), .5 * (low[1] + high[1]), .5 * (low[2] + high[2])),
+		      half = ob_sub(ob_v3(high[0], high[1], high[2]), middle);
+	const double height = ob_dot(r->normal, middle) - r->offset,
+		     reach = fabs(r->normal.x) * half.x + fabs(r->normal.y) * half.y + fabs(r->normal.z) * half.z;
+	bool known = height > reach;
 	ob_terrain_search s;
 	uint32_t i;
+	if (!t->solid && !(height > 0))
+		return false;
 	ob_terrain_begin(t, low, high, &s);
-	while (ob_terrain_next(&s, &i))
+	while (ob_terrain_next(&s, &i)) {
 		if (triangle[i].region != region || !triangle[i].across[0] || !triangle[i].across[1] ||
 		    !triangle[i].across[2])
 			return false;
-	const ob_terrain_region *r = &ob_terrain_regions(t)[region];
-	const ob_vec3 middle = ob_v3(.5 * (low[0] + high[0]), .5 * (low[1] + high[1]), .5 * (low[2] + high[2]));
-	return t->solid || ob_dot(r->normal, middle) > r->offset;
+		known = known || ob_terrain_enters(t, i, low, high);
+	}
+	return known;
 }
 
 bool ob_terrain_see(const ob_universe *u, const ob_pair_key *k, ob_terrain_view *out)

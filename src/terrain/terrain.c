@@ -71,6 +71,34 @@ bool ob_terrain_overlaps(const ob_terrain *t, uint32_t triangle, const double lo
 	return !apart;
 }
 
+// True if the triangle and a box of these half extents about the origin have no point in common along an axis.
+static bool parts(const ob_vec3 c[3], ob_vec3 half, ob_vec3 axis)
+{
+	const double a = ob_dot(axis, c[0]), b = ob_dot(axis, c[1]), d = ob_dot(axis, c[2]),
+		     reach = fabs(axis.x) * half.x + fabs(axis.y) * half.y + fabs(axis.z) * half.z;
+	return ob_min(a, ob_min(b, d)) > reach || ob_max(a, ob_max(b, d)) < -reach;
+}
+
+// Separating axes (Akenine-Moeller 2001, Fast 3D triangle-box overlap testing).
+bool ob_terrain_enters(const ob_terrain *t, uint32_t triangle, const double low[3], const double high[3])
+{
+	const ob_vec3 middle = ob_v3(.5 * (low[0] + high[0]), .5 * (low[1] + high[1]), .5 * (low[2] + high[2])),
+		      half = ob_v3(.5 * (high[0] - low[0]), .5 * (high[1] - low[1]), .5 * (high[2] - low[2]));
+	ob_vec3 c[3];
+	corners_of(t, triangle, c);
+	for (int k = 0; k < 3; k++)
+		c[k] = ob_sub(c[k], middle);
+	bool apart = parts(c, half, region_of(t, triangle)->normal);
+	for (int k = 0; k < 3; k++) {
+		const ob_vec3 way = ob_sub(c[(k + 1) % 3], c[k]);
+		const ob_vec3 axis[] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+		apart = apart || parts(c, half, axis[k]);
+		for (int i = 0; i < 3; i++)
+			apart = apart || parts(c, half, ob_cross(way, axis[i]));
+	}
+	return !apart;
+}
+
 // True if the boxes overlap, and the search meets the triangle first in this column.
 static bool is_found(const ob_terrain_search *s, uint32_t triangle)
 {

@@ -98,7 +98,10 @@ bool ob_terrain_next(ob_terrain_search *s, uint32_t *triangle);
 // True if a triangle's box overlaps a box.
 bool ob_terrain_overlaps(const ob_terrain *t, uint32_t triangle, const double low[3], const double high[3]);
 
-// Finds the regions with such triangles, ascending. Writes up to max numbers; returns their number, which may exceed max.
+// True if a triangle itself has a point in a box.
+bool ob_terrain_enters(const ob_terrain *t, uint32_t triangle, const double low[3], const double high[3]);
+
+// Finds the regions with triangles whose boxes overlap a box, ascending. Writes up to max numbers; returns their number, which may exceed max.
 uint32_t ob_terrain_find_regions(const ob_terrain *t, const double low[3], const double high[3], uint32_t *out,
 				 uint32_t max);
 

@@ -275,6 +275,30 @@ static void over_waves(uint64_t number)
 	finish(&l, s);
 }
 
+// ---- the border
+
+static double pit(double x, double y)
+{
+	return x == 1 && y == 1 ? -1 : 0;
+}
+
+// A ball falls along the side of a field. The plane of a triangle that has a corner there goes on above the ball, but the
+// triangle is elsewhere.
+static void beside_the_border(void)
+{
+	little_scene *s = usual_scene();
+	little_universe l;
+	ob_world_sphere(&s->world, 1, .1, ob_v3(.3, 2.12, -.5));
+	ob_world_terrain(&s->world, heights(pit, 4, 4), ob_v3(0, 0, 0));
+	little_open(&l, s);
+	little_run(&l, 20);
+	const ob_state end = little_state(&l, 0);
+	printf("beside the border: falls to %.9g %.9g %.9g\n", end.pose.p.x, end.pose.p.y, end.pose.p.z);
+	CHECK_NEAR(end.pose.p.z, -.5 - .5 * 9.81 / 9, 1e-9);
+	CHECK_NEAR(end.pose.p.y, 2.12, 1e-9);
+	finish(&l, s);
+}
+
 // ---- fast bodies
 
 static void fast(int shape)
@@ -365,6 +389,7 @@ int main(void)
 	on_a_ridge();
 	for (uint64_t number = 7; number < 10; number++)
 		over_waves(number);
+	beside_the_border();
 	for (int shape = 0; shape < SHAPES; shape++)
 		fast(shape);
 	return check_end();
