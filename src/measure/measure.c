@@ -134,6 +134,7 @@ struct search {
 	struct node *node;
 	uint32_t nodes;
 	ob_penetration *out;
+	double *each; // [ids], m; NULL: not wanted
 	double total; // m
 	struct effort effort;
 	struct joined *joined; // [joined_count], sorted
@@ -186,12 +187,21 @@ static bool may_overlap(const struct search *s, uint32_t a, uint32_t b)
 	return s->joined_count && bsearch(&key, s->joined, s->joined_count, sizeof key, by_ids);
 }
 
+static double greater(double a, double b)
+{
+	return a > b ? a : b;
+}
+
 static void note_depth(struct search *s, uint32_t a, uint32_t b, double depth)
 {
 	if (!(depth > 0))
 		return;
 	s->total += depth;
 	s->out->pairs++;
+	if (s->each) {
+		s->each[a] = greater(s->each[a], depth);
+		s->each[b] = greater(s->each[b], depth);
+	}
 	if (depth > s->out->max_m) {
 		s->out->max_m = depth;
 		s->out->worst_a = a < b ? a : b;
@@ -208,11 +218,6 @@ static void add_depth(struct search *s, struct item *a, struct item *b)
 	b->overlaps++;
 	s->effort.work += work_of(&a->solid, &b->solid);
 	note_depth(s, a->id, b->id, ob_depth(&a->solid, &b->solid));
-}
-
-static double greater(double a, double b)
-{
-	return a > b ? a : b;
 }
 
 // Depth of a solid in the ground below a triangle (m).
@@ -458,13 +463,15 @@ static bool give_up(const struct search *s, const ob_snapshot *of, ob_error *e)
 		(unsigned long long)of->step, most->id, OB_NAME_MAX, of->passport[most->id].name, most->overlaps);
 }
 
-bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bool (*stop)(void *context),
-				   void *context, ob_error *e)
+bool ob_measure_depths(const ob_snapshot *s, double *each, ob_penetration *out, bool (*stop)(void *context),
+		       void *context, ob_error *e)
 {
 	*out = (ob_penetration){ 0 };
 	if (!s->count)
 		return true;
-	struct search x = { .passport = s->passport, .out = out, .effort = { .stop = stop, .context = context } };
+	struct search x = {
+		.passport = s->passport, .out = out, .each = each, .effort = { .stop = stop, .context = context }
+	};
 	for (uint32_t id = 0; id < s->count; id++)
 		x.items += solids_of(s, id);
 	x.item = calloc(x.items, sizeof *x.item);
@@ -500,6 +507,12 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 	free(x.node);
 	free(x.joined);
 	return fine;
+}
+
+bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bool (*stop)(void *context),
+				   void *context, ob_error *e)
+{
+	return ob_measure_depths(s, NULL, out, stop, context, e);
 }
 
 void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out)

@@ -80,6 +80,9 @@ void ob_measure_penetration(const ob_snapshot *s, ob_penetration *out);
 // stop(context), called every few milliseconds, returns true. stop: NULL = never.
 bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bool (*stop)(void *context),
 				   void *context, ob_error *e);
+// Same, and raises each[id] to the object's depth in its deepest pair (m), where that is more.
+bool ob_measure_depths(const ob_snapshot *s, double *each, ob_penetration *out, bool (*stop)(void *context),
+		       void *context, ob_error *e);
 
 typedef struct ob_separation {
 	double max_m, mean_m; // over contacts with an impulse; 0 if they touch or penetrate

@@ -128,6 +128,11 @@ static void test_penetration_by_hand(void)
 	CHECK_NEAR(out.max_m, .03, 1e-12);
 	CHECK(out.worst_a == 1 && out.worst_b == 3);
 	CHECK_NEAR(out.mean_m, (.01 + .03 + upper) / 3, 1e-12);
+	double each[5] = { [2] = .5 };
+	CHECK(ob_measure_depths(&s, each, &out, NULL, NULL, NULL) && out.pairs == 3);
+	CHECK(each[2] == .5 && each[1] == out.max_m && each[3] == out.max_m); // the deeper one stays
+	CHECK_NEAR(each[0], .01, 1e-12);
+	CHECK_NEAR(each[4], upper, 1e-12);
 	s.count = 0;
 	ob_measure_penetration(&s, &out);
 	CHECK(out.pairs == 0 && out.max_m == 0 && out.mean_m == 0);
