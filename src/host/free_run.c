@@ -31,7 +31,7 @@ void ob_host_free_pace(ob_host *h, double pace, uint64_t stands)
 		return;
 	h->free_pace = pace;
 	h->free_stands = stands;
-	ob_free_set_clock(h->u, (double)ob_step_count(h->u) * step, pace > 0 ? pace : 1, end);
+	ob_free_set_clock(h->u, (double)ob_step_count(h->u) * step, pace > 0 ? pace : INFINITY, end);
 }
 
 void ob_host_free_resume(ob_host *h)
