@@ -19,6 +19,7 @@
 #include "cli/version.h"
 #include "measure/measure.h"
 #include "record/record.h"
+#include "serve/facts.h"
 #include "serve/film.h"
 
 static const double patience = .05; // s, in which requests are taken while no step is due
@@ -201,7 +202,7 @@ static bool start_anew(serving *s, const ob_request *wish, ob_error *e)
 		ob_scene_free(next.scene);
 		free(next.own.define);
 		free(next.set);
-		ob_server_notify(s->server, &why);
+		ob_server_tell(s->server, ob_facts_notice(why.text));
 		return true;
 	}
 	ob_server_hold(s->server);
@@ -211,7 +212,7 @@ static bool start_anew(serving *s, const ob_request *wish, ob_error *e)
 	free(s->set);
 	*s = next;
 	ob_pace_restart(s->pace);
-	return start(s, e) && ob_server_go_on(s->server, s->scene, s->host, e);
+	return start(s, e) && ob_server_go_on(s->server, s->scene, &s->host, e);
 }
 
 // Saves the run as a checkpoint, and tells viewers.
@@ -222,7 +223,7 @@ static void save(serving *s, const ob_request *wish)
 	if (ob_save_led_run(&s->q.run, s->scene, s->host, path, &text))
 		ob_fail(&text, "a checkpoint of %.2f s is saved as %s",
 			(double)ob_step_count(ob_host_universe(s->host)) * s->q.run.run.step_length, path);
-	ob_server_notify(s->server, &text);
+	ob_server_tell(s->server, ob_facts_notice(text.text));
 }
 
 // Returns the next step of a free run, whose simulators follow the clock themselves; while paused, steps that are allowed.
@@ -296,7 +297,7 @@ static int carry_out(serving *s)
 	ob_error e;
 	bool ended = false;
 	ob_warn_of_overlap(s->host);
-	s->server = ob_server_start(&s->q.server, s->host, s->pace, &e);
+	s->server = ob_server_start(&s->q.server, &s->host, 1, s->pace, &e);
 	if (s->server) {
 		printf("%s is at %s\n", s->q.server.scene->title, ob_server_url(s->server, OB_ROLE_OPERATE));
 		for (ob_role r = OB_ROLE_OPERATE; r-- > OB_ROLE_WATCH;)
@@ -314,7 +315,7 @@ static int carry_out(serving *s)
 // Serves until Ctrl-C
 static int show_film(const serve_request *q, ob_error *e)
 {
-	ob_server *server = ob_server_start(&q->server, NULL, NULL, e);
+	ob_server *server = ob_server_start(&q->server, NULL, 0, NULL, e);
 	if (!server)
 		return ob_command_fail(OB_EXIT_FAILED, e->text);
 	printf("%s, recorded, is at %s\nCtrl-C ends it.\n", q->server.scene->title,

@@ -27,7 +27,8 @@ typedef struct ob_allowance {
 
 typedef struct ob_client {
 	struct lws *wsi;
-	struct ob_client *next;
+	struct ob_client *next; // that looks at the same world
+	uint32_t world; // number
 	ob_client_queue queue;
 	bool behind; // its queue was cleared; it gets the whole state once the rest has been sent
 	double taken_at; // s: time of its last progress, or of an empty queue

@@ -7,11 +7,11 @@
 
 typedef struct ob_serve_part {
 	ob_part_head head;
-	ob_server *(*start)(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e);
+	ob_server *(*start)(const ob_server_config *c, ob_host *const *h, uint32_t hosts, ob_pace *pace, ob_error *e);
 	const char *(*url)(const ob_server *s, ob_role role);
-	void (*notify)(ob_server *s, const ob_error *text);
+	void (*tell)(ob_server *s, ob_message *m);
 	void (*hold)(ob_server *s);
-	bool (*go_on)(ob_server *s, const ob_scene *scene, ob_host *h, ob_error *e);
+	bool (*go_on)(ob_server *s, const ob_scene *scene, ob_host *const *h, ob_error *e);
 	void (*stop)(ob_server *s);
 } ob_serve_part;
 

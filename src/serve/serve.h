@@ -50,23 +50,25 @@ typedef struct ob_server_config {
 } ob_server_config;
 
 enum { OB_SERVER_STUCK = 20 }; // s
+enum { OB_SERVER_WORLDS = 3 }; // at most
 
 typedef struct ob_server ob_server;
 
 // True if libwebsockets can be loaded; false and e with the package that is missing. Maps nothing.
 bool ob_serve_check(ob_error *e);
 
-// The host and the pace must outlive it; for a film both are NULL. NULL and e on failure.
-ob_server *ob_server_start(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e);
+// Serves worlds of one scene, each with a host; for a film none, and no pace. With several, the page shows them side by side,
+// and a viewer's connection names its world (/universe?world=1). Hosts and the pace must outlive it. NULL and e on failure.
+ob_server *ob_server_start(const ob_server_config *c, ob_host *const *h, uint32_t hosts, ob_pace *pace, ob_error *e);
 // Address of the page for visitors of a role, with its token, if there is one. The first is for all that is allowed;
 // "" for another: the server gives out no address of its own for that role.
 const char *ob_server_url(const ob_server *s, ob_role role);
-// Sends all viewers a line. Any thread.
-void ob_server_notify(ob_server *s, const ob_error *text);
+// Sends all viewers a message, and releases it; one that is not sent yet is dropped for the next. Any thread.
+void ob_server_tell(ob_server *s, ob_message *m);
 // Holds the server, whose viewers stay connected, and lets it go on with another run of the scene; before the host is stopped,
-// and after the next one is started. go_on: false and e if it cannot.
+// and after the next one is started, with as many worlds. go_on: false and e if it cannot.
 void ob_server_hold(ob_server *s);
-bool ob_server_go_on(ob_server *s, const ob_scene *scene, ob_host *h, ob_error *e);
+bool ob_server_go_on(ob_server *s, const ob_scene *scene, ob_host *const *h, ob_error *e);
 void ob_server_stop(ob_server *s); // NULL is allowed
 
 #endif

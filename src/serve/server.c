@@ -31,6 +31,7 @@ static const double commands_rate = 200, creations_rate = 40; // 1/s, per client
 static const char film_path[] = "/recording", meshes_path[] = "/meshes/";
 static const char player_path[] = "/player.html"; // a page for the record that a viewer makes
 static const char metrics_path[] = "/metrics";
+static const char comparison_path[] = "/compare.html"; // the page of several worlds
 static const double door_interval = .25; // s, between two checks of deadlines
 static const struct timespec idle_wait = { .tv_nsec = 1000000 };
 enum {
@@ -45,10 +46,17 @@ typedef struct own_content {
 	char path[40], tag[24];
 } own_content;
 
+// A universe, and the viewers that look at it
+typedef struct world {
+	ob_host *host;
+	ob_feed *feed;
+	ob_client *clients;
+	uint64_t frozen_sent; // ns: time of the latest failure that viewers were sent
+} world;
+
 struct ob_server {
 	ob_server_base base;
 	ob_server_config config;
-	ob_host *host;
 	ob_pace *pace;
 	char token[OB_ROLES][33], url[OB_ROLES][160]; // of each role; "" = none
 	int port; // the actual port
@@ -61,16 +69,15 @@ struct ob_server {
 	bool held; // the thread has ended
 	pthread_mutex_t lock; // guards the next three
 	bool ending;
-	ob_error notice; // for all viewers; "" = none
+	ob_message *told; // for all viewers; NULL: none
 
 	struct lws_context *context; // this and all below: the thread's own
 	lws_sorted_usec_list_t tick, door_tick;
 	ob_door door;
-	ob_feed *feed;
-	ob_client *clients;
+	world world[OB_SERVER_WORLDS];
+	uint32_t worlds; // 0: for a film
 	uint32_t count, numbers; // numbers: given to clients so far
 	double details_at; // s
-	uint64_t frozen_sent; // ns: time of the latest failure that viewers were sent
 	bool anew; // viewers do not know yet that another run has begun
 	bool called; // the library has called back in this turn of the loop
 };
@@ -80,6 +87,11 @@ typedef struct session {
 	ob_http_answer answer;
 	ob_client client;
 } session;
+
+static world *world_of(ob_server *s, const ob_client *c)
+{
+	return &s->world[c->world];
+}
 
 // ---- sending
 
@@ -92,10 +104,10 @@ static void send_to(ob_client *c, ob_message *m)
 	lws_callback_on_writable(c->wsi);
 }
 
-// Sends a message to all, and releases it.
-static void send_all(ob_server *s, ob_message *m, bool contacts)
+// Sends a message to all that look at a world, and releases it.
+static void send_all(const world *w, ob_message *m, bool contacts)
 {
-	for (ob_client *c = m ? s->clients : NULL; c; c = c->next) {
+	for (ob_client *c = m ? w->clients : NULL; c; c = c->next) {
 		if (!contacts || c->contacts)
 			send_to(c, m);
 	}
@@ -103,11 +115,11 @@ static void send_all(ob_server *s, ob_message *m, bool contacts)
 }
 
 // Sends joints to those who have asked.
-static void send_joints(ob_server *s)
+static void send_joints(const world *w)
 {
 	ob_message *joints = NULL;
-	for (ob_client *c = s->clients; c; c = c->next) {
-		joints = c->joints && !joints ? ob_feed_joints(s->feed) : joints;
+	for (ob_client *c = w->clients; c; c = c->next) {
+		joints = c->joints && !joints ? ob_feed_joints(w->feed) : joints;
 		if (c->joints && joints)
 			send_to(c, joints);
 	}
@@ -115,14 +127,14 @@ static void send_joints(ob_server *s)
 }
 
 // Sends who simulates each object, and what workers do, to those who have asked.
-static void send_simulators(ob_server *s)
+static void send_simulators(const world *w)
 {
 	ob_message *simulators = NULL, *workers = NULL;
-	for (ob_client *c = s->clients; c; c = c->next) {
+	for (ob_client *c = w->clients; c; c = c->next) {
 		if (!c->simulators)
 			continue;
-		simulators = simulators ? simulators : ob_feed_simulators(s->feed);
-		workers = workers ? workers : ob_facts_workers(s->host);
+		simulators = simulators ? simulators : ob_feed_simulators(w->feed);
+		workers = workers ? workers : ob_facts_workers(w->host);
 		if (!simulators || !workers)
 			break;
 		send_to(c, simulators);
@@ -151,23 +163,23 @@ static void send_error(ob_client *c, const char *text)
 }
 
 // Notifies viewers of frozen objects: all of the cause, and the creators of theirs.
-static void send_frozen(ob_server *s)
+static void send_frozen(world *w)
 {
 	size_t at = 0;
 	uint32_t id;
 	ob_roster_entry entry;
-	send_all(s, ob_facts_frozen(s->host, &s->frozen_sent), false);
-	while (ob_feed_take_frozen(s->feed, &at, &id)) {
-		if (!ob_roster_find(ob_host_roster(s->host), id, &entry) || entry.origin == 0)
+	send_all(w, ob_facts_frozen(w->host, &w->frozen_sent), false);
+	while (ob_feed_take_frozen(w->feed, &at, &id)) {
+		if (!ob_roster_find(ob_host_roster(w->host), id, &entry) || entry.origin == 0)
 			continue;
-		for (ob_client *c = s->clients; c; c = c->next) {
+		for (ob_client *c = w->clients; c; c = c->next) {
 			if (c->number == entry.origin && c->frozen++ == 0)
 				c->first_frozen = id;
 		}
 	}
-	for (ob_client *c = s->clients; c; c = c->next) {
+	for (ob_client *c = w->clients; c; c = c->next) {
 		if (c->frozen > 0)
-			send_one(c, ob_facts_own_frozen(s->host, c->first_frozen, c->frozen - 1));
+			send_one(c, ob_facts_own_frozen(w->host, c->first_frozen, c->frozen - 1));
 		c->frozen = 0;
 	}
 }
@@ -179,71 +191,84 @@ static void tell_avatar(ob_client *c)
 
 static void send_all_about(ob_server *s, ob_client *c)
 {
+	const world *w = world_of(s, c);
 	ob_pace_state pace = ob_pace_get(s->pace);
 	ob_universe_info info;
-	ob_universe_get_info(ob_host_universe(s->host), &info);
+	ob_universe_get_info(ob_host_universe(w->host), &info);
 	send_one(c, ob_facts_welcome(&s->config, c->role, &info, s->own));
-	send_one(c, ob_feed_whole(s->feed, &pace));
-	send_one(c, ob_facts_statistics(s->host, s->count, c->energy, pace.paused));
-	ob_avatar_ask(s->host, s->config.scene, c);
+	send_one(c, ob_feed_whole(w->feed, &pace));
+	send_one(c, ob_facts_statistics(w->host, s->count, c->energy, pace.paused));
+	ob_avatar_ask(w->host, s->config.scene, c);
 }
 
-// Sends news of the host's thread: another run, and a line.
+// Sends news of the host's thread: another run, and its message.
 static void send_news(ob_server *s)
 {
 	pthread_mutex_lock(&s->lock);
-	const ob_error notice = s->notice;
-	s->notice.text[0] = 0;
+	ob_message *told = s->told;
+	s->told = NULL;
 	pthread_mutex_unlock(&s->lock);
-	if (*notice.text)
-		send_all(s, ob_facts_notice(notice.text), false);
-	for (ob_client *c = s->anew ? s->clients : NULL; c; c = c->next) {
-		c->avatar = c->inspected = UINT32_MAX;
-		send_all_about(s, c);
+	for (uint32_t i = 0; told && i < s->worlds; i++) {
+		ob_message_hold(told);
+		send_all(&s->world[i], told, false);
+	}
+	ob_message_release(told);
+	for (uint32_t i = 0; s->anew && i < s->worlds; i++) {
+		for (ob_client *c = s->world[i].clients; c; c = c->next) {
+			c->avatar = c->inspected = UINT32_MAX;
+			send_all_about(s, c);
+		}
 	}
 	s->anew = false;
 }
 
 // Sends what need not be new in each frame.
-static void send_details(ob_server *s, bool paused)
+static void send_details(ob_server *s, world *w, bool paused)
 {
 	bool energy = false;
-	for (ob_client *c = s->clients; c; c = c->next)
+	ob_avatars_update(w->host, s->config.scene, w->clients, tell_avatar);
+	if (!w->clients)
+		return;
+	for (ob_client *c = w->clients; c; c = c->next)
 		energy |= c->energy;
-	send_frozen(s);
-	send_joints(s);
-	send_simulators(s);
-	send_all(s, ob_facts_statistics(s->host, s->count, energy, paused), false);
+	send_frozen(w);
+	send_joints(w);
+	send_simulators(w);
+	send_all(w, ob_facts_statistics(w->host, s->count, energy, paused), false);
+}
+
+static void look_at(ob_server *s, world *w, double now, bool details)
+{
+	const ob_pace_state pace = ob_pace_get(s->pace);
+	bool contacts = false;
+	if (w->clients)
+		send_all(w, ob_feed_next(w->feed, &pace), false);
+	for (ob_client *c = w->clients; c; c = c->next) {
+		contacts |= c->contacts;
+		if (c->queue.count == 0)
+			c->taken_at = now;
+		else if (now - c->taken_at > OB_SERVER_STUCK)
+			lws_set_timeout(c->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
+		if (details && c->inspected != UINT32_MAX)
+			send_one(c, ob_facts_details(s->config.scene, w->host, c->inspected));
+	}
+	if (contacts)
+		send_all(w, ob_feed_contacts(w->feed), true);
+	if (details)
+		send_details(s, w, pace.paused);
 }
 
 static void look(lws_sorted_usec_list_t *tick)
 {
 	ob_server *s = lws_container_of(tick, ob_server, tick);
-	double begin = ob_clock_wall();
+	const double begin = ob_clock_wall();
+	const bool details = begin >= s->details_at;
 	s->called = true;
-	ob_pace_state pace = ob_pace_get(s->pace);
-	bool details = begin >= s->details_at;
-	bool contacts = false;
 	send_news(s);
-	if (s->clients)
-		send_all(s, ob_feed_next(s->feed, &pace), false);
-	for (ob_client *c = s->clients; c; c = c->next) {
-		contacts |= c->contacts;
-		if (c->queue.count == 0)
-			c->taken_at = begin;
-		else if (begin - c->taken_at > OB_SERVER_STUCK)
-			lws_set_timeout(c->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
-		if (details && c->inspected != UINT32_MAX)
-			send_one(c, ob_facts_details(s->config.scene, s->host, c->inspected));
-	}
-	if (contacts)
-		send_all(s, ob_feed_contacts(s->feed), true);
-	if (details) {
-		ob_avatars_update(s->host, s->config.scene, s->clients, tell_avatar);
-		if (s->clients)
-			send_details(s, pace.paused);
+	for (uint32_t i = 0; i < s->worlds; i++)
+		look_at(s, &s->world[i], begin, details);
+	if (details)
 		s->details_at = begin + detail_interval;
-	}
 	double wait = fmax(interval, (ob_clock_wall() - begin) / share);
 	lws_sul_schedule(s->context, 0, &s->tick, look, (lws_usec_t)(1e6 * wait));
 }
@@ -251,11 +276,11 @@ static void look(lws_sorted_usec_list_t *tick)
 // ---- receiving
 
 // True if the visitor may create one more object now.
-static bool may_create(ob_server *s, ob_client *c)
+static bool may_create(const ob_host *h, ob_client *c)
 {
 	if (!ob_allowance_take(&c->creations, ob_clock_wall(), creations_rate))
 		send_error(c, "too many objects in a second: try again");
-	else if (ob_roster_copy(ob_host_roster(s->host), NULL, 0) >= ob_universe_capacity(ob_host_universe(s->host)))
+	else if (ob_roster_copy(ob_host_roster(h), NULL, 0) >= ob_universe_capacity(ob_host_universe(h)))
 		send_error(c, "the universe is full: remove an object first");
 	else
 		return true;
@@ -263,20 +288,20 @@ static bool may_create(ob_server *s, ob_client *c)
 }
 
 // Requests about objects and the universe.
-static void carry_out_requests(ob_server *s, ob_client *c, ob_command *asked)
+static void carry_out_requests(ob_host *h, ob_client *c, ob_command *asked)
 {
 	for (uint32_t i = 0; i < asked->requests; i++) {
 		ob_request *r = &asked->request[i];
 		ob_error e;
-		if (ob_is_joint_request(r) && !ob_joint_request_find(ob_host_universe(s->host), asked->name, r, &e)) {
+		if (ob_is_joint_request(r) && !ob_joint_request_find(ob_host_universe(h), asked->name, r, &e)) {
 			send_error(c, e.text);
 			return;
 		}
 		r->origin = c->number;
 		c->pulls |= r->kind == OB_REQUEST_PUSH || r->kind == OB_REQUEST_DRAG || r->kind == OB_REQUEST_TORQUE;
-		if (r->kind == OB_REQUEST_ADD && c->role >= OB_ROLE_TAKE_PART && !may_create(s, c))
+		if (r->kind == OB_REQUEST_ADD && c->role >= OB_ROLE_TAKE_PART && !may_create(h, c))
 			continue;
-		if (!ob_host_ask_as(s->host, c->role, r, &e))
+		if (!ob_host_ask_as(h, c->role, r, &e))
 			send_error(c, e.text);
 	}
 }
@@ -303,12 +328,12 @@ static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
 	case OB_DO_INSPECT:
 		c->inspected = asked->id;
 		if (asked->id != UINT32_MAX)
-			send_one(c, ob_facts_details(s->config.scene, s->host, asked->id));
+			send_one(c, ob_facts_details(s->config.scene, world_of(s, c)->host, asked->id));
 		return;
 	default:
 		break;
 	}
-	carry_out_requests(s, c, asked);
+	carry_out_requests(world_of(s, c)->host, c, asked);
 }
 
 static int refuse_client(ob_client *c, enum lws_close_status status, const char *why)
@@ -389,6 +414,17 @@ static ob_role role_of(const ob_server *s, struct lws *wsi)
 	return role;
 }
 
+// Number of the world that a visitor asks for, 0 by default; none: UINT32_MAX.
+static uint32_t asked_world(const ob_server *s, struct lws *wsi)
+{
+	char text[16];
+	const char *value = lws_get_urlarg_by_name(wsi, "world=", text, sizeof text);
+	for (uint32_t i = 0; i < s->worlds; i++)
+		if (!value || (value[0] == (char)('0' + i) && !value[1]))
+			return i;
+	return UINT32_MAX;
+}
+
 // Before the answer to the handshake. Other than 0: refused, with an answer.
 static int let_in(const ob_server *s, struct lws *wsi)
 {
@@ -404,6 +440,8 @@ static int let_in(const ob_server *s, struct lws *wsi)
 	}
 	if (!why && s->config.film)
 		why = "a recording is shown here, which a page plays by itself";
+	else if (!why && asked_world(s, wsi) == UINT32_MAX)
+		why = "there is no world of this number here";
 	if (why)
 		lws_return_http_status(wsi, status, why);
 	return why != NULL;
@@ -411,7 +449,7 @@ static int let_in(const ob_server *s, struct lws *wsi)
 
 static int answer_metrics(const ob_server *s, struct lws *wsi)
 {
-	ob_message *m = ob_facts_metrics(s->host, s->count);
+	ob_message *m = ob_facts_metrics(s->world->host, s->count);
 	const int result = m && !m->failed ? ob_http_answer_text(wsi, (const char *)m->bytes, m->size) : -1;
 	ob_message_release(m);
 	return result;
@@ -428,10 +466,11 @@ static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const 
 		  strncmp(path, meshes_path, strlen(meshes_path)) == 0) &&
 		 !has_token(s, wsi))
 		why = "the token is missing or wrong: use the address that obsim serve has printed";
-	if (!why && s->host && strcmp(path, metrics_path) == 0)
+	if (!why && s->worlds == 1 && strcmp(path, metrics_path) == 0)
 		return answer_metrics(s, wsi);
 	if (!why)
-		return ob_http_answer_request(wsi, a, path, s->own);
+		return ob_http_answer_request(wsi, a, s->worlds > 1 && strcmp(path, "/") == 0 ? comparison_path : path,
+					      s->own);
 	lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, why);
 	return -1;
 }
@@ -463,14 +502,15 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 	double now = ob_clock_wall();
 	*c = (ob_client){ .wsi = wsi,
 			  .role = role_of(s, wsi),
-			  .next = s->clients,
+			  .world = asked_world(s, wsi),
 			  .taken_at = now,
 			  .inspected = UINT32_MAX,
 			  .avatar = UINT32_MAX,
 			  .number = ++s->numbers,
 			  .commands = { commands_rate, now },
 			  .creations = { creations_rate, now } };
-	s->clients = c;
+	c->next = world_of(s, c)->clients;
+	world_of(s, c)->clients = c;
 	s->count++;
 	ob_door_move(wsi, OB_AT_VIEWER, now);
 	setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
@@ -479,7 +519,7 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 
 static void leave(ob_server *s, ob_client *c)
 {
-	for (ob_client **at = &s->clients; *at; at = &(*at)->next) {
+	for (ob_client **at = &world_of(s, c)->clients; *at; at = &(*at)->next) {
 		if (*at == c) {
 			*at = c->next;
 			s->count--;
@@ -490,7 +530,7 @@ static void leave(ob_server *s, ob_client *c)
 	ob_error e;
 	ob_request lets_go = { .kind = OB_REQUEST_RELEASE, .id = UINT32_MAX, .origin = c->number };
 	if (c->pulls)
-		ob_host_ask(s->host, &lets_go, &e);
+		ob_host_ask(world_of(s, c)->host, &lets_go, &e);
 }
 
 static int write_some(ob_server *s, ob_client *c)
@@ -504,7 +544,7 @@ static int write_some(ob_server *s, ob_client *c)
 	if (c->behind && c->queue.count == 0) {
 		ob_pace_state pace = ob_pace_get(s->pace);
 		c->behind = false;
-		send_one(c, ob_feed_whole(s->feed, &pace));
+		send_one(c, ob_feed_whole(world_of(s, c)->feed, &pace));
 	}
 	return 0;
 }
@@ -747,7 +787,26 @@ static bool start_thread(ob_server *s, ob_error *e)
 	return failure == 0 || ob_fail(e, "the server's thread cannot be started: %s", strerror(failure));
 }
 
-static ob_server *start_server(const ob_server_config *c, ob_host *h, ob_pace *pace, ob_error *e)
+static bool make_feed(world *w)
+{
+	ob_feed_destroy(w->feed);
+	w->feed = ob_feed_create(ob_host_universe(w->host), ob_host_roster(w->host));
+	return w->feed;
+}
+
+static void free_server(ob_server *s)
+{
+	if (s->context)
+		lws_context_destroy(s->context);
+	for (uint32_t i = 0; i < s->worlds; i++)
+		ob_feed_destroy(s->world[i].feed);
+	ob_message_release(s->told);
+	release_own(s);
+	pthread_mutex_destroy(&s->lock);
+	free(s);
+}
+
+static ob_server *start_server(const ob_server_config *c, ob_host *const *h, uint32_t hosts, ob_pace *pace, ob_error *e)
 {
 	ob_server *s = calloc(1, sizeof *s);
 	if (!s) {
@@ -755,25 +814,21 @@ static ob_server *start_server(const ob_server_config *c, ob_host *h, ob_pace *p
 		return NULL;
 	}
 	s->config = *c;
-	s->host = h;
 	s->pace = pace;
 	pthread_mutex_init(&s->lock, NULL);
-	s->feed = h ? ob_feed_create(ob_host_universe(h), ob_host_roster(h)) : NULL;
-	bool ready = make_tokens(s, e) && prepare_own(s, e) && open_context(s, e) &&
-		     (s->feed || c->film || ob_fail(e, "out of memory"));
+	bool ready = make_tokens(s, e) && prepare_own(s, e) && open_context(s, e);
+	for (; ready && s->worlds < hosts; s->worlds++) {
+		s->world[s->worlds].host = h[s->worlds];
+		ready = make_feed(&s->world[s->worlds]) || ob_fail(e, "out of memory");
+	}
 	if (ready) {
-		if (s->feed)
+		if (hosts)
 			lws_sul_schedule(s->context, 0, &s->tick, look, 1);
 		lws_sul_schedule(s->context, 0, &s->door_tick, look_at_door, 1);
 		if (start_thread(s, e))
 			return s;
 	}
-	if (s->context)
-		lws_context_destroy(s->context);
-	ob_feed_destroy(s->feed);
-	release_own(s);
-	pthread_mutex_destroy(&s->lock);
-	free(s);
+	free_server(s);
 	return NULL;
 }
 
@@ -782,10 +837,11 @@ static const char *url_of(const ob_server *s, ob_role role)
 	return role == OB_ROLE_OPERATE ? s->url[most_of(s)] : most_of(s) == OB_ROLE_WATCH ? "" : s->url[role];
 }
 
-static void notify(ob_server *s, const ob_error *text)
+static void tell(ob_server *s, ob_message *m)
 {
 	pthread_mutex_lock(&s->lock);
-	s->notice = *text;
+	ob_message_release(s->told);
+	s->told = m;
 	pthread_mutex_unlock(&s->lock);
 }
 
@@ -800,36 +856,29 @@ static void hold(ob_server *s)
 	s->held = true;
 }
 
-static bool go_on(ob_server *s, const ob_scene *scene, ob_host *h, ob_error *e)
+static bool go_on(ob_server *s, const ob_scene *scene, ob_host *const *h, ob_error *e)
 {
-	ob_feed_destroy(s->feed);
-	s->feed = ob_feed_create(ob_host_universe(h), ob_host_roster(h));
+	bool fed = true;
+	for (uint32_t i = 0; i < s->worlds; i++) {
+		s->world[i].host = h[i];
+		s->world[i].frozen_sent = 0;
+		fed = fed && make_feed(&s->world[i]);
+	}
 	s->config.scene = scene;
-	s->host = h;
 	s->anew = true;
 	s->ending = false;
-	s->frozen_sent = 0;
-	s->held = !s->feed || !start_thread(s, e);
-	return s->feed ? !s->held : ob_fail(e, "out of memory");
+	s->held = !fed || !start_thread(s, e);
+	return fed ? !s->held : ob_fail(e, "out of memory");
 }
 
 static void stop_server(ob_server *s)
 {
-	if (!s)
-		return;
 	if (!s->held)
 		hold(s);
-	lws_context_destroy(s->context);
-	ob_feed_destroy(s->feed);
-	release_own(s);
-	pthread_mutex_destroy(&s->lock);
-	free(s);
+	free_server(s);
 }
 
-OB_PART(ob_serve_part) = { OB_PART_HEAD(ob_serve_part),
-			   .start = start_server,
-			   .url = url_of,
-			   .notify = notify,
-			   .hold = hold,
-			   .go_on = go_on,
-			   .stop = stop_server };
+OB_PART(ob_serve_part) = {
+	OB_PART_HEAD(ob_serve_part), .start = start_server, .url = url_of, .tell = tell, .hold = hold, .go_on = go_on,
+	.stop = stop_server
+};
