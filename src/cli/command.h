@@ -16,6 +16,7 @@ enum ob_exit {
 int ob_command_run(const ob_arguments *a);
 int ob_command_compare(const ob_arguments *a);
 int ob_command_compare_sync(const ob_arguments *a); // with --sync lockstep,free
+int ob_command_compare_live(const ob_arguments *a); // with --live
 int ob_command_top(const ob_arguments *a);
 int ob_command_lab(const ob_arguments *a);
 int ob_command_paper(const ob_arguments *a);

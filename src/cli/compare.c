@@ -173,6 +173,10 @@ static int report(const ob_comparison *c, const ob_arguments *a)
 
 int ob_command_compare(const ob_arguments *a)
 {
+	if (a->value[OB_OPTION_LIVE])
+		return ob_command_compare_live(a);
+	if (a->value[OB_OPTION_LISTEN])
+		return ob_command_fail(OB_EXIT_USAGE, "--listen is for a page: add --live");
 	if (a->value[OB_OPTION_SYNC])
 		return ob_command_compare_sync(a);
 	ob_error e;

@@ -99,8 +99,10 @@ const ob_option ob_option_table[OB_OPTIONS] = {
 	[OB_OPTION_REPLAY_SCHEDULE] = { NULL, "replay-schedule", "FILE", "repeat a free run to the bit, in one thread",
 					RUN, 0 },
 
+	[OB_OPTION_LIVE] = { "The server", "live", NULL,
+			     "one world, threads and processes, or both ways, side by side on one page", COMPARE, 0 },
 	[OB_OPTION_LISTEN] = { "The server", "listen", "ADDR:PORT",
-			       "where viewers come to; port 0 is a free one (127.0.0.1:8080)", SERVE, 0 },
+			       "where viewers come to; port 0 is a free one (127.0.0.1:8080)", SERVE | COMPARE, 0 },
 	[OB_OPTION_PAUSED] = { NULL, "paused", NULL, "stand still until a viewer lets it run", SERVE, 0 },
 	[OB_OPTION_READONLY] = { NULL, "readonly", NULL, "viewers may look, and change nothing", SERVE, 0 },
 	[OB_OPTION_VIEWERS] = { NULL, "viewers", "N", "viewers at a time (64)", SERVE, 0 },

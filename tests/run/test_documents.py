@@ -17,7 +17,7 @@ DOCUMENTS = ["README.md", "docs/tutorial.md", "docs/scenes.md", "docs/records.md
 	"docs/experiments.md", "docs/reliability.md", "docs/tracing.md"]
 # Commands that other tests run, or that need another machine.
 ELSEWHERE = r"obsim import|obsim lab|obsim paper|\./tools/|apt-get|mpirun|srun|python3 bench|python3 tests|build|export |meson|Rscript|using "
-SHORTER = [(r"--video|--frames", "--size 160x90 --duration .2"), (r"^obsim compare (?!.*--sync)", "--duration .1 --repeats 1"),
+SHORTER = [(r"--video|--frames", "--size 160x90 --duration .2"), (r"^obsim compare (?!.*--(sync|live))", "--duration .1 --repeats 1"),
 	(r"^obsim compare .*--sync", "--duration .1 --seeds 1"), (r"^obsim run (?!.*--(duration|replay|resume))", "--duration 5")]
 
 
@@ -72,15 +72,16 @@ class Documents(program.Case):
 	def run_one(self, command, left_running):
 		if "--replay-requests" in command: # a log is whole when its run has ended
 			self.end(left_running)
-		background = command.endswith("&") or " serve " in command or "--pace realtime" in command
+		serves = " serve " in command or " --live" in command
+		background = command.endswith("&") or serves or "--pace realtime" in command
 		command = command.rstrip("& ")
 		words = [program.OBSIM, *shlex.split(command if background else shortened(command))[1:]]
 		if background:
-			if " serve " in command:
+			if serves:
 				words += ["--listen", "127.0.0.1:0"]
 			process = subprocess.Popen(words, cwd=self.directory.name, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 			left_running.append(process)
-			if " serve " in command:
+			if serves:
 				self.assertIn("http://", process.stdout.readline())
 			name = re.search(r"--name (\w+)", command)
 			while name and not os.path.exists(program.segment(name[1])) and process.poll() is None:

@@ -2,6 +2,7 @@
 // which runs backwards, too.
 import { halfBounds } from './drawing.js';
 import { FREE, STANDS, normalize, poseAt } from './motion.js';
+import { addressOf } from './page.js';
 import { isEndless } from './shapes.js';
 import { Universe, between } from './universe.js';
 
@@ -17,8 +18,7 @@ async function load(source) {
 		const text = document.querySelector(source).textContent;
 		packed = new Blob([Uint8Array.from(atob(text), (c) => c.charCodeAt(0))]);
 	} else {
-		const token = new URLSearchParams(location.hash.slice(1)).get('token');
-		const answer = await fetch(token ? `${source}?token=${encodeURIComponent(token)}` : source);
+		const answer = await fetch(addressOf(source));
 		if (!answer.ok)
 			throw new Error(`the recording: ${(await answer.text()).replace(/<[^>]*>/g, ' ').trim() || answer.status}`);
 		packed = await answer.blob();

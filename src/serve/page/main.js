@@ -13,7 +13,7 @@ import { Explore } from './explore.js';
 import { Recorder } from './recorder.js';
 import { Offers } from './offers.js';
 import { Sharpness } from './sharpness.js';
-import { count, kept } from './page.js';
+import { addressOf, count, kept, token } from './page.js';
 import { Walk } from './walk.js';
 import { Tour } from './tour.js';
 
@@ -24,10 +24,9 @@ const PALE = [0.9, 0.92, 0.95];
 const AGAIN = [0.5, 1, 2, 5]; // s: waits before attempts to reconnect
 
 const canvas = document.querySelector('#picture');
-const asked = new URLSearchParams(location.hash.slice(1)), token = asked.get('token');
-const address = `ws://${location.host}/universe${token ? `?token=${encodeURIComponent(token)}` : ''}`;
+const asked = new URLSearchParams(location.hash.slice(1));
 const recording = document.querySelector('meta[name=recording]').content;
-const universe = recording ? new Film(recording) : new Universe(address), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), recorder = new Recorder(universe), sharpness = new Sharpness(), walk = new Walk(), tour = new Tour(universe, workers, walk, kill);
+const universe = recording ? new Film(recording) : new Universe(`ws://${location.host}${addressOf('/universe')}`), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), recorder = new Recorder(universe), sharpness = new Sharpness(), walk = new Walk(), tour = new Tour(universe, workers, walk, kill);
 let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '', shownForm = '', shownView = null;
 
 // ---- the picture
@@ -37,11 +36,10 @@ const paled = (colour, share) => (share > 0 ? colour.map((c, k) => c + share * (
 function bodies() {
 	const out = [], key = workers.key, others = key !== 'own';
 	for (const o of universe.objects.values()) {
-		const pose = universe.pose(o);
-		const mesh = drawing.looks.get(o.mesh);
-		if (pose)
-			out.push({ id: o.id, name: o.id === avatar?.id ? look.avatar : o.name, attention: universe.attention(o), shape: o.shape, size: o.size, hull: o.hull, mesh, meshColour: o.meshColour && !others && !workers.pale.has(o.id), meshSurface: o.meshSurface, radius: mesh?.radius ?? o.radius, fixed: o.fixed, frozen: o.frozen, rests: universe.rests(o), kind: o.motion.kind, shown: paled(colourBy(key, o, universe.simulators.get(o.id), workers.list), workers.paleness(o.id)),
-				roughness: o.roughness, metal: o.metal, pattern: others && !isEndless(o.shape) ? 0 : o.pattern, ...pose });
+		const body = universe.body(o, drawing.looks.get(o.mesh));
+		if (body)
+			out.push(Object.assign(body, { name: o.id === avatar?.id ? look.avatar : o.name, meshColour: o.meshColour && !others && !workers.pale.has(o.id), pattern: others && !isEndless(o.shape) ? 0 : o.pattern,
+				shown: paled(colourBy(key, o, universe.simulators.get(o.id), workers.list), workers.paleness(o.id)) }));
 	}
 	return out;
 }
@@ -405,7 +403,8 @@ universe.addEventListener('welcome', (e) => {
 	workers.welcome(look, panel.kills);
 	if (offers.welcome(look) && !panel.on.offers && (kept('panels')?.offers ?? true))
 		panel.ask('offers');
-	fetchMeshes(look.meshes);
+	drawing.forgetMeshes();
+	universe.fetchMeshes(look.meshes);
 	if (!camera.placed)
 		camera.set(askedView() ?? cameras[0]);
 	camera.placed = true;
@@ -438,21 +437,6 @@ universe.addEventListener('workers', (e) => {
 		showSteps();
 });
 universe.addEventListener('simulators', (e) => workers.times(e.detail));
-// Address of a content that may need the token.
-function addressOf(path) { return token ? `${path}?token=${encodeURIComponent(token)}` : path; }
-
-// Fetches meshes, which a browser keeps as contents; a recording holds its own. Until they arrive, objects show their
-// collision shapes.
-async function fetchMeshes(paths) {
-	drawing.forgetMeshes();
-	await Promise.all(paths.map(async (path) => {
-		const answer = await fetch(addressOf(path));
-		if (!answer.ok)
-			throw new Error(`${path}: ${answer.status}`);
-		universe.hear(await answer.arrayBuffer());
-	})).catch((error) => panel.notice(error.message));
-}
-
 universe.addEventListener('mesh', (e) => drawing.addMesh(e.detail));
 universe.addEventListener('population', () => {
 	camera.ground = groundHeight();

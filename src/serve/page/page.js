@@ -7,6 +7,10 @@ export function element(name, properties, ...children) {
 	return e;
 }
 
+export const token = new URLSearchParams(location.hash.slice(1)).get('token');
+// Address of a content, or of a connection, that may need the token.
+export const addressOf = (path) => (token ? `${path}${path.includes('?') ? '&' : '?'}token=${encodeURIComponent(token)}` : path);
+
 export const count = (n, one, many = `${one}s`) => `${n} ${n === 1 ? one : many}`;
 
 // Value that was kept under a name, after a new one was, if given. Browsers may refuse to keep anything.

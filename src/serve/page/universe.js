@@ -1,4 +1,5 @@
 // The viewer's copy of the universe: the state that the server has sent (src/serve/feed.h), and the time shown.
+import { addressOf } from './page.js';
 import { STANDS, SWINGS, TURNS, normalize, poseAt } from './motion.js';
 import { isHulled, radiusOf } from './shapes.js';
 
@@ -70,6 +71,17 @@ export class Universe extends EventTarget {
 		this.socket.onmessage = (e) => this.hear(e.data);
 		this.socket.onopen = () => this.tell('open');
 		this.socket.onclose = (e) => this.tell('close', e.reason);
+	}
+
+	// Fetches meshes, which a browser keeps as contents; a recording holds its own. Until they arrive, objects show their
+	// collision shapes.
+	async fetchMeshes(paths) {
+		await Promise.all(paths.map(async (path) => {
+			const answer = await fetch(addressOf(path));
+			if (!answer.ok)
+				throw new Error(`${path}: ${answer.status}`);
+			this.hear(await answer.arrayBuffer());
+		})).catch((error) => this.tell('error', error.message));
 	}
 
 	tell(name, detail) { this.dispatchEvent(new CustomEvent(name, { detail })); }
@@ -247,6 +259,12 @@ export class Universe extends EventTarget {
 
 	// True if a body stands, and will until there is news of it.
 	rests(body) { return body.fixed || (body.motion.kind === STANDS && this.time > body.motion.t0 + BLEND); }
+
+	// A body as it is drawn, with its mesh, if there is one; null: not received yet.
+	body(o, mesh) {
+		const pose = this.pose(o);
+		return pose && { ...o, mesh, radius: mesh?.radius ?? o.radius, attention: this.attention(o), rests: this.rests(o), kind: o.motion.kind, shown: o.colour, ...pose };
+	}
 
 	// Pose of a body at that time; null: not received yet.
 	pose(body, t = this.time) {
