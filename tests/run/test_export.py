@@ -232,7 +232,7 @@ class Pages(Case):
 		b.wait("document.querySelector('#details dl').textContent.includes('mass')")
 		shown = b.run("return obsim.universe.pose(obsim.universe.objects.get(arguments[0])).p", ball)
 		self.assertAlmostEqual(shown[2], 2 - .5 * 9.81 * .3**2, delta=.3 / 256)  # it flies
-		b.wait("document.querySelector('#details dl').textContent.includes('reads0 others')")
+		b.wait("document.querySelector('#details dl').textContent.includes('reads0 objects')")
 		b.run("obsim.pick([...obsim.universe.objects.values()].find((o) => o.name === 'box#1').id)")
 		self.seek(b, 1.9) # in a heap
 		b.wait("/reads[1-9]/.test(document.querySelector('#details dl').textContent)")
