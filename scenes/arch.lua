@@ -2,8 +2,8 @@
 -- a radius of 5 m, from a thickness of .5368 m on (obsim lab arch-stands arch-falls).
 --   -D thickness=.5   m: too thin, it falls
 --   -D n=20           how many stones
-local n = param("n", 20, { whole = true, min = 4, max = 200 })
-local thickness = param("thickness", .55, { min = .01, max = 4 })
+local n = param("n", 20, { whole = true, min = 4, max = 200, label = "stones" })
+local thickness = param("thickness", .55, { min = .01, max = 4, unit = "m" })
 local radius, depth = 5, 1
 
 scene { title = "An arch of " .. n .. " stones", duration = 6 }

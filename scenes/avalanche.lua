@@ -2,8 +2,8 @@
 -- time: the default takes a workstation minutes; -D n=1000 is quicker.
 --   -D n=10000        stones
 --   -D slope=31       degrees
-local n = param("n", 10000, { whole = true, min = 1, max = 100000 })
-local slope = param("slope", 31, { min = 5, max = 60 })
+local n = param("n", 10000, { whole = true, min = 1, max = 100000, label = "stones" })
+local slope = param("slope", 31, { min = 5, max = 60, unit = "°" })
 local a = math.rad(slope)
 local up = { math.sin(a), 0, math.cos(a) } -- normal of the slope, which comes down towards +x
 

@@ -1,7 +1,7 @@
 -- A strike, perhaps. The pins look like pins and collide as their convex hulls, the lane is a box, the ball a sphere;
 -- bowling/make.py writes their meshes, bowling/*.glb.
 --   obsim run bowling.lua --quality fine --video bowling.mp4
-local speed = param("speed", 7.5, { min = .1, max = 30 }) -- m/s
+local speed = param("speed", 7.5, { min = .1, max = 30, unit = "m/s" })
 local inch = .0254
 
 scene { title = "Bowling", duration = 4 }

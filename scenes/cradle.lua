@@ -1,7 +1,7 @@
 -- Newton's cradle, without strings: five elastic spheres in a row, without gravity. As many as come in leave at the
 -- other end, as fast as they came; the others rest.
 --   -D incoming=1    spheres that come in, 1 to 4
-local incoming = param("incoming", 1, { whole = true, min = 1, max = 4 })
+local incoming = param("incoming", 1, { whole = true, min = 1, max = 4, label = "incoming balls" })
 
 scene { title = "Newton's cradle", duration = 3, gravity = { 0, 0, 0 }, sleeping = false }
 material "steel" { friction = 0, restitution = 1, density = 7850, colour = "#c3c9d0" }

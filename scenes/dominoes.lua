@@ -2,8 +2,8 @@
 -- Islands come and go with it: obsim run dominoes --colour-by island --video dominoes.mp4
 --   -D n=400          how many
 --   -D gap=.105       m, from one to the next
-local n = param("n", 400, { whole = true, min = 2, max = 5000 })
-local gap = param("gap", .105, { min = .03, max = .2 })
+local n = param("n", 400, { whole = true, min = 2, max = 5000, label = "dominoes" })
+local gap = param("gap", .105, { min = .03, max = .2, unit = "m" })
 local width, thick, height = .14, .035, .24
 
 scene { title = n .. " dominoes", duration = 44 }

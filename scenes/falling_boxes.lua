@@ -2,7 +2,7 @@
 -- and come to rest in a heap (Elfizar et al., the scene of the paper).
 --   -D n=100      how many boxes
 --   --seed 1      other sizes and attitudes
-local n = param("n", 100, { whole = true, min = 1, max = 100000 })
+local n = param("n", 100, { whole = true, min = 1, max = 100000, label = "boxes" })
 
 scene { title = "Falling boxes", duration = 10 }
 ground {}

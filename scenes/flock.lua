@@ -2,7 +2,7 @@
 -- a fountain whose drops are made and taken away while the run goes on. A bird is a compound: its trunk, two wings and a
 -- tail collide as they look. Best seen live: obsim serve scenes/flock.lua
 --   -D wings=false      capsules in place of birds, as the one ODE world (--arch monolith) has no compounds
-local n = param("n", 60, { whole = true, min = 1, max = 2000 })
+local n = param("n", 60, { whole = true, min = 1, max = 2000, label = "birds" })
 local wings = param("wings", true)
 
 scene { title = "Flock", duration = 20, seed = 7, room = 80 }

@@ -1,8 +1,8 @@
 -- Gas: balls and boxes fly about in a closed box, without gravity, and lose nothing when they hit. All moves for ever.
 --   -D n=200         how many
 --   -D speed=3       m/s
-local n = param("n", 200, { whole = true, min = 2, max = 20000 })
-local speed = param("speed", 3.0, { min = 0, max = 100 })
+local n = param("n", 200, { whole = true, min = 2, max = 20000, label = "bodies" })
+local speed = param("speed", 3.0, { min = 0, max = 100, unit = "m/s" })
 
 scene { title = "Gas", duration = 10, gravity = { 0, 0, 0 }, sleeping = false }
 material "billiard" { friction = 0, restitution = 1, density = 1000 }

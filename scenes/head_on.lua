@@ -4,8 +4,8 @@
 --   -D ratio=1.0       mass of the second over mass of the first
 --   -D e=1.0           restitution
 local shape = param("shape", "sphere", { "sphere", "box" })
-local ratio = param("ratio", 1.0, { min = 1e-6, max = 1e6 })
-local e = param("e", 1.0, { min = 0, max = 1 })
+local ratio = param("ratio", 1.0, { min = 1e-6, max = 1e6, label = "ratio of masses" })
+local e = param("e", 1.0, { min = 0, max = 1, label = "restitution" })
 
 scene { title = "Head-on pair", duration = 2, gravity = { 0, 0, 0 }, sleeping = false }
 camera "main" { eye = { 1.1, -5.5, 1.6 }, target = { 1.1, 0, 0 }, fov = 40 }

@@ -1,7 +1,7 @@
 -- A car climbs over hills: a heightfield of a function. Its wheels hang on hinges with motors; balls lie about.
 --   -D cells=80      of the heightfield, along each side
 --   -D balls=24
-local cells = param("cells", 80, { whole = true, min = 10, max = 300 })
+local cells = param("cells", 80, { whole = true, min = 10, max = 300, label = "cells along a side" })
 local balls = param("balls", 24, { whole = true, min = 0, max = 42 })
 
 scene { title = "A car over hills", duration = 14 }

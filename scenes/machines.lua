@@ -1,7 +1,7 @@
 -- Driven machines, which move the same under any load: two belts, a lift, a turntable, a shaking table, a paddle.
-local speed = param("speed", 1.2, { min = 0, max = 5 }) -- m/s, of the belts
-local rate = param("rate", 2.2, { min = 0, max = 20 }) -- rad/s, of the turntable
-local shakes = param("shakes", 1.25, { min = .01, max = 20 }) -- times a second
+local speed = param("speed", 1.2, { min = 0, max = 5, label = "speed of the belts", unit = "m/s" })
+local rate = param("rate", 2.2, { min = 0, max = 20, label = "speed of the turntable", unit = "rad/s" })
+local shakes = param("shakes", 1.25, { min = .01, max = 20, label = "shakes", unit = "Hz" })
 
 scene { title = "Machines", duration = 8 }
 material "machine" { friction = .6, colour = "#59636e" }

@@ -1,8 +1,8 @@
 -- Pile: boxes of half a metre, in a loose cubic grid and slightly turned, drop half a metre and pile up.
 --   -D n=6      boxes along each edge of the grid; n^3 boxes
 --   -D e=0.0    restitution
-local n = param("n", 6, { whole = true, min = 1, max = 40 })
-local e = param("e", 0.0, { min = 0, max = 1 })
+local n = param("n", 6, { whole = true, min = 1, max = 40, label = "boxes along an edge" })
+local e = param("e", 0.0, { min = 0, max = 1, label = "restitution" })
 
 scene { title = "Pile of " .. n * n * n .. " boxes", duration = 10 }
 material "box" { friction = .5, restitution = e, density = 1000 }

@@ -1,7 +1,7 @@
 -- Shapes: all kinds of objects in a scene. Spheres, boxes, capsules and cylinders rain on a ramp before a slope. Some
 -- are born while others already lie, and the gate at the foot of the ramp is taken away after three seconds.
 --   -D n=48    how many fall
-local n = param("n", 48, { whole = true, min = 0, max = 10000 })
+local n = param("n", 48, { whole = true, min = 0, max = 10000, label = "objects that fall" })
 
 scene { title = "Shapes", duration = 12, gravity = { 0, 0, -9.81 }, step = 1 / 60 }
 

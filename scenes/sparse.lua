@@ -2,8 +2,8 @@
 -- anything: a simulator that computes only what happens has little to do.
 --   -D n=200         how many boxes
 --   -D spacing=4.0   m
-local n = param("n", 200, { whole = true, min = 1, max = 999999 })
-local spacing = param("spacing", 4.0, { min = 2, max = 100 })
+local n = param("n", 200, { whole = true, min = 1, max = 999999, label = "boxes" })
+local spacing = param("spacing", 4.0, { min = 2, max = 100, unit = "m" })
 
 scene { title = "Sparse field", duration = 10 }
 material "rubber" { friction = .5, restitution = .8, density = 1000 }

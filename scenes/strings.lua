@@ -2,8 +2,8 @@
 -- are simulators; a string is a light rod, held by a ball joint at the rail and by one in the middle of its ball.
 --   -D lifted=2      balls, 1 to 4
 --   -D degrees=40    by which they are lifted
-local lifted = param("lifted", 2, { whole = true, min = 1, max = 4 })
-local degrees = param("degrees", 40.0, { min = 1, max = 80, unit = "°" })
+local lifted = param("lifted", 2, { whole = true, min = 1, max = 4, label = "lifted balls" })
+local degrees = param("degrees", 40.0, { min = 1, max = 80, label = "angle", unit = "°" })
 
 scene { title = "Newton's cradle on strings", duration = 10 }
 sky { top = "#6d8fb5", horizon = "#f2ede4" }

@@ -1,7 +1,7 @@
 -- Thin wall: a small box is shot at a fixed wall of two centimetres, without gravity. It must not come through.
 --   -D speed=100.0    m/s
 --   --seed 1          another aim: place of the hit, attitude, spin
-local speed = param("speed", 100.0, { min = .01, max = 100000 })
+local speed = param("speed", 100.0, { min = .01, max = 100000, unit = "m/s" })
 
 scene { title = "Thin wall", duration = 1, gravity = { 0, 0, 0 } }
 camera "main" { eye = { -6, -7, 2.6 }, target = { -.8, 0, 0 }, fov = 40 }

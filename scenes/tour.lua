@@ -2,8 +2,8 @@
 -- obsim serve tour; with --sync free nobody waits for the slow one; mpirun -n 2 obsim serve tour: two ranks.
 --   -D n=60       how many boxes
 --   -D slow=1     the first one's simulator computes for some milliseconds in each step
-local n = param("n", 60, { whole = true, min = 1, max = 1000 })
-local slow = param("slow", 0, { whole = true, min = 0, max = 1 })
+local n = param("n", 60, { whole = true, min = 1, max = 1000, label = "boxes" })
+local slow = param("slow", 0, { whole = true, min = 0, max = 1, label = "slow simulators" })
 
 scene { title = "A tour of obsim", duration = 3600, tour = true }
 ground {}

@@ -1,10 +1,10 @@
 -- A round tower of loose stones that three shots knock down, while its simulators are killed: the tower falls the same way,
 -- to the bit. obsim run tower --isolation process --fault kill:p=.002 --colour-by worker --video tower.mp4
--- With obsim serve tower --isolation process, pick a stone and kill its worker.
+-- With obsim serve tower, pick a stone and kill its worker.
 --   -D rows=16        of stones
---   -D speed=16       m/s, of the ball
-local rows = param("rows", 16, { whole = true, min = 1, max = 60 })
-local speed = param("speed", 24.0, { min = 1, max = 60 })
+--   -D speed=24       m/s, of a shot
+local rows = param("rows", 16, { whole = true, min = 1, max = 60, label = "rows of stones" })
+local speed = param("speed", 24.0, { min = 1, max = 60, label = "speed of a shot", unit = "m/s" })
 local around, radius, height = 14, 1.7, .3
 
 scene { title = "A tower falls", duration = 6, tolerance = .01 }

@@ -2,8 +2,8 @@
 -- a pallet. Scripts create the goods, watch the belt, and take them away in the end.
 --   -D every=1.1      s, between two arrivals
 --   -D speed=1.1      m/s, of the belts
-local every = param("every", 1.1, { min = .3, max = 60 })
-local speed = param("speed", 1.1, { min = .1, max = 4 })
+local every = param("every", 1.1, { min = .3, max = 60, label = "time between arrivals", unit = "s" })
+local speed = param("speed", 1.1, { min = .1, max = 4, label = "speed of the belts", unit = "m/s" })
 
 scene { title = "A warehouse", duration = 40, room = 200 }
 ground { colour = "#8e9296", pattern = "slabs" }

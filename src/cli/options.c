@@ -401,6 +401,7 @@ static const struct {
 } own_help[] = {
 	{ OB_OPTION_PATIENCE, EXPORT, "seconds that the page may take to make (10)" },
 	{ OB_OPTION_PACE, SERVE, "simulated seconds a second of the clock (realtime)" },
+	{ OB_OPTION_ISOLATION, SERVE, "what a worker is (process)" },
 	{ OB_OPTION_ON_DEATH, SERVE, "what a death or failure does: restart, freeze, end, or keep what can be (keep)" },
 	{ OB_OPTION_CHECKPOINT, SERVE, "where operators save what the run needs to go on" },
 	{ OB_OPTION_ROOM, CONTROL, "objects that the program may add (1000)" },

@@ -508,8 +508,9 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		.resume = resume,
 		.scene_options = { .defines = a->define, .define_count = a->defines },
 		.name = a->value[OB_OPTION_NAME],
-		.isolation =
-			isolation && strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD,
+		.isolation = isolation ? strcmp(isolation, "process") == 0 ? OB_ISOLATION_PROCESS : OB_ISOLATION_THREAD
+			     : a->command == OB_COMMAND_SERVE ? OB_ISOLATION_PROCESS // visitors kill simulators
+							      : OB_ISOLATION_THREAD,
 		.isolation_given = isolation != NULL,
 		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
 		.strict = a->value[OB_OPTION_STRICT] != NULL,
@@ -640,8 +641,6 @@ bool ob_request_check_frames(const ob_frames_request *f, const ob_scene *s, doub
 // Checks the resolved run against the request.
 static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
-	if (!r->isolation_given && s->tour) // it kills processes
-		r->isolation = OB_ISOLATION_PROCESS;
 	if (r->run.monolith && r->explain)
 		return ob_fail(e, "--explain means nothing to --arch monolith");
 	if (r->run.monolith && r->checkpoint)

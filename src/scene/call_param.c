@@ -1,4 +1,4 @@
-// param(name, default [, { min =, max =, whole =, unit = } or { choices }]): a value that the command line may replace
+// param(name, default [, { min =, max =, whole =, label =, unit = } or { choices }]): a value that the command line may replace
 // (-D name=value), by a number or an expression with a number as result (-D name=1/3).
 #include <math.h>
 #include <stdio.h>
@@ -16,13 +16,14 @@
 typedef struct limits {
 	double min, max; // NaN: none
 	bool whole; // a count: fractions are refused
-	const char *unit;
+	const char *label, *unit; // on the page
 } limits;
 
 static const ob_field limit_fields[] = {
 	OB_FIELD(limits, min, .name = "min", .kind = OB_FIELD_NUMBER, .low = -INFINITY, .high = INFINITY),
 	OB_FIELD(limits, max, .name = "max", .kind = OB_FIELD_NUMBER, .low = -INFINITY, .high = INFINITY),
 	OB_FIELD(limits, whole, .name = "whole", .kind = OB_FIELD_BOOLEAN),
+	OB_FIELD(limits, label, .name = "label", .kind = OB_FIELD_TEXT, .high = sizeof((ob_param_def *)0)->label - 1),
 	OB_FIELD(limits, unit, .name = "unit", .kind = OB_FIELD_TEXT, .high = sizeof((ob_param_def *)0)->unit - 1),
 };
 
@@ -136,6 +137,7 @@ static void offer(lua_State *L, ob_scene *s, const char *name, const limits *l)
 	}
 	s->param[i] = (ob_param_def){ .value = lua_tonumber(L, -1), .min = l->min, .max = l->max, .whole = l->whole };
 	snprintf(s->param[i].name, sizeof s->param[i].name, "%s", name);
+	snprintf(s->param[i].label, sizeof s->param[i].label, "%s", l->label ? l->label : "");
 	snprintf(s->param[i].unit, sizeof s->param[i].unit, "%s", l->unit ? l->unit : "");
 }
 

@@ -56,7 +56,7 @@ typedef struct ob_script_def {
 
 // Number of the scene within limits: viewers may set it, and start the scene anew.
 typedef struct ob_param_def {
-	char name[OB_NAME_MAX], unit[16];
+	char name[OB_NAME_MAX], label[OB_NAME_MAX], unit[16];
 	double value, min, max; // value: of this scene
 	bool whole;
 } ob_param_def;

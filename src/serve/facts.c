@@ -48,6 +48,7 @@ static void put_offers(ob_message *m, const ob_scene *s)
 		const ob_param_def *p = &s->param[i];
 		ob_message_print(m, "%s{\"name\":", i ? "," : "");
 		ob_message_put_json(m, p->name);
+		put_text(m, "label", p->label);
 		put_text(m, "unit", p->unit);
 		ob_message_print(m, ",\"value\":%.10g,\"min\":%.10g,\"max\":%.10g,\"whole\":%s}", p->value, p->min,
 				 p->max, p->whole ? "true" : "false");

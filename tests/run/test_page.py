@@ -1,10 +1,12 @@
 """The viewer's page as people see and use it: nothing clipped, nothing over anything else, text that can be read, all controls by
-keyboard, the first steps, and a death that is seen.
+keyboard, the first steps, and a death that is seen. With names of scenes: only whether their panels are clipped or overlap.
 
 If OBSIM_PICTURES names a directory, screenshots of all panels are kept there.
 """
 
 import os
+import sys
+import tempfile
 import unittest
 
 import browser
@@ -12,7 +14,8 @@ import program
 import server
 
 SIZES = (1280, 720), (390, 844), (1920, 1080)
-SCENES = sorted(name[:-4] for name in os.listdir(os.environ["SCENES"]) if name.endswith(".lua"))
+NAMED = sys.argv[1:]
+SCENES = NAMED or sorted(name[:-4] for name in os.listdir(os.environ["SCENES"]) if name.endswith(".lua"))
 PICTURES = os.environ.get("OBSIM_PICTURES")
 SEEN = "window.obsim && obsim.frames() > 1 && obsim.universe.objects.size > 0 && document.querySelector('#statistics').textContent"
 
@@ -20,7 +23,7 @@ SEEN = "window.obsim && obsim.frames() > 1 && obsim.universe.objects.size > 0 &&
 LEAVES = """
 const card = 'header, #strip, .panel, nav .group, #notice', own = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim());
 const name = (e) => `${e.localName}${e.id && '#' + e.id}${e.dataset.do ? ' ' + e.dataset.do : ''} "${e.textContent.trim().slice(0, 30)}"`;
-const scrolls = (e) => ['auto', 'scroll'].includes(getComputedStyle(e).overflowY);
+const scrolls = (e) => (({ display, overflowY }) => display !== 'contents' && ['auto', 'scroll'].includes(overflowY))(getComputedStyle(e));
 const shown = (e) => {
 	let { left, top, right, bottom } = e.getBoundingClientRect();
 	for (let p = e.parentElement; p; p = p.parentElement) {
@@ -31,8 +34,9 @@ const shown = (e) => {
 	}
 	return { left, top, right, bottom };
 };
-const visible = (e) => e.checkVisibility() && (({ left, top, right, bottom }) => right - left > 1 && bottom - top > 1)(shown(e));
-const all = [...document.querySelectorAll('#page *')].filter(visible), cards = all.filter((e) => e.matches(card));
+const parts = new Map([...document.querySelectorAll('#page *')].filter((e) => e.checkVisibility()).map((e) => [e, shown(e)]));
+const visible = (e) => (({ left, top, right, bottom }) => right - left > 1 && bottom - top > 1)(parts.get(e));
+const all = [...parts.keys()].filter(visible), cards = all.filter((e) => e.matches(card));
 const leaves = all.filter((e) => e.matches('button, select, input, svg, #strip i, #strip b') || own(e) && !e.closest('svg, select'));
 """
 
@@ -49,20 +53,32 @@ for (const e of leaves) {
 		if (room && (wide.left < room.left - 1 || wide.right > room.right + 1 || (!scrolls(p) && (wide.top < room.top - 1 || wide.bottom > room.bottom + 1))))
 			faults.push(`beyond its ${p.id || p.className || p.localName}: ${name(e)}`);
 	}
-	const seen = shown(e);
+	const seen = parts.get(e);
 	if (seen.left < 0 || seen.right > innerWidth + .5 || seen.top < 0 || seen.bottom > innerHeight + .5)
 		faults.push(`out of the window: ${name(e)}`);
 }
 const over = (list) => list.forEach((a, i) => list.slice(i + 1).forEach((b) => {
-	if (a.contains(b) || b.contains(a))
-		return;
-	const p = shown(a), q = shown(b);
-	if (Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 1)
+	const p = parts.get(a), q = parts.get(b);
+	if (Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 1 &&
+		!a.contains(b) && !b.contains(a))
 		faults.push(`${name(a)} over ${name(b)}`);
 }));
 over(cards);
 over(leaves);
-return faults;
+return [faults, leaves.filter((e) => e.closest('.panel')).length];
+"""
+
+# Opens one panel, or with help all.
+OPEN = """
+const [panel, picked] = arguments, { on } = obsim.panel, set = (what, value) => on[what] === value || obsim.panel.ask(what);
+for (const what of ['offers', 'simulators', 'objects', 'make', 'help'])
+	set(what, what === panel || panel === 'help');
+obsim.pick(panel === 'details' || panel === 'help' ? picked : null);
+if (panel === 'walk')
+	obsim.panel.ask('walk');
+else if (panel !== 'help')
+	obsim.walk.end();
+document.querySelector('#edit').open = true;
 """
 
 # Draws nothing: without a GPU pictures take most of the time, and these tests look at the page around them.
@@ -74,7 +90,7 @@ const parse = (text) => { const [r, g, b, a = 1] = text.match(/[\\d.]+/g).map(Nu
 const onto = (under, { rgb, a }) => under.map((u, k) => u + a * (rgb[k] - u));
 const light = (rgb) => rgb.map((x) => (x /= 255) <= .04045 ? x / 12.92 : ((x + .055) / 1.055) ** 2.4).reduce((s, x, k) => s + x * [.2126, .7152, .0722][k], 0);
 const faint = [];
-for (const e of leaves.filter((x) => (own(x) || x.matches('select, input')) && !x.matches(':disabled'))) {
+for (const e of leaves.filter((x) => (own(x) || x.matches('select, input:not([type=range])')) && !x.matches(':disabled'))) {
 	const grounds = [];
 	for (let p = e; p; p = p.parentElement)
 		if (p.id === 'page') break; else grounds.unshift(parse(getComputedStyle(p).backgroundColor));
@@ -89,6 +105,13 @@ for (const e of leaves.filter((x) => (own(x) || x.matches('select, input')) && !
 return faint;
 """
 
+# Elements that have text, or may have: those that can be read now, and all of the page as it is sent.
+KEY = "const key = (e) => `${e.closest('[id]').id} ${e.localName} ${e.dataset.do ?? e.name ?? ''}`;"
+MET = LEAVES + KEY + "return leaves.map(key)"
+EVERYTHING = KEY + """return fetch('/').then((answer) => answer.text()).then((text) =>
+	[...new DOMParser().parseFromString(text, 'text/html').querySelectorAll('#page *')]
+		.filter((e) => !e.matches('svg, div, dl, ol, option, #marks, #marks *') && !e.querySelector('*')).map(key))"""
+
 
 @unittest.skipUnless(browser.CHROMIUM and browser.DRIVER, "no Chromium with its driver")
 class Page(server.Case):
@@ -97,13 +120,17 @@ class Page(server.Case):
 		self.driver = browser.Driver()
 		self.addCleanup(self.driver.end)
 
-	def open(self, size=SIZES[0], **media):
-		"""A window with a page of just this size, and with preferences of its visitor."""
+	def window(self):
 		b = browser.Browser(self.driver)
 		self.addCleanup(b.close)
-		self.emulate(b, size, **media)
 		if not PICTURES:
 			b.devtools("Page.addScriptToEvaluateOnNewDocument", source=BLIND)
+		return b
+
+	def open(self, size=SIZES[0], b=None, **media):
+		"""A page of just this size, in a window of its own unless one is given, and with preferences of its visitor."""
+		b = b or self.window()
+		self.emulate(b, size, **media)
 		b.go(f"http://127.0.0.1:{self.port}/")
 		b.wait(SEEN)
 		return b
@@ -118,47 +145,87 @@ class Page(server.Case):
 
 	def test_panels(self):
 		"""All panels of all scenes, one by one and together, at three sizes: nothing is clipped or over anything else."""
+		b = self.window()
 		for scene in SCENES:
-			self.serve("--isolation", "process", "--workers", "3", scene=scene)
-			b = self.open()
+			self.serve("--workers", "3", scene=scene)
+			self.open(b=b)
 			b.wait("obsim.workers.list.length === 3")
 			picked = b.run("return [...obsim.universe.objects.values()].find((o) => !o.fixed)?.id ?? 0")
 			for size in SIZES:
 				self.emulate(b, size)
 				for panel in "walk", "offers", "simulators", "objects", "details", "make", "help":
-					b.run("""const [panel, picked] = arguments, { on } = obsim.panel, set = (what, value) => on[what] === value || obsim.panel.ask(what);
-						for (const what of ['offers', 'simulators', 'objects', 'make', 'help'])
-							set(what, what === panel || panel === 'help');
-						obsim.pick(panel === 'details' || panel === 'help' ? picked : null);
-						if (panel === 'walk')
-							obsim.panel.ask('walk');
-						else if (panel !== 'help')
-							obsim.walk.end();
-						document.querySelector('#edit').open = true;""", panel, picked)
+					b.run(OPEN, panel, picked)
 					if panel in ("details", "help"): # help: all at once
 						b.wait("!document.querySelector('#details').hidden && document.querySelector('#details dl').childElementCount > 0")
 					with self.subTest(scene=scene, size=size, panel=panel):
-						self.assertEqual(b.run(FAULTS), [])
+						faults, seen = b.run(FAULTS)
+						self.assertEqual(faults, [])
+						self.assertGreater(seen, 2 if panel != "offers" else -1) # a scene may offer nothing
 					self.keep(b, scene, *size, panel)
 			self.assertEqual(b.console(), [])
-			b.close()
+			b.go("about:blank") # a page whose server has ended tries again
 			self.end()
 
-	def test_reading(self):
-		"""Text has a contrast of 4.5 to 1 at least, in the dark and in the light scheme."""
-		self.serve("--isolation", "process", "--workers", "3", scene="plaza")
+	def test_opened(self):
+		"""A panel that is opened is in sight, whatever else is open."""
+		self.serve("--workers", "3", scene="plaza")
+		b = self.open()
+		b.run("for (const what of ['simulators', 'objects', 'make']) obsim.panel.ask(what); obsim.pick([...obsim.universe.objects.values()].find((o) => !o.fixed).id)")
+		b.wait("document.querySelector('#details dl').childElementCount > 4")
+		for size in SIZES:
+			self.emulate(b, size)
+			for what, panel in ("make", "#maker"), ("objects", "#objects"), ("help", "#help"), ("simulators", "#workers"):
+				b.run("document.querySelectorAll('#left, #right, #panels').forEach((e) => { e.scrollTop = 0; }); const panel = document.querySelector(arguments[1]); for (let i = panel.hidden ? 1 : 2; i--;) obsim.panel.ask(arguments[0])", what, panel)
+				top, nav = b.run("return [document.querySelector(arguments[0]).getBoundingClientRect().top, document.querySelector('nav').getBoundingClientRect().top]", panel)
+				self.assertTrue(0 < top < nav - 80, (size, what, top, nav))
+		self.end()
+
+	def test_colour(self):
+		"""The field of a picked object's colour shows it."""
+		self.serve("--workers", "2", "-D", "n=1", scene="falling_boxes")
+		b = self.open()
+		b.run("const box = [...obsim.universe.objects.values()].find((o) => !o.fixed); obsim.pick(box.id)")
+		b.wait("document.querySelector('#details dl').childElementCount > 4")
+		b.run("const field = document.querySelector('[name=colour]'); field.value = '#336699'; field.dispatchEvent(new Event('change', { bubbles: true })); field.value = '#000000'")
+		b.wait("document.querySelector('[name=colour]').value === '#336699'")
+		self.end()
+
+	def reads(self, b, met):
+		"""Reads the page in both schemes; met: elements that were read, as MET names them."""
 		for scheme in "dark", "light":
-			b = self.open(color_scheme=scheme)
-			b.wait("obsim.workers.list.length === 3")
-			b.run("for (const what of ['simulators', 'objects', 'make', 'help', 'boxes']) obsim.panel.ask(what); obsim.pick([...obsim.universe.objects.values()].find((o) => !o.fixed).id)")
-			b.wait("document.querySelector('#details dl').childElementCount > 4")
-			b.run("document.querySelector('#edit').open = true; obsim.panel.notice('a notice', 0); document.querySelector('#strip li').classList.add('died')")
 			for size in SIZES[1], (1280, 4000): # all panels are in sight
 				self.emulate(b, size, color_scheme=scheme)
 				self.assertEqual(b.run(CONTRAST), [])
-			self.keep(b, "scheme", scheme)
-			b.close()
-		self.end()
+				met.update((scheme, name) for name in b.run(MET))
+			self.keep(b, "scheme", scheme, len(met))
+
+	def test_reading(self):
+		"""Text has a contrast of 4.5 to 1 at least, in the dark and in the light scheme: all that the page can show."""
+		met = set()
+		with tempfile.TemporaryDirectory(prefix="obsim-page-") as scratch:
+			self.serve("--workers", "3", "--checkpoint", os.path.join(scratch, "checkpoint"), scene="plaza")
+			b = self.open()
+			b.wait("obsim.workers.list.length === 3")
+			b.run("for (const what of ['simulators', 'objects', 'make', 'help', 'boxes']) obsim.panel.ask(what); obsim.workers.choose('cost'); obsim.pick([...obsim.universe.objects.values()].find((o) => o.name.startsWith('person')).id)")
+			b.wait("document.querySelector('#details dl').childElementCount > 4")
+			b.run("document.querySelector('#edit').open = true; obsim.panel.notice('a notice', 0); obsim.workers.hear = () => {}; document.querySelector('#strip li').classList.add('died'); document.querySelector('#strip .rest').textContent = 'and 3 more'")
+			self.reads(b, met)
+			everything = b.run(EVERYTHING)
+			self.end()
+			self.serve("--sync", "free", "--isolation", "thread", "--workers", "2", scene="falling_boxes")
+			self.open(b=b)
+			b.run("obsim.panel.ask('simulators'); obsim.pick([...obsim.universe.objects.values()].find((o) => !o.fixed).id)")
+			b.wait("!document.querySelector('#times').hidden && document.querySelector('#details dl').childElementCount > 4")
+			self.reads(b, met)
+			self.end()
+			record = os.path.join(scratch, "record.h5")
+			program.report(program.scene("stack"), "--duration", "1", "--record", record)
+			self.run_ = program.start("serve", "--replay", record, "--listen", "127.0.0.1:0")
+			self.port = int(self.run_.stdout.readline().rstrip("/\n").rsplit(":", 1)[1])
+			self.open(b=b)
+			self.reads(b, met)
+			self.end()
+		self.assertEqual({(scheme, name) for name in everything for scheme in ("dark", "light")} - met, set(), "never read")
 
 	def test_keyboard(self):
 		"""Each control is reached by Tab, with a focus that is seen, and in sight."""
@@ -292,4 +359,4 @@ class Page(server.Case):
 
 
 if __name__ == "__main__":
-	unittest.main()
+	unittest.main(argv=sys.argv[:1], defaultTest="Page.test_panels" if NAMED else None)

@@ -366,7 +366,7 @@ box { name = "load", size = { .2, .2, .2 }, at = { 6, 0, 1.15 }, mass = 1 }
 		self.end(saying="was killed by SIGKILL")
 
 	AVATAR = """ground {}
-local n = param("n", 2, { whole = true, min = 1, max = 9, unit = "boxes" })
+local n = param("n", 2, { whole = true, min = 1, max = 9, label = "how many", unit = "boxes" })
 for i = 1, n do box { size = { 1, 1, 1 }, at = { 3 * i, 0, .5 }, density = 50 } end
 sphere { avatar = true, name = "guest", radius = .4, at = { 0, 0, .4 }, script = [[
 function on_message(_, what, x, y)
@@ -433,7 +433,7 @@ controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 		self.serve_file(self.write(self.AVATAR), "--listen", "127.0.0.1:0")
 		v, other = self.viewer(), self.viewer()
 		self.avatar(v)
-		self.assertEqual(v.told["welcome"]["params"], [{"name": "n", "unit": "boxes", "value": 2, "min": 1, "max": 9, "whole": True}])
+		self.assertEqual(v.told["welcome"]["params"], [{"name": "n", "label": "how many", "unit": "boxes", "value": 2, "min": 1, "max": 9, "whole": True}])
 		for n in 7, 3:
 			v.send(do="set", name="n", value=n)
 			other.until(lambda: other.told["welcome"]["params"][0]["value"] == n)

@@ -56,4 +56,6 @@ export function colourBy(key, o, s, workers) {
 }
 
 // A colour for the page, from linear RGB.
-export const cssColour = (c) => `rgb(${c.map((x) => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055))).join(' ')})`;
+const bytes = (c) => c.map((x) => Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055)));
+export const cssColour = (c) => `rgb(${bytes(c).join(' ')})`;
+export const hexColour = (c) => `#${bytes(c).map((x) => Math.max(0, Math.min(255, x)).toString(16).padStart(2, '0')).join('')}`;

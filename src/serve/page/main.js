@@ -465,7 +465,8 @@ setInterval(() => {
 universe.addEventListener('details', (e) => {
 	if (e.detail.id !== picked)
 		return;
-	panel.details(e.detail);
+	const { island, gone } = e.detail, others = [...universe.simulators.values()].filter((s) => s.island === island);
+	panel.details({ ...e.detail, together: Math.max(1, others.length), colour: gone ? undefined : universe.objects.get(picked)?.colour });
 	if (e.detail.p) {
 		explore.add('height', e.detail.p[2]);
 		explore.add('speed', Math.hypot(...e.detail.v));

@@ -43,7 +43,9 @@ export class Offers extends EventTarget {
 	}
 
 	param(p) {
-		return this.range(p, 'change', (value) => this.dispatchEvent(new CustomEvent('set', { detail: { name: p.name, value } })));
+		const label = this.range({ ...p, name: p.label || p.name }, 'change', (value) => this.dispatchEvent(new CustomEvent('set', { detail: { name: p.name, value } })));
+		label.title = `Starts the scene anew, as -D ${p.name}= does`;
+		return label;
 	}
 
 	// The seed as a number, and a button that chooses another one.

@@ -1,4 +1,5 @@
 // Controls around the picture: the clock, the tools, and details of the picked object. Independent of drawing.
+import { hexColour } from './colouring.js';
 import { $, count, kept, onHold } from './page.js';
 import { makeShape } from './shapes.js';
 
@@ -28,6 +29,13 @@ const show = (selector, property, value) => {
 	const e = $(selector);
 	if (e[property] !== value)
 		e[property] = value;
+};
+// Hides a panel, or shows it where its column shows it, too.
+const unfold = (panel, on) => {
+	const shows = on && panel.hidden;
+	panel.hidden = !on;
+	if (shows)
+		panel.scrollIntoView({ block: 'nearest' });
 };
 const vector = (v, between = ', ') => v.map((x) => number(x)).join(between);
 
@@ -102,7 +110,7 @@ export class Panel extends EventTarget {
 			this.on[what] = !this.on[what];
 			$(`[aria-pressed][data-do=${what}]`).setAttribute('aria-pressed', this.on[what]);
 			if (what in PANELS)
-				$(PANELS[what]).hidden = !this.on[what];
+				unfold($(PANELS[what]), this.on[what]);
 			$('#picture').classList.toggle('making', this.on.make);
 			const { make, help, ...lasting } = this.on;
 			kept('panels', lasting);
@@ -131,11 +139,10 @@ export class Panel extends EventTarget {
 
 	// Fills in the fields to edit, but for one that is being written.
 	fillEdit(d) {
-		const fields = $('#edit').querySelectorAll('input');
-		$('#edit').hidden = d.gone || !(d.mass > 0) || !this.operates;
-		for (const field of fields) {
-			if (field !== document.activeElement && field.name !== 'colour')
-				field.value = d.gone ? '' : vector(EDITS[field.name].of(d), '  ');
+		const hidden = $('#edit').hidden = !(d.mass > 0) || !this.operates;
+		for (const field of hidden ? [] : $('#edit').querySelectorAll('input')) {
+			if (field !== document.activeElement)
+				field.value = field.name === 'colour' ? hexColour(d.colour) : vector(EDITS[field.name].of(d), ' ');
 		}
 	}
 
@@ -235,16 +242,17 @@ export class Panel extends EventTarget {
 
 	// null: none is picked
 	details(d) {
-		$('#details').hidden = !d;
-		if (!d)
+		if (!d) {
+			$('#details').hidden = true;
 			return;
+		}
 		$('#details h2').textContent = d.gone ? `object ${d.id} no longer exists` : d.name || `object ${d.id}`;
 		const facts = d.gone ? [] : [['number', d.id], ['state', d.state]];
 		if (!d.gone && d.mass > 0)
 			facts.push(['mass', `${number(d.mass, 4)} kg`], ['friction', number(d.friction)], ['restitution', number(d.restitution)],
 				['position', `${vector(d.p)} m`], ['velocity', `${vector(d.v)} m/s`], ['rotation', `${vector(d.w)} rad/s`]);
-		if (!d.gone && d.mass > 0 && d.island !== undefined)
-			facts.push(...(this.free ? [] : [['island', `of object ${d.island}`], ['substeps', d.substeps || 'none: it rests']]));
+		if (d.mass > 0 && d.island !== undefined && !this.free)
+			facts.push(['island', count(d.together, 'object')], ['substeps', d.substeps || 'none: it rests']);
 		if (d.script)
 			facts.push(['script', d.script]);
 		if (d.home !== undefined)
@@ -267,6 +275,7 @@ export class Panel extends EventTarget {
 			dd.textContent = value;
 			return [dt, dd];
 		}));
+		unfold($('#details'), true);
 	}
 
 	// Offers to kill the process that simulates the picked object, with the names of all objects in it.

@@ -38,7 +38,7 @@ export class Workers extends EventTarget {
 	// kills: a visitor may kill processes.
 	welcome({ workers, isolation, arch }, kills) {
 		Object.assign(this, { workers, isolation, kills, world: arch === 'monolith' });
-		$('#strip p').textContent = `${isolation === 'process' ? 'Process' : 'Thread'}, CPU, simulators`;
+		$('#strip p span').textContent = isolation === 'process' ? 'Process' : 'Thread';
 	}
 
 	// A recording holds where simulators ran only if it is a viewer's own.
