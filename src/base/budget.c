@@ -3,7 +3,8 @@
 #include <inttypes.h>
 #include <malloc.h>
 
-static _Thread_local uint64_t held_before = UINT64_MAX; // bytes, as the thread began to read
+static _Thread_local uint32_t depth; // files that the thread reads, one within the other
+static _Thread_local uint64_t held_before = UINT64_MAX; // bytes, as it began with the first
 
 static uint64_t held_now(void)
 {
@@ -13,12 +14,14 @@ static uint64_t held_now(void)
 
 void ob_budget_begin(void)
 {
-	held_before = held_now();
+	if (depth++ == 0)
+		held_before = held_now();
 }
 
 void ob_budget_end(void)
 {
-	held_before = UINT64_MAX;
+	if (--depth == 0)
+		held_before = UINT64_MAX;
 }
 
 bool ob_budget_allows(uint64_t bytes, ob_error *e)

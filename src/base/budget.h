@@ -23,7 +23,8 @@
 #define OB_BUDGET_SECONDS 10
 #endif
 
-// Begins to read a file, or a text that stands for one, with all that it names; ends.
+// Begins to read a file, or a text that stands for one, with all that it names; ends. A file within another, as a checkpoint's
+// scene, shares its budget.
 void ob_budget_begin(void);
 void ob_budget_end(void);
 // True if so many bytes more fit; else e: "it needs more than 768 MiB of memory". A sanitizer's allocator counts nothing.

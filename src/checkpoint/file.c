@@ -101,15 +101,23 @@ static void area_checksums(const ob_checkpoint_file *f, const start *s, uint64_t
 
 // ---- memory
 
-static bool make_room(ob_checkpoint_file *f, size_t size, ob_error *e)
+// Makes room for so many bytes, and spare ones for larger files to come.
+static bool make_room(ob_checkpoint_file *f, size_t size, size_t spare, ob_error *e)
 {
 	if (f->room < size) {
 		free(f->bytes);
-		f->bytes = aligned_alloc(BORDER, (size + size / 4 + BORDER - 1) / BORDER * BORDER);
-		f->room = f->bytes ? size + size / 4 : 0;
+		f->bytes = aligned_alloc(BORDER, (size + spare + BORDER - 1) / BORDER * BORDER);
+		f->room = f->bytes ? size + spare : 0;
 	}
 	f->size = f->bytes ? size : 0;
 	return f->bytes || ob_fail(e, "no memory for a checkpoint of %zu bytes", size);
+}
+
+// Makes room for a file that is read, and comes from anybody.
+static bool make_room_to_read(ob_checkpoint_file *f, size_t size, const char *name, ob_error *e)
+{
+	ob_error why;
+	return (ob_budget_allows(size, &why) || ob_fail(e, "%s: %s", name, why.text)) && make_room(f, size, 0, e);
 }
 
 static uint64_t next_border(uint64_t at)
@@ -137,7 +145,7 @@ bool ob_checkpoint_plan(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, u
 	if (at > OB_CHECKPOINT_BYTES_MAX)
 		return ob_fail(e, "a checkpoint of %" PRIu64 " MiB: %" PRIu64 " MiB at most can be kept", at >> 20,
 			       OB_CHECKPOINT_BYTES_MAX >> 20);
-	if (!make_room(f, at, e))
+	if (!make_room(f, at, at / 4, e))
 		return false;
 	memcpy(s.h.magic, magic, sizeof magic);
 	snprintf(s.h.program, sizeof s.h.program, "%s", program);
@@ -325,7 +333,7 @@ bool ob_checkpoint_parse(ob_checkpoint_file *f, const ob_checkpoint_rule *rule, 
 {
 	start s = { 0 };
 	memcpy(&s, bytes, size < start_bytes(areas) ? size : start_bytes(areas));
-	if (!check_start(&s, size, rule, areas, name, e) || !make_room(f, size, e))
+	if (!check_start(&s, size, rule, areas, name, e) || !make_room_to_read(f, size, name, e))
 		return false;
 	memcpy(f->bytes, bytes, size);
 	return check_areas(f, &s, rule, name, e);
@@ -344,7 +352,7 @@ static bool read_open(ob_checkpoint_file *f, int fd, size_t size, const ob_check
 	const size_t first = size < start_bytes(areas) ? size : start_bytes(areas);
 	if (!ob_file_read(fd, &s, first, &why))
 		return fail_read(path, &why, e);
-	if (!check_start(&s, size, rule, areas, path, e) || !make_room(f, size, e))
+	if (!check_start(&s, size, rule, areas, path, e) || !make_room_to_read(f, size, path, e))
 		return false;
 	memcpy(f->bytes, &s, first);
 	if (!ob_file_read(fd, f->bytes + first, size - first, &why))

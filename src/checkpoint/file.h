@@ -22,8 +22,10 @@
 
 #include <ob/error.h>
 
-// Limit for writing and reading: a file is read into memory as a whole.
-#define OB_CHECKPOINT_BYTES_MAX ((uint64_t)960 << 20)
+#include "base/budget.h"
+
+// Limit for writing and reading: a file is read into memory as a whole, within the budget of files, with room for its scene.
+#define OB_CHECKPOINT_BYTES_MAX (OB_BUDGET_BYTES - ((uint64_t)128 << 20))
 
 // A change of an area's contents needs a new version.
 enum { OB_CHECKPOINT_VERSION = 17, OB_CHECKPOINT_AREAS_MAX = 32 };

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/budget.h"
 #include "base/utf8.h"
 
 typedef enum saved_area {
@@ -272,6 +273,16 @@ bool ob_saved_run_parse(ob_saved_run *r, ob_checkpoint_file *f, const void *byte
 			ob_error *e)
 {
 	return ob_checkpoint_parse(f, rules, AREAS, bytes, size, name, e) && open_parts(r, f, name, e);
+}
+
+ob_scene *ob_saved_run_open_with_scene(ob_saved_run *r, ob_checkpoint_file *f, const char *path, ob_error *e)
+{
+	ob_budget_begin();
+	ob_scene *s = ob_saved_run_open(r, f, path, e)
+			      ? ob_scene_load_text(r->scene, r->text, r->text_size, &r->options, e)
+			      : NULL;
+	ob_budget_end();
+	return s;
 }
 
 void ob_saved_run_close(ob_saved_run *r, ob_checkpoint_file *f)

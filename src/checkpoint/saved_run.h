@@ -50,6 +50,9 @@ bool ob_saved_run_open(ob_saved_run *r, ob_checkpoint_file *f, const char *path,
 // Same for bytes in memory; name is for messages.
 bool ob_saved_run_parse(ob_saved_run *r, ob_checkpoint_file *f, const void *bytes, size_t size, const char *name,
 			ob_error *e);
+// Opens a file, and reads its scene, within one budget of memory (base/budget.h). NULL and e on failure; r and f are to be closed
+// even then.
+ob_scene *ob_saved_run_open_with_scene(ob_saved_run *r, ob_checkpoint_file *f, const char *path, ob_error *e);
 void ob_saved_run_close(ob_saved_run *r, ob_checkpoint_file *f);
 
 #endif

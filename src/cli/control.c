@@ -43,9 +43,7 @@ static bool load(led_run *r, ob_error *e)
 		r->scene = ob_scene_load(q->scene, &q->scene_options, e);
 		return r->scene && ob_request_resolve(q, r->scene, e);
 	}
-	if (!ob_saved_run_open(&r->saved, &r->saved_file, q->resume, e))
-		return false;
-	r->scene = ob_scene_load_text(r->saved.scene, r->saved.text, r->saved.text_size, &r->saved.options, e);
+	r->scene = ob_saved_run_open_with_scene(&r->saved, &r->saved_file, q->resume, e);
 	return r->scene && ob_request_resume(q, &r->saved, r->scene, e);
 }
 

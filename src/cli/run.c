@@ -528,9 +528,7 @@ static ob_scene *read_scene(run *r, const ob_arguments *a, ob_error *e)
 		return r->scene && ob_request_resolve(q, r->scene, e) ? r->scene : NULL;
 	}
 	ob_saved_run *saved = &r->saved;
-	if (!ob_saved_run_open(saved, &r->saved_file, q->resume, e))
-		return NULL;
-	r->scene = ob_scene_load_text(saved->scene, saved->text, saved->text_size, &saved->options, e);
+	r->scene = ob_saved_run_open_with_scene(saved, &r->saved_file, q->resume, e);
 	if (!r->scene || !ob_request_resume(q, saved, r->scene, e))
 		return NULL;
 	if (strcmp(r->saved_file.program, ob_version_words) != 0)

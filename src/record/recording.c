@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/budget.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/utf8.h"
@@ -28,10 +29,10 @@ enum {
 	EVERY_MAX = 1 << 30
 };
 enum { BYTES_AT_ONCE = 1 << 18 };
-// Limits of the first reading, whatever the size of the file: seconds of CPU for each of its advances, the first of
-// which opens the record, and bytes of memory. An advance ends with the first state after PAUSE seconds of CPU. The
+// Limits of the first reading, whatever the size of the file: the budget's bytes of memory, and half of its seconds of CPU for
+// each of the advances, the first of which opens the record; the other half is for the second reading. An advance ends with the first state after PAUSE seconds of CPU. The
 // limit of wall time is WALL_PER_CPU times as long. A healthy record takes about 2 s of CPU for each 2^30 bytes.
-enum { SECONDS = 5, PAUSE = 2, WALL_PER_CPU = 30, MEMORY = 768 << 20 };
+enum { SECONDS = OB_BUDGET_SECONDS / 2, PAUSE = 2, WALL_PER_CPU = 30 };
 static const double number_max = 1e15; // largest of any number in SI units
 
 // A dataset of compounds, read in blocks.
@@ -623,7 +624,7 @@ static void limit_child(int fd)
 {
 	const int last = dup(fd);
 	close(last);
-	const rlim_t memory = address_space() + MEMORY;
+	const rlim_t memory = address_space() + OB_BUDGET_BYTES;
 	setrlimit(RLIMIT_AS, &(struct rlimit){ memory, memory });
 	setrlimit(RLIMIT_CORE, &(struct rlimit){ 0, 0 });
 	setrlimit(RLIMIT_FSIZE, &(struct rlimit){ 0, 0 });
