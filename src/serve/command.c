@@ -209,6 +209,7 @@ static signed char take(struct lejp_ctx *c, char reason)
 	reading *r = c->user;
 	switch (reason) {
 	case LEJPCB_PAIR_NAME:
+		c->ipos = 0; // libwebsockets 4.1 counts lists that have ended, and takes five at most
 		return r->depth == 1 ? begin_field(r, c->path) : fail(r, "nothing lies deeper in a command", NULL);
 	case LEJPCB_OBJECT_START:
 	case LEJPCB_ARRAY_START:
