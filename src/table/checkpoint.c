@@ -255,6 +255,7 @@ void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u)
 	put_motions_back(c, u);
 	put_passports_back(c, u);
 	put_control_back(&c->control, u->control);
+	__atomic_store_n(&u->control->ids, c->ids, __ATOMIC_RELEASE); // bounds of work and of neighbours follow it
 	u->control->lives++;
 	reset_gate(u);
 	for (uint32_t w = 0; w < u->header.sizes.workers; w++) {

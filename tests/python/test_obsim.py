@@ -577,6 +577,28 @@ hinge { "pole", "cart", name = "foot", at = { 0, 0, 1.05 }, axis = { 0, 1, 0 } }
             self.says('joint 1 (foot) has no motor', lambda: setattr(u.joints['foot'], 'target', 1))
             self.says('must be a number', lambda: setattr(u.joints['rail'], 'target', numpy.nan))
 
+    def test_restore_forgets(self):
+        """What was created since is gone without a trace: near many triangles flights follow the number of objects."""
+        scene = """
+            heightfield { size = { 20, 20 }, cells = { 40, 40 }, height = function(x, y) return .2 * math.sin(x * y) end }
+            for i = 1, 10 do
+                box { size = { .4, .3, .2 }, at = { i - 6, 0, 3 }, velocity = { 2, i - 2, 2 }, spin = { 1, 2, 3 }, restitution = .9 }
+            end"""
+        with tempfile.NamedTemporaryFile('w', suffix='.lua') as f:
+            f.write(scene)
+            f.flush()
+            with obsim.run(f.name, options={'workers': 1}) as u:
+                start = u.snapshot()
+                u.step(300)
+                expected = u.states()
+                u.restore(start)
+                u.create('for i = 1, 200 do sphere { radius = .04, at = { 6, .1 * i, 9 } } end')
+                u.step(20)
+                u.restore(start)
+                u.step(300)
+                for name, values in u.states().items():
+                    numpy.testing.assert_array_equal(values, expected[name])
+
     def test_joints_come_and_go(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
