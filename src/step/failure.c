@@ -4,6 +4,7 @@
 
 #include "base/allocate.h"
 #include "step/crowd.h"
+#include "step/islands.h"
 #include "step/sim.h"
 #include "table/free.h"
 
@@ -157,6 +158,12 @@ const char *ob_sim_failure(const ob_universe *u)
 	case OB_STEP_OVERWORKED:
 		describe_work(u, object, step, text, sizeof text);
 		return text;
+	case OB_STEP_SURFACES_FULL:
+		snprintf(text, sizeof text,
+			 "%s is near more surfaces of terrain than a step takes, %u and %u more for each body that it "
+			 "touches; make it smaller or slower, take a mesh of fewer triangles, or try a smaller --step",
+			 name_of(u, object), OB_SURFACES_OF_AN_ISLAND, OB_SURFACES_OF_A_BODY);
+		return text;
 	case OB_STEP_BROKEN:
 		snprintf(text, sizeof text, "what simulators share is wrong when %llu steps are complete: %.*s",
 			 step - 1, (int)sizeof data->count->blamed_for - 1, data->count->blamed_for);
@@ -188,7 +195,8 @@ bool ob_sim_failed_alone(const ob_universe *u, uint32_t *object)
 	const ob_step_failure why = ob_step_failed(u, object);
 	if (is_crowded(why))
 		ob_crowd(u, object, 1);
-	return is_crowded(why) || why == OB_STEP_OVERWORKED || why == OB_STEP_DIVERGED || why == OB_STEP_ENGINE;
+	return is_crowded(why) || why == OB_STEP_OVERWORKED || why == OB_STEP_SURFACES_FULL ||
+	       why == OB_STEP_DIVERGED || why == OB_STEP_ENGINE;
 }
 
 bool ob_sim_damaged(const ob_universe *u)

@@ -15,6 +15,8 @@
 #include "step/state.h"
 
 enum { OB_ISLANDS_ABREAST = OB_COURSES };
+// Regions of terrain near an island, at most: the first, and the second for each member.
+enum { OB_SURFACES_OF_AN_ISLAND = 8192, OB_SURFACES_OF_A_BODY = 64 };
 
 // Advances, side by side, those of n islands (up to OB_ISLANDS_ABREAST) from `first` on that have one body in ballistic
 // flight through the coming step, and stages their motions. flown: [n], true: it is done.

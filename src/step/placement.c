@@ -288,7 +288,8 @@ uint32_t ob_sim_failed_objects(const ob_universe *u, uint32_t object, uint32_t *
 	if (why == OB_STEP_PAIRS_FULL || why == OB_STEP_NEIGHBOURS_FULL)
 		return ob_crowd(u, ids, most);
 	const uint32_t place = data->result_island[object];
-	const bool solved = ob_gate_phase(u) == OB_PHASE_ISLANDS || why == OB_STEP_OVERWORKED;
+	const bool solved =
+		ob_gate_phase(u) == OB_PHASE_ISLANDS || why == OB_STEP_OVERWORKED || why == OB_STEP_SURFACES_FULL;
 	const ob_island *is = solved && place < data->objects_max ? &data->island[place] : NULL;
 	if (!is || is->members > data->objects_max || is->first_member > data->objects_max - is->members) {
 		ids[0] = object;

@@ -268,6 +268,7 @@ typedef enum ob_step_failure {
 	OB_STEP_DIVERGED, // a state became NaN, or implausibly large
 	OB_STEP_ENGINE, // the solver gave up
 	OB_STEP_OVERWORKED, // the step's budget of work is spent
+	OB_STEP_SURFACES_FULL, // an island is near too many regions of terrain
 	OB_STEP_LEFT, // the run was stopped meanwhile
 	OB_STEP_MEMORY_FULL, // the memory file system has no more pages
 	OB_STEP_UNPLANNED, // the schedule that a free run replays does not fit it

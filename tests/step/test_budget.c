@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/random.h"
 #include "check.h"
 #include "little_universe.h"
 #include "solver/narrowphase.h"
@@ -230,6 +231,46 @@ static void test_searches(void)
 	free(scene);
 }
 
+// A box that lies on this many triangles of a skin, all equal or apart by a hair.
+static little_scene *on_triangles(uint32_t n, double hair)
+{
+	const uint32_t cells[2] = { 8, 8 };
+	ob_vec3 *vertex = malloc(3 * n * sizeof *vertex);
+	uint32_t(*corner)[3] = malloc(n * sizeof *corner);
+	uint64_t seed = 5;
+	ob_error e;
+	for (uint32_t i = 0; i < 3 * n; i++) {
+		static const ob_vec3 at[] = { { -5, -5, 0 }, { 5, -5, 0 }, { 0, 5, 0 } };
+		vertex[i] = ob_madd(at[i % 3], hair, ob_splitmix_vector(&seed, 1));
+		corner[i / 3][i % 3] = i;
+	}
+	little_scene *s = little_scene_new();
+	snprintf(ob_world_box(&s->world, 500, ob_v3(.2, .2, .2), ob_v3(0, 0, .2)).passport->name, OB_NAME_MAX, "crate");
+	ob_world_terrain(&s->world, ob_terrain_build(vertex, 3 * n, (const uint32_t(*)[3])corner, n, cells, false, &e),
+			 ob_v3(0, 0, 0));
+	free(vertex);
+	free(corner);
+	return s;
+}
+
+static void test_surfaces(void)
+{
+	static const double hair[] = { 0, 1e-4 };
+	for (int i = 0; i < 2; i++) {
+		little_scene *few = on_triangles(1000, hair[i]), *many = on_triangles(20000, hair[i]);
+		little_universe l;
+		little_open(&l, few);
+		little_run(&l, 3);
+		CHECK_NEAR(little_state(&l, 0).pose.p.z, .2, 1e-3);
+		little_close(&l);
+		little_open(&l, many);
+		expect_failure(&l, OB_STEP_SURFACES_FULL, 0, "object 0 (crate) is near more surfaces of terrain");
+		little_close(&l);
+		free(few->world.terrains), free(many->world.terrains);
+		free(few), free(many);
+	}
+}
+
 static void test_diverged(void)
 {
 	little_scene *s = little_scene_new();
@@ -269,6 +310,7 @@ int main(void)
 	test_collision_tests();
 	test_terrain();
 	test_searches();
+	test_surfaces();
 	test_diverged();
 	test_engine();
 	return check_end();
