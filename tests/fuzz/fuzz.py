@@ -4,7 +4,8 @@
     fuzz.py OBSIM KIND ... [--count N | --hours H] [--seed S] [--keep DIR]
 
 KIND is one of: scenes (generated, edge values in all fields), lua (mutants of the shipped scenes), words (command
-lines), checkpoints (mutants of a run's own), recordings (the same), records (mutants of the results of compare). Each
+lines), checkpoints (mutants of a run's own), recordings (the same), records (mutants of the results of compare), schedules (of
+free runs, most with true checksums). Each
 case is a process of its own. With any input, it must end by itself with 0, 1 or 2, and report errors in lines that
 begin "obsim: ". It must leave no universe behind, send no control character to a terminal, and compute no longer than
 its CPU time allows. Failing cases are stored in DIR (fuzz-kept) with a command that repeats them, and the exit code is
@@ -557,7 +558,78 @@ class Records(Files):
 		return ["compare", os.path.join(SCENES, "stack.lua"), "--duration", ".02", "--repeats", "1", "--out", out]
 
 
-KINDS = {"scenes": Scenes, "lua": Lua, "words": Words, "checkpoints": Checkpoints, "recordings": Recordings, "records": Records}
+def fnv(data):
+	"""The checksum of schedules (base/hash.h)."""
+	result = 0xcbf29ce484222325
+	for byte in data:
+		result = (result ^ byte) * 0x100000001b3 & (1 << 64) - 1
+	return result
+
+
+class Schedules(Files):
+	"""Mutants of schedules of free runs, most with the right checksums (free/schedule.c)."""
+
+	SCENES = ["stack", "cradle", "falling_boxes"]
+	STEP = struct.Struct("<IIQQdIIII") # mark, numbers after it, checksum, version, end, object, reads, neighbours + 1, anew
+
+	def known(self, obsim):
+		for scene in self.SCENES:
+			with tempfile.TemporaryDirectory() as folder:
+				words = ["run", os.path.join(SCENES, scene + ".lua"), "--duration", ".05"]
+				path = os.path.join(folder, "file")
+				subprocess.run([obsim, *words, "--sync", "free", "--record-schedule", path], stdout=subprocess.DEVNULL, check=True)
+				with open(path, "rb") as f:
+					data = f.read()
+				first, steps = data.index(b"step"), []
+				at = first
+				while at < len(data):
+					size = self.STEP.size + 4 * struct.unpack_from("<I", data, at + 4)[0]
+					steps.append(data[at:at + size])
+					at += size
+				self.seeds.append((words, data[:first], steps))
+
+	def sealed(self, step):
+		"""The step with the number of its words and its checksum."""
+		step = bytearray(step)
+		struct.pack_into("<I", step, 4, (len(step) - self.STEP.size) // 4)
+		struct.pack_into("<Q", step, 8, fnv(step[16:]))
+		return bytes(step)
+
+	def change(self, steps):
+		"""Changes numbers of a step, or leaves it out, repeats it, moves it, or adds numbers to it."""
+		r, i = self.r, self.r.randrange(len(steps) - 1)
+		step = steps.pop(i)
+		kind = r.randrange(8)
+		if kind < 4:
+			step = self.sealed(self.renumbered(step, [(16, 48)] + [(48, len(step))] * (len(step) > 48)))
+		elif kind == 4:
+			return
+		elif kind == 5:
+			steps.insert(i, step)
+		elif kind == 6:
+			i = r.randrange(len(steps))
+		else:
+			step = self.sealed(step + r.choice(self.NUMBERS) * r.choice((1, 2, 100)))
+		steps.insert(i, step)
+
+	def mutant(self):
+		self.words, head, steps = self.r.choice(self.seeds)
+		steps, head = list(steps), bytearray(head)
+		for _ in range(self.r.choice((0, 1, 1, 1, 2, 3))):
+			self.change(steps)
+		if self.r.random() < .2:
+			head = self.renumbered(head, [(32, len(head))])
+		struct.pack_into("<Q", head, 16, fnv(head[24:]))
+		end = bytearray(steps.pop())
+		struct.pack_into("<Q", end, 16, len(head) + sum(map(len, steps)))
+		data = bytes(head) + b"".join(steps) + self.sealed(end)
+		return data if self.r.random() < .8 else mutate(self.r, data, [b"step", b"end.", b"lost", *self.NUMBERS], 2)
+
+	def command(self, path, folder):
+		return [*self.words, "--replay-schedule", path]
+
+
+KINDS = {"scenes": Scenes, "lua": Lua, "words": Words, "checkpoints": Checkpoints, "recordings": Recordings, "records": Records, "schedules": Schedules}
 
 
 def limit():
