@@ -108,17 +108,24 @@ def innocent(port, token, run, waits):
 				while len(mine()) != wanted:
 					v.receive()
 			finally:
-				waits.append((time.monotonic() - began[0], cpu_of(run.pid) - began[1]))
+				waits.append((time.monotonic() - began[0], max(0, cpu_of(run.pid) - began[1]))) # one that was killed took its own along
 		time.sleep(.05)
 
 
 def cpu_of(pid):
-	"""CPU seconds of a process so far; 0: it has ended."""
-	try:
-		with open(f"/proc/{pid}/stat") as f:
-			return sum(map(int, f.read().rpartition(")")[2].split()[11:13])) / os.sysconf("SC_CLK_TCK")
-	except (OSError, ValueError):
-		return 0
+	"""CPU seconds of a process and its descendants so far; 0: they have ended."""
+	parents, used = {}, {}
+	for name in filter(str.isdigit, os.listdir("/proc")):
+		try:
+			with open(f"/proc/{name}/stat") as f:
+				words = f.read().rpartition(")")[2].split()
+		except OSError: # it has ended meanwhile
+			continue
+		parents[int(name)], used[int(name)] = int(words[1]), int(words[11]) + int(words[12])
+	own, before = {pid} & used.keys(), None
+	while own != before:
+		before, own = own, own | {child for child, parent in parents.items() if parent in own}
+	return sum(used[i] for i in own) / os.sysconf("SC_CLK_TCK")
 
 
 def tokens(run):
