@@ -145,7 +145,7 @@ class Object(_Strict):
         """Objects that overlap this sensor now."""
         ids = numpy.empty(len(self._universe.id), numpy.uint32)
         found = _native.library().ob_universe_get_inside(self._universe._u, self._id, ids.ctypes.data, len(ids))
-        return [self._universe[i] for i in ids[:found].tolist()]
+        return [Object(self._universe, p) for p in map(self._universe._passport, ids[:found].tolist()) if p]
 
     @property
     def force(self):
