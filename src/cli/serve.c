@@ -98,7 +98,6 @@ static bool load(serving *s, ob_error *e)
 		s->last = ob_request_steps(q->duration, q->run.step_length);
 	else
 		q->free.end = INFINITY;
-	s->q.server.free_run = q->is_free;
 	s->fixed = q->record                             ? "it is recorded (--record)"
 		   : s->a->value[OB_OPTION_LOG_REQUESTS] ? "its requests are logged (--log-requests)"
 		   : s->scene->meshes                    ? "viewers have its meshes already"

@@ -72,7 +72,7 @@ static void put_offers(ob_message *m, const ob_scene *s)
 	ob_message_put_json(m, s->avatar ? s->avatar->passport.name : "");
 }
 
-ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
+ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info, bool free_run,
 			     const ob_content *mesh)
 {
 	const ob_scene *scene = c->scene;
@@ -86,7 +86,7 @@ ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_u
 	put_text(m, "version", c->version);
 	put_text(m, "isolation", info->isolation);
 	put_text(m, "arch", info->arch);
-	put_text(m, "sync", c->free_run ? "free" : "lockstep");
+	put_text(m, "sync", free_run ? "free" : "lockstep");
 	ob_message_print(m, ",\"tour\":%s,\"fixed\":%s,\"saves\":%s", scene->tour ? "true" : "false",
 			 c->fixed ? "true" : "false", c->saves ? "true" : "false");
 	ob_message_print(m, ",\"workers\":%u,\"role\":\"%s\",\"look_only\":%s,\"step_length\":%.17g", info->workers,

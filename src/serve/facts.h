@@ -9,7 +9,7 @@
 
 // {"welcome": title, isolation, arch, sync, role, gravity, look, cameras, params, controls, avatar's name, meshes ..}: the first message. mesh: contents of the
 // scene's meshes, by their numbers, less 1; NULL: they are sent otherwise.
-ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info,
+ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info, bool free_run,
 			     const ob_content *mesh);
 // {"statistics": objects, awake, pairs, islands, step, viewers, deaths, ended, the hash of a state that stands ("": it does not),
 // cpu (s, of all workers), energy (J), penetration (m, the deepest) ..}. energy: someone looks at the last two; else they are null.

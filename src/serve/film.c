@@ -287,7 +287,8 @@ static bool put_head(const film *f, ob_message *out)
 	const ob_server_config config = { .look_only = true, .scene = &i->scene, .version = i->commit };
 	snprintf(universe.name, sizeof universe.name, "%s", i->universe);
 	snprintf(universe.isolation, sizeof universe.isolation, "%s", i->isolation);
-	ob_message *welcome = ob_facts_welcome(&config, OB_ROLE_WATCH, &universe, NULL), *about = ob_message_new(true);
+	ob_message *welcome = ob_facts_welcome(&config, OB_ROLE_WATCH, &universe, false, NULL),
+		   *about = ob_message_new(true);
 	if (welcome && about) {
 		put(out, welcome);
 		ob_message_print(about, "{\"film\":{\"begin\":%.17g,\"end\":%.17g,\"interval\":%.17g,\"seed\":\"%llu\"",

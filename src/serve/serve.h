@@ -43,7 +43,6 @@ typedef struct ob_server_config {
 	uint32_t viewers; // at most
 	const ob_scene *scene;
 	const char *version;
-	bool free_run; // simulators have times of their own (free/free.h)
 	bool fixed; // the scene cannot start anew with other parameters
 	bool saves; // the run has a place for a checkpoint
 	const ob_message *film; // shown instead of a universe (film.h), to each viewer at a time of its own; NULL: none

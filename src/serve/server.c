@@ -23,6 +23,7 @@
 #include "serve/http.h"
 #include "serve/part.h"
 #include "serve/peer.h"
+#include "table/free.h"
 
 static const double interval = 1. / 60; // s, between two reads of the universe
 static const double share = .3; // limit of their share of the time
@@ -195,7 +196,8 @@ static void send_all_about(ob_server *s, ob_client *c)
 	ob_pace_state pace = ob_pace_get(s->pace);
 	ob_universe_info info;
 	ob_universe_get_info(ob_host_universe(w->host), &info);
-	send_one(c, ob_facts_welcome(&s->config, c->role, &info, s->own));
+	send_one(c,
+		 ob_facts_welcome(&s->config, c->role, &info, ob_free_settings_of(ob_host_universe(w->host)), s->own));
 	send_one(c, ob_feed_whole(w->feed, &pace));
 	send_one(c, ob_facts_statistics(w->host, s->count, c->energy, pace.paused));
 	ob_avatar_ask(w->host, s->config.scene, c);
