@@ -134,7 +134,9 @@ class Live(program.Case):
 			self.ended(b)
 			for size in SIZES:
 				self.size(b, size)
-				self.assertEqual(b.run(FAULTS), [], size)
+				faults, seen = b.run(FAULTS)
+				self.assertEqual(faults, [], size)
+				self.assertGreater(seen, 12)
 				self.assertEqual(b.run(CONTRAST), [], size)
 				if PICTURES:
 					b.wait("obsim.worlds.every((w) => w.canvas.width === w.canvas.clientWidth)")
