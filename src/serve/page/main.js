@@ -432,7 +432,7 @@ universe.addEventListener('workers', (e) => {
 	if (recording || workers.world || walk.steps.length)
 		return;
 	if (look.tour && look.role === 'operate')
-		tour.start(look, 1 + Math.max(...workers.list.map((w) => w.rank)));
+		tour.start(look);
 	else if (!kept('walked'))
 		showSteps();
 });

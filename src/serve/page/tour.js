@@ -14,10 +14,10 @@ export class Tour {
 		universe.addEventListener('statistics', (e) => this.look(e.detail));
 	}
 
-	start({ sync, isolation, version, seed }, ranks) {
+	start({ sync, isolation, version, seed }) {
 		const step = (text, act, colours) => ({ text, about: '#strip', begin: () => this.play({ text, kills: [], slow: 0, ...act }, colours), end: () => { this.act = null; } });
-		const free = sync === 'free', kills = isolation === 'process' && ranks === 1, by = ranks > 1 ? 'rank' : free ? 'lag' : 'process';
-		const told = 'In processes and on one rank, simulators can be killed: obsim serve tour --isolation process.';
+		const free = sync === 'free', kills = isolation === 'process', by = free ? 'lag' : 'process';
+		const told = 'In processes simulators can be killed: obsim serve tour.';
 		Object.assign(this, { free, name: `hash ${version} ${seed}` });
 		this.walk.start([
 			step(`Boxes fall. Each is a simulator of its own; colours show ${free ? 'how far its own time is ahead' : `its ${by}`}.`, {}, by),
@@ -27,7 +27,7 @@ export class Tour {
 			] : [{ text: told }],
 			...free ? [] : [step(`One simulator is slow, and time should pass ${HASTE} times as fast. In lockstep all wait for it.`, { slow: 1, rate: HASTE }, by)],
 			{ text: free ? 'That was a free run: nobody waits for a slow or a dead one. Without --sync free all go in lockstep, and reach the same bits.' :
-				`That was lockstep; in obsim serve tour --sync free nobody waits. ${ranks > 1 ? 'One program alone, obsim serve tour,' : 'On two ranks, mpirun -n 2 obsim serve tour,'} reaches the same hash.`, begin: () => this.workers.choose('own') },
+				`That was lockstep; in obsim serve tour --sync free nobody waits. On two ranks, mpirun -n 2 obsim run tour --duration ${END}, the end has the same hash.`, begin: () => this.workers.choose('own') },
 		], () => {
 			this.workers.choose('own');
 			this.universe.send({ do: 'resume' });
