@@ -9,7 +9,7 @@ local radius, depth = 5, 1
 scene { title = "An arch of " .. n .. " stones", duration = 6 }
 material "stone" { density = 2400, friction = .9, restitution = 0 }
 ground { friction = .9 }
-camera "main" { eye = { 5.5, -13, 5 }, target = { 0, 0, 2.3 } }
+camera "main" { eye = { 5.13, -12.13, 8.53 }, target = { 0, 0, 2.1 } }
 
 for i = 0, n - 1 do
 	local points = {}

@@ -15,7 +15,7 @@ sun { towards = { .45, -.75, .55 } }
 material "stone" { friction = .45, restitution = .1, density = 2500 }
 material "rock" { friction = .7, density = 2600, colour = "#5d6068" }
 material "brick" { friction = .6, density = 1600 }
-camera "main" { eye = { 22, -15, 5.5 }, target = { -1, 0, 4.6 }, fov = 46 }
+camera "main" { eye = { 31, -28, 32 }, target = { -8.5, 0, 6 }, fov = 46 }
 camera "foot" { eye = { 15.8, 1.2, 3.5 }, target = { -2, -.4, 3.1 }, fov = 44 }
 camera "village" { eye = { 17, -7, 3.2 }, target = { 4, 0, 1 }, fov = 45 }
 

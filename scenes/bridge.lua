@@ -6,7 +6,7 @@ sun { towards = { .6, -.8, .8 } }
 ground { colour = "#8fae7c" }
 material "wood" { friction = .6, density = 600, colour = "#a9744f" }
 material "stone" { friction = .7, colour = "#8d8d88" }
-camera "main" { eye = { 3, -15, 5.5 }, target = { 0, 0, 2.2 } }
+camera "main" { eye = { 2.76, -13.79, 9.26 }, target = { 0, 0, 2.4 } }
 
 local wide, high = .4, 2.6
 local half = planks * wide / 2

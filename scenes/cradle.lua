@@ -5,7 +5,7 @@ local incoming = param("incoming", 1, { whole = true, min = 1, max = 4, label = 
 
 scene { title = "Newton's cradle", duration = 3, gravity = { 0, 0, 0 }, sleeping = false }
 material "steel" { friction = 0, restitution = 1, density = 7850, colour = "#c3c9d0" }
-camera "main" { eye = { 1.2, -9.6, 2.6 }, target = { 2.9, 0, 0 }, fov = 30 }
+camera "main" { eye = { 1.32, -8.93, 4.42 }, target = { 2.9, 0, 0 }, fov = 30 }
 
 for i = 1, 5 do
 	local moves = i <= incoming

@@ -11,7 +11,7 @@ ground { colour = "#8b949a" }
 material "steel" { friction = .4, density = 2000, colour = "#c9ced3", roughness = .35, metal = .8 }
 material "yellow" { friction = .4, density = 2000, colour = "#f0b429", roughness = .5 }
 material "wood" { friction = .6, density = 650, colour = "#b9824f", roughness = .8 }
-camera "main" { eye = { -2.2, -4.9, 1.9 }, target = { .2, 0, 1.6 }, fov = 50 }
+camera "main" { eye = { -2.28, -4.85, 3.98 }, target = { .1, 0, 1.35 }, fov = 50 }
 
 local high, seat, leg = 2.2, .06, .4 -- m: the rail; thickness of a seat, length of a leg
 local stack, first, spacing = 1.9, -2.2, .8 -- m: places along the rail

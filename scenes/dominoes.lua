@@ -19,7 +19,7 @@ local inner = .62
 local length = n * gap
 local r = math.sqrt(inner * inner + length * lane / math.pi)
 local outer = r
-camera "main" { eye = { -.42 * outer, -2.1 * outer, 1.55 * outer }, target = { 0, -.12 * outer, 0 }, fov = 36 }
+camera "main" { eye = { -.44 * outer, -2.2 * outer, 1.45 * outer }, target = { 0, -.12 * outer, 0 }, fov = 36 }
 camera "close" { eye = { -outer - .9, -1.3, .75 }, target = { -outer + .35, .2, .05 }, fov = 42 }
 
 -- From light amber by red and violet to deep blue, as the wave runs.

@@ -6,7 +6,7 @@ local title = param("title", "A slab on crates")
 scene { title = title, duration = 3 }
 sky { top = "#6d8fb5", horizon = "#f2ede4" }
 ground { colour = "#7b8790" }
-camera "main" { eye = { -3.4, -5.2, 1.7 }, target = { .1, 0, .62 }, fov = 26 }
+camera "main" { eye = { -3.19, -4.88, 3.49 }, target = { .1, 0, .62 }, fov = 26 }
 material "crate" { density = 60, friction = .6, roughness = .8 }
 material "steel" { density = 7800, friction = .5, colour = "#aab4bd", roughness = .3, metal = .9 }
 

@@ -6,7 +6,7 @@ local n = param("n", 100, { whole = true, min = 1, max = 100000, label = "boxes"
 
 scene { title = "Falling boxes", duration = 10 }
 ground {}
-camera "main" { from = { -.5, -.8, .17 }, fov = 30 }
+camera "main" { from = { -.5, -.8, .54 }, fov = 30 }
 
 local spacing = 1.8 -- m: more than the longest diagonal, so that no two boxes start in contact
 local side = math.ceil(math.sqrt(math.ceil(n / 4)))

@@ -9,7 +9,7 @@ scene { title = "Flock", duration = 20, seed = 7, room = 80 }
 sky { top = "#5b8fc7", horizon = "#f4e7d3" }
 ground { colour = "#8fa37a", grid = false }
 sun { towards = { -.6, -.4, .8 } }
-camera "main" { eye = { -6.5, -9.5, 3.4 }, target = { 0, .4, 2.9 }, fov = 44 }
+camera "main" { eye = { -6.72, -9.84, 8.88 }, target = { 0, .4, 2.9 }, fov = 44 }
 
 material "feathers" { friction = .2, restitution = .4, density = 120, roughness = .7 }
 material "stone" { friction = .7, density = 2400, colour = "#b9b2a4" }

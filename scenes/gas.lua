@@ -17,7 +17,7 @@ for k = 1, 3 do
 	end
 end
 sun { towards = { -.5, -.62, .6 } }
-camera "main" { eye = { -2.1 * half, -2.8 * half, 1.2 * half }, target = { 0, 0, -.1 * half }, fov = 50 }
+camera "main" { eye = { -2.1 * half, -2.8 * half, 1.7 * half }, target = { 0, 0, -.1 * half }, fov = 50 }
 
 for i = 0, n - 1 do
 	local at = {}

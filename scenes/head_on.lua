@@ -8,7 +8,7 @@ local ratio = param("ratio", 1.0, { min = 1e-6, max = 1e6, label = "ratio of mas
 local e = param("e", 1.0, { min = 0, max = 1, label = "restitution" })
 
 scene { title = "Head-on pair", duration = 2, gravity = { 0, 0, 0 }, sleeping = false }
-camera "main" { eye = { 1.1, -5.5, 1.6 }, target = { 1.1, 0, 0 }, fov = 40 }
+camera "main" { eye = { 1.1, -5.15, 2.51 }, target = { 1.1, 0, 0 }, fov = 40 }
 
 local function body(fields)
 	fields.restitution = e

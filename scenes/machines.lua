@@ -9,7 +9,7 @@ material "rubber" { friction = .8, colour = "#2b2f33" }
 material "crate" { friction = .6, density = 400, colour = "#c08a53" }
 material "stone" { friction = .6, density = 2400, colour = "#8d99ae" }
 ground { colour = "#cfcac0" }
-camera "main" { eye = { 1, -9.6, 4.8 }, target = { .5, .2, .5 }, fov = 40 }
+camera "main" { eye = { .99, -9.33, 5.36 }, target = { .5, .2, .5 }, fov = 40 }
 
 -- Crates ride along two belts, one above the other's end.
 box { name = "belt", static = true, material = "rubber", size = { 4, .9, .16 }, at = { -3.6, 2, 1.4 }, surface_velocity = { speed, 0, 0 } }

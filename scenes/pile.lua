@@ -7,7 +7,7 @@ local e = param("e", 0.0, { min = 0, max = 1, label = "restitution" })
 scene { title = "Pile of " .. n * n * n .. " boxes", duration = 10 }
 material "box" { friction = .5, restitution = e, density = 1000 }
 ground {}
-camera "main" { from = { -.6, -.8, .4 }, fov = 32 }
+camera "main" { from = { -.6, -.8, .55 }, fov = 32 }
 
 local colours = { "#e4572e", "#f08a24", "#f3a712", "#8fb339", "#29a19c", "#3f7cac" } -- by layer
 

@@ -15,7 +15,7 @@ material "crate" { friction = .45, density = 45 }
 material "stone" { friction = .6, colour = "#a79c8c" }
 material "leaf" { friction = .5, roughness = .95, colour = "#4d7d3a" }
 material "wood" { friction = .5, colour = "#6f4e37" }
-camera "main" { eye = { -10.6, -10.6, 6.6 }, target = { .2, .2, .4 }, fov = 42 }
+camera "main" { eye = { -10.19, -10.19, 7.88 }, target = { .2, .2, .4 }, fov = 42 }
 camera "behind" { on = "visitor", eye = { -3.4, 0, 1.5 }, target = { 1.5, 0, .3 }, fov = 60 }
 camera "eyes" { on = "person 1", eye = { -2.6, 0, 1.3 }, target = { 2, 0, .3 }, fov = 60 }
 script "plaza/person.lua"

@@ -4,7 +4,7 @@ local rows = param("rows", 10, { whole = true, min = 1, max = 100 })
 
 scene { title = "Pyramid of " .. rows .. " rows", duration = 20, sleeping = false }
 ground {}
-camera "main" { from = { -.35, -1, .22 }, fov = 32 }
+camera "main" { from = { -.35, -1, .52 }, fov = 32 }
 
 local colours = { "#e4572e", "#f3a712", "#29a19c", "#3f7cac" }
 

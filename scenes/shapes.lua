@@ -14,7 +14,7 @@ sky { top = "#4f86c0", horizon = "#e3edf4" }
 sun { towards = { -.8, -.3, .75 } }
 ground { friction = .6, grid = true }
 
-camera "main" { eye = { -6, -9.8, 4.9 }, target = { -1.1, 0, 2.4 }, fov = 44 }
+camera "main" { eye = { -5.84, -9.49, 7.57 }, target = { -1.1, 0, 2.4 }, fov = 44 }
 camera "orbit" { eye = { 0, -15, 5 }, target = { 0, 0, 1 }, pan = 6 }
 camera "above" { from = { 0, -.05, 1 } }
 

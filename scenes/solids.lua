@@ -2,7 +2,7 @@
 scene { title = "The five regular solids", duration = 6 }
 material "solid" { density = 900, friction = .5, restitution = .25 }
 ground {}
-camera "main" { eye = { -5.6, -8.6, 3.9 }, target = { .1, .2, 1.6 }, fov = 48 }
+camera "main" { eye = { -5.3, -8.14, 6.45 }, target = { .1, .2, 1.6 }, fov = 48 }
 
 local f = (1 + math.sqrt(5)) / 2 -- the golden ratio
 

@@ -13,7 +13,7 @@ material "steel" { friction = 0, restitution = 1, density = 7850, colour = "#d8d
 material "brass" { friction = .4, density = 8500, colour = "#c69a4e", roughness = .4, metal = .3 }
 material "thread" { density = 1000, colour = "#fbf8f0", roughness = .9 }
 material "wood" { friction = .5, density = 700, colour = "#8a5a35" }
-camera "main" { eye = { -.8, -2.6, 1.15 }, target = { 0, 0, .44 }, fov = 33 }
+camera "main" { eye = { -.74, -2.42, 1.67 }, target = { 0, 0, .44 }, fov = 33 }
 
 local radius, high, deep, string = .1, .95, .3, .62 -- m; string: from the rails' height to the balls' middle
 local reach = math.sqrt(deep ^ 2 + string ^ 2)

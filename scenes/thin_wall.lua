@@ -4,7 +4,7 @@
 local speed = param("speed", 100.0, { min = .01, max = 100000, unit = "m/s" })
 
 scene { title = "Thin wall", duration = 1, gravity = { 0, 0, 0 } }
-camera "main" { eye = { -6, -7, 2.6 }, target = { -.8, 0, 0 }, fov = 40 }
+camera "main" { eye = { -5.68, -6.57, 3.99 }, target = { -.8, 0, 0 }, fov = 40 }
 
 box { name = "wall", static = true, size = { .02, 4, 4 }, at = { 0, 0, 0 }, restitution = 0, colour = "#5f7488" }
 

@@ -13,7 +13,7 @@ sky { top = "#5b8fc7", horizon = "#efe6d8" }
 sun { towards = { -.8, -.35, .6 } }
 material "stone" { friction = .6, density = 2200, restitution = 0 }
 material "iron" { friction = .4, density = 7800, colour = "#30343b" }
-camera "main" { eye = { -5.4, -10.2, 3.4 }, target = { .5, 0, 2 }, fov = 40 }
+camera "main" { eye = { -5.27, -9.97, 7.72 }, target = { .5, 0, 2.1 }, fov = 40 }
 camera "ball" { follow = "ball", eye = { -4.5, -2, 1.4 }, target = { 0, 0, 0 }, fov = 50 }
 
 local palette = { "#d8c9a8", "#c9b38c", "#bfa77e", "#d1bd97", "#b49b74" }

@@ -13,7 +13,7 @@ material "belt" { friction = .9, colour = "#26292e" }
 material "frame" { friction = .3, colour = "#e0a02c", roughness = .4 }
 material "wall" { friction = .15, colour = "#8c939b" }
 material "pallet" { friction = .7, density = 500, colour = "#b58b58" }
-camera "main" { eye = { -1.9, -7.8, 4.4 }, target = { .45, .9, .9 }, fov = 40 }
+camera "main" { eye = { -1.8, -7.42, 5.29 }, target = { .45, .9, .9 }, fov = 40 }
 camera "sorter" { eye = { -2.6, -3.6, 2.4 }, target = { .2, .2, .8 }, fov = 44 }
 
 script "warehouse/source.lua"

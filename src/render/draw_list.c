@@ -166,7 +166,7 @@ static const double lost_ranges =
 static const double left_ranges = 20; // camera ranges from the initial target: likewise, however few move
 static const double present_least = .05, present_most = .1; // bodies in sight: the camera goes back to its beginning
 static const double spread =
-	2.05; // distance to a side of the picture, in one-sided fourth moments; 1.78 holds all of an even crowd
+	2.45; // distance to a side of the picture, in one-sided fourth moments; this holds all of an even cube seen cornerwise
 static const double ground_clearance = .05; // of the eye, relative to its distance
 static const double nearest = .3; // relative to the initial distance: it comes no nearer
 

@@ -41,7 +41,7 @@ static const camera_fields usual = {
 	.from = { .x = NAN },
 	.fov = 40,
 };
-static const ob_vec3 usual_from = { -.5, -.78, .38 };
+static const ob_vec3 usual_from = { -.5, -.78, .53 };
 
 static void check_place(lua_State *L, const char *where, const camera_fields *f)
 {

@@ -52,12 +52,23 @@ static double clearance(const ob_scene *s)
 	return least;
 }
 
+// Degrees above the horizontal from which a scene's first camera looks: from lower, objects hide each other.
+static void check_angle(const char *name, const ob_scene *s)
+{
+	const ob_vec3 d = ob_sub(s->camera[0].eye, s->camera[0].target);
+	const double angle = atan2(d.z, hypot(d.x, d.y)) * 180 / M_PI;
+	CHECK(angle >= 25 && angle <= 35);
+	if (!(angle >= 25 && angle <= 35))
+		fprintf(stderr, "  %s: camera %s looks down by %g degrees\n", name, s->camera[0].name, angle);
+}
+
 static void check_count(const char *name, const char *define, uint32_t objects, bool apart)
 {
 	ob_scene *s = load(name, define, 0);
 	if (!s)
 		return;
 	CHECK(s->objects == objects);
+	check_angle(name, s);
 	double r = reach(s, &s->camera[0]);
 	CHECK(r < 1);
 	if (!(r < 1))
@@ -71,6 +82,8 @@ static void check_objects(const char *name, uint32_t objects)
 {
 	ob_scene *s = load(name, NULL, 0);
 	CHECK(s && s->objects == objects);
+	if (s)
+		check_angle(name, s);
 	ob_scene_free(s);
 }
 

@@ -4,10 +4,9 @@
 import { turned } from './motion.js';
 
 const STEEPEST = 89 * Math.PI / 180;
-const LOST_RANGES = 1.5, LEFT_RANGES = 20, PRESENT = [0.05, 0.1], SPREAD = 2.05, NEAREST = 0.3; // for an
+const LOST_RANGES = 1.5, LEFT_RANGES = 20, PRESENT = [0.05, 0.1], SPREAD = 2.45, NEAREST = 0.3; // for an
                                                                  // automatic viewpoint: see src/render/draw_list.c
 const NARROWEST = 1.3; // width over height, below which the angle of view grows with the height
-const LOWEST = 28 * Math.PI / 180; // angle above the ground of a viewpoint that follows: from lower, objects hide each other
 const FADE = 0.2; // s, in which a viewpoint approaches a followed object
 const NEAR = 30; // distance to it, in radii
 const CLEARANCE = 0.05; // height of the eye above the ground, relative to its distance
@@ -50,7 +49,7 @@ export class Camera {
 		this.target = [...target];
 		this.range = range;
 		this.azimuth = Math.atan2(d[1], d[0]);
-		this.elevation = Math.max(-STEEPEST, Math.min(automatic ? -LOWEST : STEEPEST, Math.asin(d[2] / range)));
+		this.elevation = Math.max(-STEEPEST, Math.min(STEEPEST, Math.asin(d[2] / range)));
 		this.fov = fov;
 		this.first = { target: [...target], range, elevation: this.elevation, height: eye[2] };
 		this.following = automatic === true;
