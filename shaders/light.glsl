@@ -1,17 +1,14 @@
 // Light of the sun and of the sky through their shadow maps, and the output to the screen. Three methods:
-//   OB_DRAFT     one sample of the sun's map; only bodies near the ground hide the sky. For software rendering.
+//   OB_DRAFT     one sample of the sun's map, or four on meshes (OB_SOFT), whose wide ground makes its texels large; only
+//                bodies near the ground hide the sky. For software rendering.
 //   OB_AVERAGED  one of many averaged pictures, each with its own point of the sun and directions of the sky.
 //   else         all in one picture: shadows that soften with the distance (percentage-closer soft shadows,
 //                Fernando 2005), and a dozen directions of the sky. For a GPU.
 uniform highp sampler2DShadow shadow_depth;
 
-#ifdef OB_DRAFT
+#if defined(OB_DRAFT) && !defined(OB_SOFT)
 float sunlight(vec3 m) { return texture(shadow_depth, m); }
-#else
-
-#ifdef OB_AVERAGED
-#define SKY_MAPS 4
-
+#elif defined(OB_DRAFT) || defined(OB_AVERAGED)
 // A 3x3 tent from four bilinear taps (Castano 2013).
 float shadow_tap(vec2 base, vec2 offset, float depth)
 {
@@ -31,7 +28,6 @@ float sunlight(vec3 m)
 	return sum / 16.;
 }
 #else
-#define SKY_MAPS 12
 #define SEARCHES 12
 #define TAPS 20
 uniform highp sampler2D shadow_plain; // the same map, without comparison
@@ -63,6 +59,12 @@ float sunlight(vec3 m)
 }
 #endif
 
+#ifndef OB_DRAFT
+#ifdef OB_AVERAGED
+#define SKY_MAPS 4
+#else
+#define SKY_MAPS 12
+#endif
 uniform highp sampler2DArrayShadow sky_depth;
 
 // Share of the sky's light that arrives at p with normal n.

@@ -45,6 +45,7 @@ enum { // ob_passport.flags
 	OB_OBJECT_MESH_COLOUR = 1 << 4, // shown with its mesh's colours, not its own
 	OB_OBJECT_MESH_SURFACE = 1 << 5, // shown with its mesh's roughness and metal
 	OB_OBJECT_SENSOR = 1 << 6, // no obstacle: nothing touches it; ob_universe_get_inside lists the objects in it
+	OB_OBJECT_HIDDEN = 1 << 7, // not drawn
 };
 
 // Pattern of a surface, in metres of the object's own frame; boxes and planes alone.

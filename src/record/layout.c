@@ -31,7 +31,7 @@ static const ob_record_member event_members[] = {
 const ob_record_table ob_record_events = {
 	{ "events", "SI; colour: linear RGB, alpha", "size, inertia: body; force: world",
 	  "objects that come (kind 1), change (2) and go (3), in the order of steps; shape: from 1," OB_SHAPE_NAMES
-	  "; flags: 1 present, 2 static, 8 kinematic, 64 a sensor" },
+	  "; flags: 1 present, 2 static, 8 kinematic, 64 a sensor, 128 not drawn" },
 	sizeof(ob_record_event),
 	COUNT(event_members),
 	event_members,

@@ -124,6 +124,13 @@ static void attend(ob_draw_list *b, uint32_t i, double t, double s)
 	*a = (ob_attention){ generation, (float)(goal + (from - goal) * exp(-since / attention_fade)) };
 }
 
+static ob_drawn drawn_as(const ob_passport *p)
+{
+	return p->flags & OB_OBJECT_HIDDEN   ? OB_DRAWN_NOT
+	       : p->flags & OB_OBJECT_SENSOR ? OB_DRAWN_THROUGH
+					     : OB_DRAWN_SOLID;
+}
+
 bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapshot *now, double t)
 {
 	if (!grow(b, now->count))
@@ -148,8 +155,8 @@ bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapsh
 		if (!unbounded) {
 			const ob_mesh *look = look_of(b, p);
 			const double radius = look ? look->radius : ob_shape_radius(p->shape, p->size);
-			b->body[b->count++] = (ob_draw_item){ pose, radius, 0, i };
-		} else if (b->planes < OB_PLANES_MAX) {
+			b->body[b->count++] = (ob_draw_item){ pose, radius, 0, i, drawn_as(p) };
+		} else if (b->planes < OB_PLANES_MAX && drawn_as(p) == OB_DRAWN_SOLID) {
 			b->plane_id[b->planes] = i;
 			b->plane[b->planes++] = pose;
 		}
@@ -199,7 +206,7 @@ static double fourth_power(double x)
 static double presence_of(const crowd *all, uint32_t i)
 {
 	const ob_draw_item *body = &all->list->body[i];
-	if (all->list->now->passport[body->id].flags & OB_OBJECT_STATIC)
+	if (all->list->now->passport[body->id].flags & (OB_OBJECT_STATIC | OB_OBJECT_HIDDEN))
 		return 0;
 	const double far = square(ob_norm2(ob_sub(body->pose.p, all->about))) / all->lost;
 	const double left = ob_norm2(ob_sub(body->pose.p, all->camera->target)) / square(left_ranges * all->view.range);

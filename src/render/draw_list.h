@@ -36,11 +36,18 @@ typedef struct ob_attention {
 	float level; // 0: none yet
 } ob_attention;
 
+typedef enum ob_drawn {
+	OB_DRAWN_SOLID,
+	OB_DRAWN_THROUGH, // a sensor: what is behind it shines through, and it casts no shadow
+	OB_DRAWN_NOT, // cameras may follow it
+} ob_drawn;
+
 typedef struct ob_draw_item {
 	ob_pose pose;
 	double radius; // m, of its bounding sphere
 	double distance; // m, squared, from the eye; set by ob_draw_list_sort
 	uint32_t id; // index into the snapshot
+	ob_drawn drawn;
 } ob_draw_item;
 
 typedef struct ob_draw_list {

@@ -3,7 +3,7 @@
 // ---- orthographic projections of the maps
 
 enum { MARGIN = 4 }; // texels kept free at each side, for the filter
-static const double reach_ranges = 6; // camera ranges: limit of shadows
+static const double reach_ranges = 3.5; // camera ranges: limit of shadows
 
 typedef struct rect {
 	double low_x, low_y, high_x, high_y;
@@ -45,7 +45,7 @@ static double depth_in_sight(const ob_draw_list *b, const ob_view *v)
 	for (uint32_t i = 0; i < b->count; i++) {
 		const ob_draw_item *body = &b->body[i];
 		double d = ob_dot(ob_sub(body->pose.p, v->eye), v->forward) + body->radius;
-		if (d > depth && ob_view_in_frustum(v, body->pose.p, body->radius))
+		if (d > depth && body->drawn == OB_DRAWN_SOLID && ob_view_in_frustum(v, body->pose.p, body->radius))
 			depth = d;
 	}
 	return fmin(1.5 * depth, most);
@@ -75,7 +75,7 @@ ob_ortho ob_ortho_fit(ob_vec3 z, const ob_draw_list *b, const ob_view *v, int te
 	for (uint32_t i = 0; i < b->count; i++) {
 		const ob_draw_item *body = &b->body[i];
 		double x = ob_dot(body->pose.p, m.x), y = ob_dot(body->pose.p, m.y), up = ob_dot(body->pose.p, z);
-		if (!overlaps(&frustum, x, y, body->radius))
+		if (body->drawn != OB_DRAWN_SOLID || !overlaps(&frustum, x, y, body->radius))
 			continue;
 		include_square(&cast, x, y, body->radius);
 		m.z_low = fmin(m.z_low, up - body->radius);

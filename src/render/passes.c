@@ -16,7 +16,9 @@ typedef struct source {
 
 static const source sources[OB_PROGRAMS] = {
 	[OB_PROGRAM_BODY] = { "body", shader_body_vert, shader_body_frag, NULL },
-	[OB_PROGRAM_TEXTURED] = { "textured body", shader_body_vert, shader_body_frag, "#define OB_TEXTURED\n" },
+	[OB_PROGRAM_TEXTURED] = { "textured body", shader_body_vert, shader_body_frag,
+				  "#define OB_TEXTURED\n#define OB_SOFT\n" },
+	[OB_PROGRAM_MESH] = { "mesh", shader_body_vert, shader_body_frag, "#define OB_SOFT\n" },
 	[OB_PROGRAM_PATTERNED] = { "patterned box", shader_body_vert, shader_body_frag, "#define OB_PATTERNED\n" },
 	[OB_PROGRAM_SHADOW] = { "shadow", shader_shadow_vert, shader_shadow_frag, NULL },
 	[OB_PROGRAM_SKY_SHADOW] = { "sky shadow", shader_sky_shadow_vert, shader_shadow_frag, NULL },
@@ -285,6 +287,7 @@ void ob_targets_destroy(ob_targets *t)
 
 // ---- passes
 
+static const float sensor_share = .35f; // a sensor's share of the light, before what is behind it
 static const float shadow_slope = 1.6f, shadow_offset = 2; // glPolygonOffset: against acne on slopes
 
 static void set_attribute(GLuint index, int size, size_t stride, size_t offset, GLuint divisor)
@@ -536,11 +539,13 @@ static void draw_textured(const ob_passes *p, const ob_look_buffers *l, GLsizei 
 					(const void *)(first * sizeof(uint32_t)), count);
 		first += part->indices;
 	}
-	glUseProgram(p->program[OB_PROGRAM_BODY]);
+	glUseProgram(p->program[OB_PROGRAM_MESH]);
 }
 
 static void draw_looks(const ob_passes *p, const ob_instances *i, bool in_colour)
 {
+	if (in_colour)
+		glUseProgram(p->program[OB_PROGRAM_MESH]);
 	for (uint32_t k = 0; k < p->looks; k++) {
 		const uint32_t *first = &i->first[OB_MESHES + p->hulls + k], count = first[1] - first[0];
 		if (!count)
@@ -770,6 +775,20 @@ void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instance
 			   pattern ? pattern_period : grid_period, far);
 	}
 	draw_sky(p, t, f, b);
+}
+
+void ob_passes_through(const ob_passes *p, const ob_instances *seen)
+{
+	upload_instances(p, seen);
+	glEnable(GL_CULL_FACE);
+	glEnable(GL_BLEND);
+	glBlendColor(0, 0, 0, sensor_share);
+	glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
+	glDepthMask(GL_FALSE);
+	draw_instances(p, seen, true);
+	glDepthMask(GL_TRUE);
+	glDisable(GL_BLEND);
+	glDisable(GL_CULL_FACE);
 }
 
 void ob_passes_add(const ob_passes *p, const ob_targets *t, int number, int count)

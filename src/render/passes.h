@@ -14,7 +14,8 @@
 
 typedef enum ob_program {
 	OB_PROGRAM_BODY,
-	OB_PROGRAM_TEXTURED, // a body with images
+	OB_PROGRAM_MESH, // a body with a mesh of the scene
+	OB_PROGRAM_TEXTURED, // the same, with images
 	OB_PROGRAM_PATTERNED, // a box with a pattern
 	OB_PROGRAM_SHADOW,
 	OB_PROGRAM_SKY_SHADOW,
@@ -115,6 +116,8 @@ void ob_passes_occlusion_map(const ob_passes *p, const ob_targets *t, const ob_i
 // Draws the colour target, without overlays.
 void ob_passes_colour(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_draw_list *b,
 		      const ob_frame *f, const ob_look_def *look);
+// Draws bodies through which what is behind them shines; after the colour.
+void ob_passes_through(const ob_passes *p, const ob_instances *seen);
 // Adds one of count averaged pictures to the sum; the first clears it.
 void ob_passes_add(const ob_passes *p, const ob_targets *t, int number, int count);
 // Writes the average to the colour target.

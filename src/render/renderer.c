@@ -87,19 +87,25 @@ static ob_renderer *create(const ob_render_setup *setup, const ob_look_def *look
 
 static bool casts_shadow(const ob_draw_item *body, const void *ortho)
 {
-	return ob_ortho_contains(ortho, body);
+	return body->drawn == OB_DRAWN_SOLID && ob_ortho_contains(ortho, body);
 }
 
 static bool is_near_ground(const ob_draw_item *body, const void *frame)
 {
 	const ob_frame *f = frame;
-	return ob_dot(body->pose.p, f->occlusion.z) - body->radius < f->level + occlusion_height &&
+	return body->drawn == OB_DRAWN_SOLID &&
+	       ob_dot(body->pose.p, f->occlusion.z) - body->radius < f->level + occlusion_height &&
 	       ob_ortho_contains(&f->occlusion, body);
 }
 
 static bool is_visible(const ob_draw_item *body, const void *view)
 {
-	return ob_view_in_frustum(view, body->pose.p, body->radius);
+	return body->drawn == OB_DRAWN_SOLID && ob_view_in_frustum(view, body->pose.p, body->radius);
+}
+
+static bool is_seen_through(const ob_draw_item *body, const void *view)
+{
+	return body->drawn == OB_DRAWN_THROUGH && ob_view_in_frustum(view, body->pose.p, body->radius);
 }
 
 static bool draw_overlays(ob_renderer *r, const ob_snapshot *now, const ob_view *v)
@@ -153,6 +159,9 @@ static bool draw_share(ob_renderer *r, const ob_camera_def *c, double t, const o
 	if (!ob_instances_fill(&r->visible, &r->list, &f->view, height, is_visible, &f->view))
 		return false;
 	ob_passes_colour(p, to, &r->visible, &r->list, f, &r->look);
+	if (!ob_instances_fill(&r->visible, &r->list, &f->view, height, is_seen_through, &f->view))
+		return false;
+	ob_passes_through(p, &r->visible);
 	return true;
 }
 

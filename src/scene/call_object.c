@@ -143,7 +143,7 @@ typedef struct body {
 	bool own_colour, own_surface; // set by the object or its material
 	uint32_t group, hits; // hits: bit g, group g
 	uint32_t pattern; // ob_pattern; OB_PATTERNS: not set
-	bool sensor;
+	bool sensor, visible;
 } body;
 
 #define F(member, ...) OB_FIELD(body, member, .name = #member, __VA_ARGS__)
@@ -157,7 +157,7 @@ typedef struct body {
 		WITHIN(surface_velocity, OB_SPEED_MOST), F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
 		F(colour, .kind = OB_FIELD_COLOUR), F(roughness, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
 		F(metal, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
-		F(pattern, .kind = OB_FIELD_CHOICE, .choices = PATTERN_NAMES)
+		F(pattern, .kind = OB_FIELD_CHOICE, .choices = PATTERN_NAMES), F(visible, .kind = OB_FIELD_BOOLEAN)
 #define PLACE \
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), WITHIN(at, OB_PLACE_MOST), \
 		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
@@ -229,6 +229,7 @@ static const body nothing = {
 	.mesh_scale = NAN,
 	.colour = { NAN },
 	.grid = true,
+	.visible = true,
 	.hits = UINT32_MAX,
 	.pattern = OB_PATTERNS,
 	.scale = 1,
@@ -449,7 +450,7 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	p->flags |= (d->mesh || d->file) && !d->own_colour ? OB_OBJECT_MESH_COLOUR : 0;
 	p->flags |= (d->mesh || d->file) && !d->own_surface ? OB_OBJECT_MESH_SURFACE : 0;
 	p->flags |= d->kind == STATIC ? OB_OBJECT_STATIC : d->kind == KINEMATIC ? OB_OBJECT_KINEMATIC : 0;
-	p->flags |= d->sensor ? OB_OBJECT_SENSOR : 0;
+	p->flags |= (d->sensor ? OB_OBJECT_SENSOR : 0) | (d->visible ? 0 : OB_OBJECT_HIDDEN);
 	p->flags |= d->group << OB_OBJECT_GROUP | ~d->hits << OB_OBJECT_PASSES | d->pattern << OB_OBJECT_PATTERN;
 	p->shape = (uint8_t)shape;
 	p->size = size;

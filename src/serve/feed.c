@@ -279,11 +279,13 @@ static void put_object(ob_message *out, const ob_feed_source *source, const know
 	ob_message_put_u32(out, k->id);
 	ob_message_put_u32(out, k->generation);
 	ob_message_put_u8(out, p->shape);
-	ob_message_put_u8(out, (k->fixed ? OB_FEED_STATIC : 0) | (p->flags & OB_OBJECT_FROZEN ? OB_FEED_FROZEN : 0) |
-				       (p->mesh ? OB_FEED_LOOKS : 0) |
-				       (p->flags & OB_OBJECT_MESH_COLOUR ? OB_FEED_MESH_COLOUR : 0) |
-				       (p->flags & OB_OBJECT_MESH_SURFACE ? OB_FEED_MESH_SURFACE : 0) |
-				       OB_FEED_PATTERN * (unsigned)ob_passport_pattern(p));
+	const unsigned flags =
+		(k->fixed ? OB_FEED_STATIC : 0) | (p->flags & OB_OBJECT_FROZEN ? OB_FEED_FROZEN : 0) |
+		(p->mesh ? OB_FEED_LOOKS : 0) | (p->flags & OB_OBJECT_MESH_COLOUR ? OB_FEED_MESH_COLOUR : 0) |
+		(p->flags & OB_OBJECT_MESH_SURFACE ? OB_FEED_MESH_SURFACE : 0) |
+		(p->flags & OB_OBJECT_SENSOR ? OB_FEED_SENSOR : 0) |
+		(p->flags & OB_OBJECT_HIDDEN ? OB_FEED_HIDDEN : 0) | OB_FEED_PATTERN * (unsigned)ob_passport_pattern(p);
+	ob_message_put(out, &(uint16_t){ (uint16_t)flags }, 2);
 	ob_message_put_u8(out, (unsigned)name);
 	ob_message_put_u8(out, (unsigned)lroundf(15 * fminf(fmaxf(p->roughness, 0), 1)) |
 				       16 * (unsigned)lroundf(15 * fminf(fmaxf(p->metal, 0), 1)));

@@ -12,9 +12,9 @@
 //      u32 removed, u32 created, u32 motions; then that number of each:
 //        removed      u32 id
 //        created      (or created before, with another look from now on)
-//                     u32 id, generation; u8 shape; u8 flags (1: static; 2: frozen; 4: it has a mesh, 8: with the
-//                     mesh's colours, 16: with the mesh's surface; 32 times its ob_pattern);
-//                     u8 bytes of the name;
+//                     u32 id, generation; u8 shape; u16 flags (1: static; 2: frozen; 4: it has a mesh, 8: with the
+//                     mesh's colours, 16: with the mesh's surface; 32: a sensor; 64: not drawn; 128 times its
+//                     ob_pattern); u8 bytes of the name;
 //                     u8 surface: roughness, of 15, and 16 times metal, of 15
 //                     f32 size[3], inertia[3] (kg m^2), colour[3] (linear RGB);
 //                     hulls: u8 corners, u8 faces, u8 parts, u16 number, f32 p[3] of each corner (body's
@@ -73,7 +73,9 @@ enum { // an object's
 	OB_FEED_LOOKS = 4,
 	OB_FEED_MESH_COLOUR = 8,
 	OB_FEED_MESH_SURFACE = 16,
-	OB_FEED_PATTERN = 32, // times ob_pattern
+	OB_FEED_SENSOR = 32,
+	OB_FEED_HIDDEN = 64,
+	OB_FEED_PATTERN = 128, // times ob_pattern
 };
 
 // Continuation of a motion from its instant.

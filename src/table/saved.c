@@ -179,8 +179,8 @@ static bool check_object(const ob_saved_universe *s, uint32_t id, ob_error *e)
 {
 	const uint32_t groups = UINT32_MAX << OB_OBJECT_GROUP;
 	const uint32_t known = OB_OBJECT_PRESENT | OB_OBJECT_PRESCRIBED | OB_OBJECT_FROZEN | OB_OBJECT_MESH_COLOUR |
-			       OB_OBJECT_MESH_SURFACE | OB_OBJECT_SENSOR | OB_OBJECT_PATTERN_BITS << OB_OBJECT_PATTERN |
-			       groups;
+			       OB_OBJECT_MESH_SURFACE | OB_OBJECT_SENSOR | OB_OBJECT_HIDDEN |
+			       OB_OBJECT_PATTERN_BITS << OB_OBJECT_PATTERN | groups;
 	const ob_passport *p = &s->passport[id];
 	const char *wrong = NULL;
 	if (!(p->flags & OB_OBJECT_PRESENT))

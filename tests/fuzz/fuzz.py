@@ -220,6 +220,7 @@ class Scenes:
 		fields += self.maybe(.1, "group", lambda: self.one_of(["0", "1", "15"], ["32", "-1", ".5"]))
 		fields += self.maybe(.1, "hits", lambda: self.one_of(["{}", "{ 0, 1 }", "{ 15 }"], ["{ 32 }", "{ 'a' }", "1"]))
 		fields += self.maybe(.05, "sensor", lambda: r.choice(["true", "false"])) if kind != "ground" else []
+		fields += self.maybe(.05, "visible", lambda: r.choice(["true", "false"]))
 		fields += self.maybe(.2, "friction", lambda: self.number(0, 1000))
 		fields += self.maybe(.4, "restitution", lambda: self.number(0, 1))
 		fields += self.maybe(.05, "colour", self.colour)

@@ -116,6 +116,9 @@ int main(void)
 	uint8_t *as_box = picture(OB_SHAPE_BOX, box, red, 0, 0, NULL);
 	uint8_t *as_hull = picture(OB_SHAPE_HULL, ob_hull_size(&cube), red, 0, 0, &cube);
 	uint8_t *as_ball = picture(OB_SHAPE_SPHERE, round, red, 0, 0, NULL);
+	uint8_t *sensor = picture(OB_SHAPE_BOX, box, red, 0, OB_OBJECT_SENSOR, NULL);
+	uint8_t *hidden = picture(OB_SHAPE_BOX, box, red, 0, OB_OBJECT_HIDDEN, NULL);
+	uint8_t *none = picture(OB_SHAPE_SPHERE, round, green, 0, OB_OBJECT_HIDDEN | OB_OBJECT_SENSOR, NULL);
 	looks = mesh;
 	looks_count = 4;
 	put_images(&mesh[2], colours, surfaces);
@@ -141,8 +144,12 @@ int main(void)
 	CHECK(difference(by_images, as_hull) < .1 && difference(own_colour, as_hull) < .1 &&
 	      difference(own_surface, as_hull) < .1);
 	CHECK(same(no_paint, as_hull)); // images multiply the mesh's paint, and it has none
-	uint8_t *const all[] = { as_box,      as_hull, as_ball,   by_mesh,    by_object,   unpainted, other,
-				 among_hulls, beyond,  by_images, own_colour, own_surface, no_paint };
+	CHECK(same(hidden, none)); // neither the object nor its shadow
+	printf("%g %g\n", difference(sensor, none), difference(as_box, none));
+	CHECK(difference(sensor, none) > .5 &&
+	      difference(sensor, none) < .4 * difference(as_box, none)); // it is seen through
+	uint8_t *const all[] = { sensor,    hidden, none,        as_box, as_hull,   as_ball,    by_mesh,     by_object,
+				 unpainted, other,  among_hulls, beyond, by_images, own_colour, own_surface, no_paint };
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
 		free(all[i]);
 	for (int i = 0; i < 4; i++)

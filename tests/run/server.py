@@ -98,8 +98,8 @@ class Viewer:
 			del self.objects[i]
 			self.removed.append(i)
 		for _ in range(created):
-			i, generation, shape, what, name, _ = struct.unpack_from("<IIBBBB", m, at)
-			at += 48
+			i, generation, shape, what, name, _ = struct.unpack_from("<IIBHBB", m, at)
+			at += 49
 			for _ in range(1 + m[at + 2] if shape == HULL else 0):
 				corners, faces = m[at], m[at + 1]
 				at += 5 + 12 * corners

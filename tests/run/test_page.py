@@ -266,6 +266,50 @@ class Page(server.Case):
 		other.wait(f"obsim.camera.eye.some((x, k) => Math.abs(x - {before[1]}[k]) > .05)")
 		self.end()
 
+	def test_still(self):
+		"""A picture that stands has all pixels, and several samples of each: a paused one, the first one, one of objects that rest."""
+		still = "shown?.every((x, k) => x === [1280, 720, true, 1][k])"
+		spy = """const { prototype } = obsim.drawing().constructor, { draw } = prototype;
+			prototype.draw = function (...words) { draw.apply(this, words); window.shown = [this.canvas.width, this.canvas.height, ...words.slice(4)]; };"""
+		self.serve("-D", "n=3", "--paused", scene="falling_boxes")
+		b = self.open()
+		b.wait("(({ multi, canvas }) => multi?.width === 1280 && multi.height === 720 && canvas.width === 1280)(obsim.drawing())")
+		b.run(spy)
+		b.run("obsim.universe.send({ do: 'resume' })")
+		b.wait("window.shown && !shown[2]") # it moves
+		b.run("obsim.universe.send({ do: 'pause' })")
+		b.wait(still)
+		self.assertGreater(b.run("obsim.universe.send({ do: 'resume' }); window.shown = null; return obsim.universe.told"), 0)
+		b.wait("[...obsim.universe.objects.values()].every((o) => obsim.universe.rests(o))")
+		b.wait(still)
+		self.assertFalse(b.run("return obsim.universe.paused"))
+		self.assertEqual(b.console(), [])
+		self.end()
+
+	def test_sensors(self):
+		"""Sensors are drawn apart from what casts shadows; what is not visible is not drawn, and not picked."""
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("""ground {}
+				for k, more in ipairs { {}, { sensor = true }, { visible = false } } do
+					local o = { name = "box " .. k, size = { 1, 1, 1 }, at = { 0, 2 - 2 * k, .5 }, static = true }
+					for key, value in pairs(more) do o[key] = value end
+					box(o)
+				end
+				camera "main" { eye = { -6, -2, 5 }, target = { 0, -2, 0 } }""")
+		self.serve_file(self.path("scene.lua"))
+		b = self.open()
+		b.run("""const d = obsim.drawing();
+			window.drawn = {};
+			for (const what of ['drawShadowMap', 'drawColour', 'drawThrough']) {
+				const draw = d[what];
+				d[what] = (list, ...words) => { draw.call(d, list, ...words); drawn[what] = list.map((b) => b.name).join(); };
+			}
+			obsim.panel.ask('boxes');""")
+		b.wait("drawn.drawThrough !== undefined")
+		self.assertEqual(b.run("return drawn"), {"drawShadowMap": "box 1", "drawColour": "box 1", "drawThrough": "box 2"})
+		self.assertEqual(b.console(), [])
+		self.end()
+
 	def test_visits(self):
 		"""The first visit shows four steps, which can be walked or skipped; a later one does not. Panels stay as they were left."""
 		self.serve("--isolation", "process", "--workers", "3", scene="falling_boxes")

@@ -86,7 +86,8 @@ static void check_joints(void)
 static void check_groups(void)
 {
 	ob_scene *s = load_good("sphere { radius = 1, group = 3, hits = { 0, 15 } }\nground { hits = {} }\n"
-				"box { size = { 1, 1, 1 }, sensor = true, at = { 0, 0, 9 } }");
+				"box { size = { 1, 1, 1 }, sensor = true, at = { 0, 0, 9 } }\n"
+				"sphere { radius = 1, visible = false, at = { 9, 0, 9 } }");
 	CHECK(s);
 	if (!s)
 		return;
@@ -94,6 +95,7 @@ static void check_groups(void)
 	CHECK(ob_passport_group(&o[0].passport) == 3 && o[0].passport.flags >> OB_OBJECT_PASSES == 0x7ffe);
 	CHECK(ob_passport_group(&o[1].passport) == 0 && o[1].passport.flags >> OB_OBJECT_PASSES == 0xffff);
 	CHECK(o[2].passport.flags >> OB_OBJECT_PASSES == 0 && o[2].passport.flags & OB_OBJECT_SENSOR);
+	CHECK(!(o[2].passport.flags & OB_OBJECT_HIDDEN) && o[3].passport.flags & OB_OBJECT_HIDDEN);
 	CHECK(!ob_passport_hits(&o[0].passport, &o[1].passport) && ob_passport_hits(&o[0].passport, &o[2].passport));
 	CHECK(!ob_passport_collides(&o[0].passport, &o[2].passport));
 	ob_scene_free(s);

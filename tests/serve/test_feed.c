@@ -63,17 +63,17 @@ static ob_vec3 take_short3(reader *r, double one)
 static void hear_object(reader *r, copy *c)
 {
 	uint32_t id = TAKE(uint32_t), generation = TAKE(uint32_t);
-	uint8_t head[4];
+	uint8_t head[5]; // shape; flags[2]; bytes of the name; surface
 	char name[256];
 	take(r, head, sizeof head);
-	CHECK(id < IDS && head[0] >= OB_SHAPE_SPHERE && head[0] <= OB_SHAPE_CYLINDER && head[2] < OB_NAME_MAX);
+	CHECK(id < IDS && head[0] >= OB_SHAPE_SPHERE && head[0] <= OB_SHAPE_CYLINDER && head[3] < OB_NAME_MAX);
 	told *o = &c->object[id % IDS];
 	if (!o->there || o->generation != generation)
 		*o = (told){ .there = true, .generation = generation };
 	take_vec3(r);
 	o->inertia = take_vec3(r);
 	o->colour = take_vec3(r);
-	take(r, name, head[2]);
+	take(r, name, head[3]);
 }
 
 static void hear_motion(reader *r, copy *c, uint32_t *before)

@@ -139,7 +139,7 @@ export class Camera {
 	// covers: room, from 0 to 1.
 	follow(bodies, width, height, room = { left: 0, right: 1, top: 0, bottom: 1 }) {
 		const whole = this.view(width, height), v = { ...whole, tanX: whole.tanX * (room.right - room.left), tanY: whole.tanY * (room.bottom - room.top) }, { target, range } = this.first, moving = [];
-		const free = bodies.filter((b) => !b.fixed && Number.isFinite(b.radius)), about = lookAbout(free, target, range);
+		const free = bodies.filter((b) => !b.fixed && !b.hidden && Number.isFinite(b.radius)), about = lookAbout(free, target, range);
 		let all = 0, present = 0, middle = [0, 0, 0];
 		for (const b of free) {
 			const presence = about(b), weight = b.attention * presence;

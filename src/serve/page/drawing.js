@@ -9,8 +9,9 @@ const SAMPLES = 4, SHADOW_TEXELS = 1280, SKY_TEXELS = 512, OCCLUSION_TEXELS = 12
 const SKY_MAPS = 12; // as in light.glsl
 const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2, UNIT_PLAIN = 3, UNIT_SKY = 4, UNIT_COLOUR_IMAGE = 5, UNIT_SURFACE_IMAGE = 6;
 const OCCLUSION_HEIGHT = 0.8; // m above the ground, up to which a body occludes it
-const REACH_RANGES = 6, FOG_RANGES = 9, FOG_LEAST = 150; // camera ranges; m
+const REACH_RANGES = 3.5, FOG_RANGES = 9, FOG_LEAST = 150; // camera ranges; m
 const SUNSHINE = [1.95, 1.82, 1.6], FROM_SKY = 0.52, FROM_GROUND = 0.45, SUN_RADIUS = 0.025, GOLDEN = 2.39996322972865332;
+const SENSOR_SHARE = 0.35; // a sensor's share of the light, before what is behind it
 const BEVEL_SHARE = 0.1, BEVEL_MOST = 0.05, MEDIUM_PX = 7, FINE_PX = 45;
 const GRID_PERIOD = 10, PATTERN_PERIOD = 768; // m; as in shaders/pattern.glsl
 const INSTANCE = 16, SEGMENT = 11, MESH_VERTEX = 12; // floats
@@ -19,7 +20,7 @@ const JOINT = { line: [0.35, 0.85, 1, 1], axis: [1, 0.45, 0.9, 1], rim: [0.08, 0
 const APART = 6, AXES = new Set([1, 2]); // kinds of joints (<ob/joint.h>): no joint to be seen; hinge, slider
 
 const PROGRAMS = {
-	body: ['body.vert', 'body.frag'], textured: ['body.vert', 'body.frag', '#define OB_TEXTURED\n'], patterned: ['body.vert', 'body.frag', '#define OB_PATTERNED\n'], shadow: ['shadow.vert', 'shadow.frag'],
+	body: ['body.vert', 'body.frag'], mesh: ['body.vert', 'body.frag', '#define OB_SOFT\n'], textured: ['body.vert', 'body.frag', '#define OB_TEXTURED\n#define OB_SOFT\n'], patterned: ['body.vert', 'body.frag', '#define OB_PATTERNED\n'], shadow: ['shadow.vert', 'shadow.frag'],
 	skyShadow: ['sky_shadow.vert', 'shadow.frag'], occlusion: ['occlusion.vert', 'occlusion.frag'],
 	blur: ['sky.vert', 'blur.frag'], plane: ['plane.vert', 'plane.frag'],
 	farPlane: ['plane.vert', 'plane.frag', '#define OB_FAR\n'], patternedPlane: ['plane.vert', 'plane.frag', '#define OB_PATTERNED\n'],
@@ -320,7 +321,8 @@ export class Drawing {
 	// for the shadow map, too.
 	draw(bodies, view, look, overlay, smooth = true, share = 1) {
 		const gl = this.gl, width = this.canvas.width, height = this.canvas.height;
-		const solid = bodies.filter((b) => !isEndless(b.shape)), planes = bodies.filter((b) => isEndless(b.shape));
+		const shown = bodies.filter((b) => !b.hidden), opaque = shown.filter((b) => !b.sensor);
+		const solid = opaque.filter((b) => !isEndless(b.shape)), planes = opaque.filter((b) => isEndless(b.shape));
 		const ground = planes.find((b) => turned(b.q, [0, 0, 1])[2] > 0.999);
 		this.sizeShadowMap(64 * Math.round(SHADOW_TEXELS * share / 64));
 		const sun = Math.hypot(...look.sun) > 0 ? unit(look.sun) : [0, 0, 1];
@@ -344,6 +346,8 @@ export class Drawing {
 				contains(f.occlusion, b)), view, height);
 		this.target(smooth ? this.samples(width, height) : null, width, height);
 		this.drawColour(solid, planes, f, look, width, height);
+		this.drawThrough(shown.filter((b) => b.sensor && !isEndless(b.shape) && inFrustum(view, b.p, b.radius)), view, height);
+		this.unbindMaps();
 		if (overlay.length)
 			this.drawSegments(overlay, view);
 		if (!smooth)
@@ -468,7 +472,6 @@ export class Drawing {
 			gl.drawElementsInstanced(gl.TRIANGLES, indices, gl.UNSIGNED_INT, 4 * first, count);
 			first += indices;
 		}
-		gl.useProgram(this.program.body.id);
 	}
 
 	// inColour: with the programs for bodies, for the picture; else with the present one.
@@ -502,7 +505,7 @@ export class Drawing {
 			for (let i = 0; i < 4; i++)
 				this.attribute(2 + i, 4, INSTANCE, INSTANCE * first + 4 * i, 1);
 			if (inColour)
-				gl.useProgram(k === PATTERNED_BOX_MESH ? this.program.patterned.id : this.program.body.id);
+				gl.useProgram((k === PATTERNED_BOX_MESH ? this.program.patterned : own?.buffers ? this.program.mesh : this.program.body).id);
 			if (inColour && own?.parts?.length)
 				this.drawTextured(own, group.length);
 			else if (own?.buffers)
@@ -599,10 +602,31 @@ export class Drawing {
 			this.drawPlane(b, f, look, b.pattern ? this.program.farPatternedPlane : this.program.farPlane, 10);
 		}
 		this.drawSky(f, width, height);
+	}
+
+	// Takes the maps off their units: they will be targets.
+	unbindMaps() {
+		const gl = this.gl;
 		for (const [number, kind] of [[UNIT_SHADOW, gl.TEXTURE_2D], [UNIT_PLAIN, gl.TEXTURE_2D], [UNIT_SKY, gl.TEXTURE_2D_ARRAY]]) {
 			gl.activeTexture(gl.TEXTURE0 + number);
-			gl.bindTexture(kind, null); // it will be the target
+			gl.bindTexture(kind, null);
 		}
+	}
+
+	// Draws sensors, which are seen through and cast no shadow.
+	drawThrough(sensors, view, height) {
+		const gl = this.gl;
+		if (!sensors.length)
+			return;
+		gl.enable(gl.CULL_FACE);
+		gl.enable(gl.BLEND);
+		gl.blendColor(0, 0, 0, SENSOR_SHARE);
+		gl.blendFunc(gl.CONSTANT_ALPHA, gl.ONE_MINUS_CONSTANT_ALPHA);
+		gl.depthMask(false);
+		this.drawInstances(sensors, view, height, true);
+		gl.depthMask(true);
+		gl.disable(gl.BLEND);
+		gl.disable(gl.CULL_FACE);
 	}
 
 	// Draws the sky, over a level ground only from its horizon on: software rendering shades hidden pixels, too.

@@ -191,7 +191,7 @@ function rayAt(x, y) {
 function pointAt(x, y) {
 	const { from, ray } = rayAt(x, y);
 	let best = null;
-	for (const b of bodies()) {
+	for (const b of bodies().filter((x) => !x.hidden)) {
 		const at = hit(b, from, ray);
 		if (at && (!best || at.s < best.s))
 			best = { ...at, body: b };

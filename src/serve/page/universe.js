@@ -9,7 +9,7 @@ const PULL = 5; // 1/s: rate at which its clock approaches the universe's
 const LOST = 0.5, SETTLED = 1e-4; // s: from this difference on, the clock is set; below that, it stands
 const MOTIONS = 1, CONTACTS = 2, MESH = 3, SIMULATORS = 4, JOINTS = 5, VOID = 1, PAUSED = 2, FREE_RUN = 1; // of a message
 const MESH_HEAD = 12, MESH_VERTEX = 12; // bytes; floats
-const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16, PATTERN = 32;
+const STATIC = 1, FROZEN = 2, LOOKS = 4, MESH_COLOUR = 8, MESH_SURFACE = 16, SENSOR = 32, HIDDEN = 64, PATTERN = 128;
 const KIND = 3, WIDE = 4, ACCELERATED = 8, BEGUN = 16; // of a motion
 const V_UNIT = 1e-3, W_UNIT = 2e-3; // m/s, rad/s
 const BLEND = 0.08; // s, simulated, to blend a prediction into a new motion
@@ -140,11 +140,11 @@ export class Universe extends EventTarget {
 	}
 
 	hearObject(r) {
-		const id = r.u32(), generation = r.u32(), shape = r.u8(), flags = r.u8(), bytes = r.u8(), surface = r.u8();
+		const id = r.u32(), generation = r.u32(), shape = r.u8(), flags = r.u16(), bytes = r.u8(), surface = r.u8();
 		const size = r.vec3(), inertia = r.vec3(), colour = r.vec3(), hull = isHulled(shape) ? hearHull(r) : null;
 		const mesh = flags & LOOKS ? r.u8() : 0, name = r.text(bytes);
 		const known = this.objects.get(id); // with another look and the same motion
-		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed: (flags & STATIC) !== 0, frozen: (flags & FROZEN) !== 0, size, inertia, colour, hull, mesh, meshColour: (flags & MESH_COLOUR) !== 0, meshSurface: (flags & MESH_SURFACE) !== 0, pattern: Math.floor(flags / PATTERN), name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
+		this.objects.set(id, { ...(known?.generation === generation ? known : {}), id, generation, shape, fixed: (flags & STATIC) !== 0, frozen: (flags & FROZEN) !== 0, size, inertia, colour, hull, mesh, meshColour: (flags & MESH_COLOUR) !== 0, meshSurface: (flags & MESH_SURFACE) !== 0, sensor: (flags & SENSOR) !== 0, hidden: (flags & HIDDEN) !== 0, pattern: Math.floor(flags / PATTERN), name, roughness: (surface & 15) / 15, metal: (surface >> 4) / 15, radius: radiusOf(shape, size) });
 	}
 
 	hearMesh(r, data) {
