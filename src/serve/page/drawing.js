@@ -195,15 +195,18 @@ export class Drawing {
 	}
 
 	async load() {
-		const gl = this.gl;
+		this.createBuffers();
+		this.createMaps();
+		this.gl.depthFunc(this.gl.LEQUAL);
 		this.program = {};
 		const names = [...new Set(Object.values(PROGRAMS).flatMap((p) => p.slice(0, 2)))];
 		const sources = Object.fromEntries(await Promise.all(names.map(async (n) => [n, await text(`shaders/${n}`)])));
-		for (const [name, [vertex, fragment, define = '']] of Object.entries(PROGRAMS))
-			this.program[name] = this.link(name, sources[vertex], sources[fragment], define + (this.draft ? '#define OB_DRAFT\n' : ''));
-		this.createBuffers();
-		this.createMaps();
-		gl.depthFunc(gl.LEQUAL);
+		// Each is linked at its first use: without a GPU that takes 10 ms and more, and no scene uses all.
+		for (const [name, [vertex, fragment, define = '']] of Object.entries(PROGRAMS)) {
+			const link = () => this.link(name, sources[vertex], sources[fragment], define + (this.draft ? '#define OB_DRAFT\n' : ''));
+			let linked;
+			Object.defineProperty(this.program, name, { get: () => (linked ??= link()) });
+		}
 	}
 
 	link(name, vertex, fragment, defines) {

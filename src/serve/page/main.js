@@ -484,11 +484,10 @@ universe.addEventListener('close', (e) => {
 async function begin() {
 	panel.restore();
 	drawing = new Drawing(canvas, asked.get('light'));
-	await drawing.load();
-	await new Promise((resolve, reject) => {
+	await Promise.all([drawing.load(), new Promise((resolve, reject) => {
 		universe.addEventListener('welcome', resolve, { once: true });
 		universe.connect()?.catch(reject);
-	});
+	})]);
 	requestAnimationFrame(frame);
 }
 
