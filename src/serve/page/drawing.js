@@ -597,7 +597,10 @@ export class Drawing {
 			gl.activeTexture(gl.TEXTURE0 + UNIT_SKY);
 			gl.bindTexture(gl.TEXTURE_2D_ARRAY, this.skyTexture);
 		}
-		this.drawInstances(solid.filter((b) => inFrustum(f.view, b.p, b.radius)), f.view, height, true);
+		const seen = solid.filter((b) => inFrustum(f.view, b.p, b.radius));
+		for (const b of seen)
+			b.away = Math.hypot(...sub(b.p, f.view.eye));
+		this.drawInstances(seen.sort((a, b) => a.away - b.away), f.view, height, true); // the nearest first: it hides others
 		gl.disable(gl.CULL_FACE);
 		gl.bindVertexArray(this.emptyArray);
 		for (const b of planes) {
