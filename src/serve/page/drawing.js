@@ -11,6 +11,7 @@ const UNIT_SHADOW = 0, UNIT_OCCLUSION = 1, UNIT_SOURCE = 2, UNIT_PLAIN = 3, UNIT
 const OCCLUSION_HEIGHT = 0.8; // m above the ground, up to which a body occludes it
 const REACH_RANGES = 3.5, FOG_RANGES = 9, FOG_LEAST = 150; // camera ranges; m
 const SUNSHINE = [1.95, 1.82, 1.6], FROM_SKY = 0.52, FROM_GROUND = 0.45, SUN_RADIUS = 0.025, GOLDEN = 2.39996322972865332;
+const ROUGH = 0.75; // texels of the shadow map along a side where a pixel has one sample, as while the picture changes without a GPU
 const SENSOR_SHARE = 0.35; // a sensor's share of the light, before what is behind it
 const BEVEL_SHARE = 0.1, BEVEL_MOST = 0.05, MEDIUM_PX = 7, FINE_PX = 45;
 const GRID_PERIOD = 10, PATTERN_PERIOD = 768; // m; as in shaders/pattern.glsl
@@ -327,7 +328,7 @@ export class Drawing {
 		const shown = bodies.filter((b) => !b.hidden), opaque = shown.filter((b) => !b.sensor);
 		const solid = opaque.filter((b) => !isEndless(b.shape)), planes = opaque.filter((b) => isEndless(b.shape));
 		const ground = planes.find((b) => turned(b.q, [0, 0, 1])[2] > 0.999);
-		this.sizeShadowMap(64 * Math.round(SHADOW_TEXELS * share / 64));
+		this.sizeShadowMap(64 * Math.round(SHADOW_TEXELS * share * (smooth ? 1 : ROUGH) / 64));
 		const sun = Math.hypot(...look.sun) > 0 ? unit(look.sun) : [0, 0, 1];
 		const f = { view, ground, shadow: fitOrtho(sun, solid, view, this.shadow.texels) };
 		const up = ground ? turned(ground.q, [0, 0, 1]) : [0, 0, 1];

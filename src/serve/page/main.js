@@ -18,7 +18,6 @@ import { Walk } from './walk.js';
 import { Tour } from './tour.js';
 
 const THROWN = 12; // m/s
-const MOVING = 0.75; // texels of the shadow map along a side, without a GPU, while the picture changes
 const PICKED = [1, 0.7, 0.33, 1];
 const READING = [1, 0.42, 0.7, 0.9];
 const PALE = [0.9, 0.92, 0.95];
@@ -109,7 +108,7 @@ function frame(now) {
 	const changes = seen !== shown || camera.moved(shownView, height), share = drawing.software && !explore.recorder ? sharpness.next(seconds, changes) : 1;
 	const smooth = !drawing.software || !changes, form = `${share} ${smooth}`;
 	if (changes || form !== shownForm)
-		draw(list, view, Math.round(width * share), Math.round(height * share), smooth, smooth ? 1 : MOVING * share);
+		draw(list, view, Math.round(width * share), Math.round(height * share), smooth, share);
 	if (changes)
 		shownView = { eye: view.eye, target: [...camera.target] };
 	[shown, shownForm] = [seen, form];
