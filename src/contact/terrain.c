@@ -49,6 +49,7 @@ typedef struct contact {
 	uint32_t others; // found along other directions
 	ob_manifold other[OTHERS];
 	double separation; // least, m
+	ob_manifold deepest; // below this depth, along a direction that does not support the surface
 } contact;
 
 static ob_vec3 to_terrain(const contact *c, ob_vec3 x)
@@ -245,8 +246,11 @@ static void touch(contact *c, uint32_t triangle)
 	find_at(c, triangle, &m);
 	c->pieces++;
 	const bool touches = m.separation <= c->margin;
-	if (touches && !take(c, triangle, &m))
+	if (touches && !take(c, triangle, &m)) {
 		take_plane(c, triangle);
+		if (m.separation < c->deepest.separation)
+			c->deepest = m;
+	}
 	c->separation = ob_min(c->separation, m.separation);
 }
 
@@ -305,6 +309,20 @@ static void put_nearest(contact *c, ob_manifold *out)
 		put_over(c, ob_madd(out->at[0], .5 * out->gap[0], out->normal), -.5, out);
 }
 
+// Holds a body along the region's normal that is deep in the ground below it, where no direction supports the surface: about a
+// vertex each region may leave the body to the others.
+static void put_deepest(const contact *c, ob_manifold *out)
+{
+	const double least = .3; // cosine
+	const double cosine = ob_dot(c->deepest.normal, c->normal);
+	if (!c->deepest.points || cosine < least)
+		return;
+	*out = c->deepest;
+	out->normal = c->normal;
+	for (int k = 0; k < out->points; k++)
+		out->gap[k] /= cosine;
+}
+
 void ob_manifold_terrain(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out)
 {
 	const ob_terrain_part *part = (const ob_terrain_part *)b->hull;
@@ -342,11 +360,14 @@ void ob_manifold_terrain(const ob_placed *a, const ob_placed *b, double margin, 
 		return;
 	}
 	c.separation = border;
+	c.deepest = (ob_manifold){ .separation = -2 * rest };
 	touch_all(&c);
 	if (c.over.n)
 		put_over(&c, c.plane.p, .5, out);
 	else if (c.others)
 		put_nearest(&c, out);
+	else
+		put_deepest(&c, out);
 	out->separation = c.separation;
 	out->pieces = c.pieces;
 	if (!out->points) { // others hold the body here: checked again before this region can
