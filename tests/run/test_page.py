@@ -221,6 +221,7 @@ class Page(server.Case):
 			record = os.path.join(scratch, "record.h5")
 			program.report(program.scene("stack"), "--duration", "1", "--record", record)
 			self.run_ = program.start("serve", "--replay", record, "--listen", "127.0.0.1:0")
+			self.addCleanup(lambda: self.run_.poll() is None and self.run_.kill())
 			self.port = int(self.run_.stdout.readline().rstrip("/\n").rsplit(":", 1)[1])
 			self.open(b=b)
 			self.reads(b, met)
