@@ -12,6 +12,7 @@ import multiprocessing
 import os
 import statistics
 import sys
+import tempfile
 import time
 
 os.environ['OBSIM'], os.environ['OBSIM_LIBRARY'] = sys.argv[1:3]
@@ -144,10 +145,40 @@ def bench_waiting():
         print(f'{what:52} {took[0]:8.1f} {statistics.median(took):8.1f} {took[-1]:8.1f}', flush=True)
 
 
+POLE = """
+scene { step = 1/500 }
+box { name = "cart", size = { .4, .2, .1 }, at = { 0, 0, 1 }, mass = 2 }
+slider { "cart", name = "rail", axis = { 1, 0, 0 }, motor = { rate = 0, most = 100 } }
+box { name = "pole", size = { .05, .05, 1 }, at = { 0, 0, 1.55 }, mass = .5, velocity = { .1, 0, 0 } }
+hinge { "pole", "cart", name = "foot", at = { 0, 0, 1.05 }, axis = { 0, 1, 0 } }
+"""
+
+
+def bench_feedback():
+    """The cart and pole of docs/control.md at 500 Hz: one feedback a step, outside and within this program in turns; and the
+    same exchange without a step, which is all that is not the simulators' own work."""
+    with tempfile.NamedTemporaryFile('w', suffix='.lua') as f:
+        f.write(POLE)
+        f.flush()
+        with obsim.run(f.name, options={'workers': 1}) as outside, obsim.run(f.name, inside=True) as inside:
+            figures = {(u, steps): Figure(f'{"feedback and step" if steps else "feedback alone"}, {where}', u)
+                       for u, where in ((outside, 'outside'), (inside, 'inside')) for steps in (1, 0)}
+
+            def feed_back(u, steps, rail, foot):
+                lean, place = u.step(0, read=[foot, rail]).tolist()
+                u.step(steps, targets={rail: place[1] + .002 * (60 * lean[0] + 15 * lean[1] + 2 * place[0] + 4 * place[1])})
+            for _ in range(ROUNDS):
+                for (u, steps), figure in figures.items():
+                    figure.measure(STEPS, feed_back, u, steps, u.joints['rail'], u.joints['foot'])
+            for figure in figures.values():
+                figure.report()
+
+
 def main():
     print(f'{"us":52} {"fastest":>8} {"median":>8} {"slowest":>8}')
     for options in {'workers': 1}, {'workers': 2}, {'workers': 2, 'isolation': 'process'}:
         bench_steps(options)
+    bench_feedback()
     bench_waiting()
     bench_reading(1000)
     bench_reading(10000)

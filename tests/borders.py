@@ -57,7 +57,7 @@ ARROWS = {
     'paper': 'host measure render reference plot experiment scene table settings ranks base',
     'serve': 'record measure mesh host scene table settings shape motion base',
     'import': 'hull shape motion base',
-    'cli': 'import shape free/free.h free/schedule.h serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
+    'cli': 'import control shape free/free.h free/schedule.h serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
 }
 BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h', 'sync_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
          'paper': ['paper_texts.h'],

@@ -32,11 +32,21 @@ enum { OB_CONTROL_BATCH = 500 };
 // Takes control of a universe, which must outlive the controller. NULL and e: its host is not reachable, it is not
 // to be controlled, or another program controls it.
 ob_controller *ob_controller_open(const ob_universe *u, ob_error *e);
+// Runs a scene within this program: each step is a function call, and the calling thread the only worker, so there is
+// neither a gate nor a packet between the two. words: a scene and options, as of `obsim control`. The same commands end in
+// the same bits as outside. Refused is all that takes other threads or processes: ob_controller_run, ob_controller_kill, FMUs,
+// free runs. Readers attach the universe of this name as any other. The library needs obsim-inside.so, which is installed with obsim.
+// Several runs may go on in a program, in threads of its own; signals and output stay the program's, but for warnings on
+// standard error. After a fork the child may not use it. NULL and e: the scene or an option is wrong.
+ob_controller *ob_controller_open_inside(const char *const *words, size_t n, char name[OB_NAME_MAX], ob_error *e);
 void ob_controller_close(ob_controller *c); // the run ends; NULL is allowed
-int ob_controller_fd(const ob_controller *c); // readable when the host has left
+int ob_controller_fd(const ob_controller *c); // readable when the host has left; -1: the run is inside
 
 // Runs some steps and waits until they are complete.
 bool ob_controller_step(ob_controller *c, uint64_t steps, ob_error *e);
+// The same after changes of motors and forces, as of ob_controller_set_motors and ob_controller_set_forces, in one exchange.
+bool ob_controller_step_with(ob_controller *c, uint64_t steps, const struct ob_change *motor, size_t motors,
+			     const struct ob_change *force, size_t forces, ob_error *e);
 // Lets the run go on by itself, at a pace of simulated time per wall-clock time (INFINITY: as fast as it can), until
 // paused or stepped. Other functions interrupt it for an instant.
 bool ob_controller_run(ob_controller *c, double pace, ob_error *e);

@@ -105,6 +105,8 @@ bool ob_universe_get_joint(const ob_universe *u, uint32_t joint, ob_joint_passpo
 // Value and rate of its first free axis (m, rad; m/s, rad/s), at the present time of the universe. false: it has no such joint
 // now, or this kind has no such axis.
 bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *value, double *rate);
+// The same for n joints: values[2 * i] and values[2 * i + 1]. false: one of them has none; the rest is not written.
+bool ob_universe_get_joint_values(const ob_universe *u, const uint32_t *joint, size_t n, double *values);
 // Action of the joint; 0 in a universe that has not stepped. false: it has no such joint now.
 bool ob_universe_get_joint_load(const ob_universe *u, uint32_t joint, ob_joint_load *out);
 

@@ -428,11 +428,19 @@ class Universe(_Strict):
 class Run(Universe):
     """A universe that this program leads. It ends with close, with the end of a with statement, or with this program."""
 
-    def __init__(self, scene, options, program, parameters, resume=None):
-        self._command = [program or _native.find_program(), 'control', *([str(scene)] if scene else []),
-                         *(['--resume', str(resume)] if resume else [])]
+    def __init__(self, scene, options, program, parameters, resume=None, inside=False):
+        self._program = program
+        self._scene = [*([str(scene)] if scene else []), *(['--resume', str(resume)] if resume else [])]
         self._options, self._parameters = dict(options or {}), parameters
-        self._begin()
+        self._name = self._options.get('name') or f'python-{os.getpid()}-{next(_numbers)}'
+        words = [*self._scene, *self._words(), *([] if 'name' in self._options else ['--name', self._name])]
+        self._messages = self._process = self._controller = None
+        self._changed = self._joints_read = None, None # as of the last step
+        if inside:
+            self._begin_inside([word.encode() for word in words])
+        else:
+            self._begin_outside(words)
+        self._start = self.snapshot() if self._options.get('arch') != 'monolith' else None
 
     def _words(self):
         words = [word for name, value in self._parameters.items() for word in ('-D', f'{name}={_text(value)}')]
@@ -441,22 +449,24 @@ class Run(Universe):
             words += [option] if value is True else [] if value is False else [f'{option}={value}']
         return words
 
-    def _begin(self):
-        self._name = name = self._options.get('name') or f'python-{os.getpid()}-{next(_numbers)}'
+    def _begin_inside(self, words):
+        self._controller = _native.call('ob_controller_open_inside', (ctypes.c_char_p * len(words))(*words), len(words),
+                                        ctypes.create_string_buffer(_native.NAME_MAX))
+        self._stop = weakref.finalize(self, _native.library().ob_controller_close, self._controller)
+        super().__init__(self._name)
+
+    def _begin_outside(self, words):
         self._messages = tempfile.TemporaryFile()
-        words = [*self._command, *self._words(), *([] if 'name' in self._options else ['--name', name])]
-        self._process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=self._messages,
-                                         start_new_session=True)
-        self._controller = None
+        self._process = subprocess.Popen([self._program or _native.find_program(), 'control', *words], stdin=subprocess.DEVNULL,
+                                         stdout=subprocess.PIPE, stderr=self._messages, start_new_session=True)
         self._stop = weakref.finalize(self, _stop, self._process, self._messages)
         if not self._process.stdout.readline():
             self._process.wait()
             said = self.messages.strip()
             self._stop()
             raise Error(said or 'the run has ended')
-        super().__init__(name)
+        super().__init__(self._name)
         self._controller = _native.call('ob_controller_open', self._u)
-        self._start = self.snapshot() if self._options.get('arch') != 'monolith' else None
 
     def _call(self, name, *arguments):
         if not self._controller:
@@ -464,23 +474,27 @@ class Run(Universe):
         try:
             return _native.call(name, self._controller, *arguments)
         except Error as e:
-            if str(e) != 'the run has ended':
+            if str(e) != 'the run has ended' or not self._process:
                 raise
             self._process.wait()
             raise Error(self.messages.strip().splitlines()[-1] if self.messages.strip() else str(e)) from None
 
     @property
     def messages(self):
-        """All that the program has said so far: warnings, for one. Empty once the run is closed."""
-        if self._messages.closed:
+        """All that the program has said so far: warnings, for one. Empty once the run is closed, and inside."""
+        if not self._messages or self._messages.closed:
             return ''
         self._messages.seek(0)
         return self._messages.read().decode('utf-8', 'replace')
 
     # -- time
 
-    def step(self, n=1):
-        """Runs n steps."""
+    def step(self, n=1, targets=None, forces=None, read=None):
+        """Runs n steps. Before, in the same exchange, the motors of joints get targets, {joint: number}, and objects constant
+        forces, {object: (x, y, z)}, N. read: joints, of which it then returns values and rates, an array (joints, 2)."""
+        if targets or forces:
+            self._step_with(min(n, 1), targets or {}, forces or {})
+            n -= 1
         piece = 1
         while n > 0: # in pieces, so that Ctrl-C is heard
             now = min(n, piece)
@@ -488,6 +502,38 @@ class Run(Universe):
             self._call('ob_controller_step', now)
             n -= now
             piece = piece * 2 if time.perf_counter() - began < .1 else max(piece // 2, 1)
+        return None if read is None else self._read_joints(read)
+
+    def _step_with(self, n, targets, forces):
+        key = (*targets, *forces)
+        if key != self._changed[0]: # the same are changed each time, as a rule
+            changes = (_native.Change * len(key))()
+            for change, joint in zip(changes, targets):
+                change.id, change.value[0] = joint._passport().object[0], joint._number
+            for change, object_ in zip(changes[len(targets):], forces):
+                change.id, change.generation = object_._id, object_._generation
+            self._changed = key, changes
+        changes = self._changed[1]
+        try:
+            for change, target in zip(changes, targets.values()):
+                change.value[1] = target
+            for change, force in zip(changes[len(targets):], forces.values()):
+                change.value[0], change.value[1], change.value[2] = force
+        except (TypeError, ValueError) as e:
+            raise Error(f'expected a number for each joint and three for each object: {e}') from None
+        self._call('ob_controller_step_with', n, changes, len(targets),
+                   ctypes.byref(changes, len(targets) * ctypes.sizeof(_native.Change)), len(forces))
+
+    def _read_joints(self, joints):
+        joints = tuple(joints)
+        if joints != self._joints_read[0]:
+            for joint in joints:
+                joint._passport() # it has not ended
+            self._joints_read = joints, (ctypes.c_uint32 * len(joints))(*(joint._number for joint in joints))
+        values = numpy.empty((len(joints), 2))
+        if not _native.library().ob_universe_get_joint_values(self._u, self._joints_read[1], len(joints), values.ctypes.data):
+            raise Error('a joint that is read has ended, has broken, or has no axis')
+        return values
 
     def run_until(self, seconds):
         """Runs steps up to the first at or after this simulated time."""
@@ -526,7 +572,7 @@ class Run(Universe):
             path = os.path.join(folder, 'state.ck')
             self.save(path)
             h, now = self.step_length, self.steps
-            words = [self._command[0], 'run', '--resume', path, '--duration', repr((now + 1.5) * h), '--fps', repr(1 / h),
+            words = [self._program or _native.find_program(), 'run', '--resume', path, '--duration', repr((now + 1.5) * h), '--fps', repr(1 / h),
                      '--raw', '-', '--workers', '1', '--size', f'{width}x{height}', '--quality', quality, *(['--camera', camera] if camera else [])]
             done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, check=False)
         if done.returncode != 0 or len(done.stdout) < 3 * width * height:
@@ -659,9 +705,9 @@ class Run(Universe):
 
     def close(self):
         """Ends the run; again has no effect."""
-        if self._controller:
+        if self._controller and self._process:
             _native.library().ob_controller_close(self._controller)
-            self._controller = None
+        self._controller = None
         self._stop()
 
     def __enter__(self):
@@ -686,8 +732,9 @@ def _stop(process, messages):
     messages.close()
 
 
-def run(scene=None, options=None, program=None, resume=None, **parameters):
+def run(scene=None, options=None, program=None, resume=None, inside=False, **parameters):
     """Starts a scene, a path or the name of one that comes with obsim, and takes control of it. Keyword arguments are the
     scene's parameters; options are those of obsim control, as {'workers': 2, 'isolation': 'process', 'harden': True}. resume: a checkpoint
-    file to go on from, in place of a scene."""
-    return Run(scene, options, program, parameters, resume)
+    file to go on from, in place of a scene. inside: the universe is in this program, whose thread is its only worker: steps are
+    function calls; it has no processes, so nothing can be killed, and goes on by its steps alone."""
+    return Run(scene, options, program, parameters, resume, inside)

@@ -53,6 +53,10 @@ class Info(ctypes.Structure):
                 ('last_death', ctypes.c_char * DEATH_MAX), ('hulls', ctypes.c_uint32), ('created', ctypes.c_uint64)]
 
 
+class Change(ctypes.Structure):
+    _fields_ = [('id', ctypes.c_uint32), ('generation', ctypes.c_uint32), ('value', ctypes.c_double * 13)]
+
+
 class StateArrays(ctypes.Structure):
     _fields_ = [(name, ctypes.c_void_p) for name in ('id', 'generation', 'position', 'attitude', 'velocity', 'angular_velocity')]
 
@@ -93,12 +97,15 @@ _functions = {
     'ob_universe_joints': (_u32, [_pointer]),
     'ob_universe_get_joint': (ctypes.c_bool, [_pointer, _u32, _pointer]),
     'ob_universe_get_joint_value': (ctypes.c_bool, [_pointer, _u32, _pointer, _pointer]),
+    'ob_universe_get_joint_values': (ctypes.c_bool, [_pointer, _pointer, _size, _pointer]),
     'ob_universe_get_joint_load': (ctypes.c_bool, [_pointer, _u32, _pointer]),
     'ob_joint_kind_name': (ctypes.c_char_p, [_u32]),
     'ob_shape_name': (ctypes.c_char_p, [ctypes.c_int]),
     'ob_controller_open': (_pointer, [_pointer, _pointer]),
+    'ob_controller_open_inside': (_pointer, [_pointer, _size, ctypes.c_char_p, _pointer]),
     'ob_controller_close': (None, [_pointer]),
     'ob_controller_step': (ctypes.c_bool, [_pointer, _u64, _pointer]),
+    'ob_controller_step_with': (ctypes.c_bool, [_pointer, _u64, _pointer, _size, _pointer, _size, _pointer]),
     'ob_controller_run': (ctypes.c_bool, [_pointer, ctypes.c_double, _pointer]),
     'ob_controller_pause': (ctypes.c_bool, [_pointer, _pointer]),
     'ob_controller_snapshot': (ctypes.c_bool, [_pointer, ctypes.POINTER(_u64), _pointer]),

@@ -11,11 +11,20 @@
 
 #include "base/own_file.h"
 
+#ifdef __SANITIZE_ADDRESS__ // a sanitizer takes no such module
+#define OWN_FIRST RTLD_LOCAL
+#else
+#define OWN_FIRST (RTLD_LOCAL | RTLD_DEEPBIND)
+#endif
+
 #define STRING(x) #x
 #define NAME(x) STRING(x)
 
-static void *open_library(const char *name, bool global, const char *package, ob_error *e)
+static void *open_library(const char *name, ob_part_scope scope, const char *package, ob_error *e)
 {
+	static const int flags[] = {
+		[OB_PART_PROGRAM] = RTLD_LOCAL, [OB_PART_OPEN] = RTLD_GLOBAL, [OB_PART_OWN] = OWN_FIRST
+	};
 	char path[PATH_MAX], file[NAME_MAX];
 	snprintf(file, sizeof file, "obsim-%s.so", name);
 	if (!ob_own_file_find(path, OB_PARTS_FROM_PROGRAM, ".", file)) {
@@ -23,7 +32,7 @@ static void *open_library(const char *name, bool global, const char *package, ob
 			package);
 		return NULL;
 	}
-	void *library = dlopen(path, RTLD_NOW | (global ? RTLD_GLOBAL : RTLD_LOCAL));
+	void *library = dlopen(path, RTLD_NOW | flags[scope]);
 	if (!library)
 		ob_fail(e, "%s; install %s", dlerror(), package);
 	return library;
@@ -37,7 +46,7 @@ bool ob_part_check(const char *name, const char *package, ob_error *e)
 		return ob_fail(e, "pipe: %s", strerror(errno));
 	pid_t child = fork();
 	if (child == 0) {
-		if (!open_library(name, false, package, &error) && write(ends[1], &error, sizeof error) < 0)
+		if (!open_library(name, OB_PART_PROGRAM, package, &error) && write(ends[1], &error, sizeof error) < 0)
 			_exit(2);
 		_exit(0);
 	}
@@ -50,9 +59,9 @@ bool ob_part_check(const char *name, const char *package, ob_error *e)
 	return n <= 0 || ob_fail(e, "%s", error.text);
 }
 
-const void *ob_part_load(const char *name, size_t bytes, bool global, const char *package, ob_error *e)
+const void *ob_part_load(const char *name, size_t bytes, ob_part_scope scope, const char *package, ob_error *e)
 {
-	void *library = open_library(name, global, package, e);
+	void *library = open_library(name, scope, package, e);
 	if (!library)
 		return NULL;
 	const ob_part_head *table = dlsym(library, NAME(OB_PART_ENTRY));

@@ -5,7 +5,7 @@
 //            part->png(...)         ---->  exported as OB_PART_ENTRY
 //
 // A module lies beside the program, in lib/obsim below the prefix where the program is installed, or at the root of the
-// build tree that holds the program. It holds copies of the static functions that it needs, so these keep no state.
+// build tree that holds the program. A library finds its modules likewise. It holds copies of the static functions that it needs, so these keep no state.
 #ifndef OB_BASE_PART_H
 #define OB_BASE_PART_H
 
@@ -28,10 +28,13 @@ typedef struct ob_part_head {
 	const type OB_PART_ENTRY
 #define OB_PART_HEAD(type) .head = { OB_VERSION, sizeof(type) }
 
-// Loads obsim-NAME.so; returns its table of "bytes" bytes, which begins with ob_part_head. A module stays loaded. global:
-// its symbols are open to the libraries that it loads in turn. NULL and e: it is missing, lacks a library, or belongs to
+// A module and its libraries take functions of a name from the program; likewise, and later libraries take the module's; from
+// the module first.
+typedef enum ob_part_scope { OB_PART_PROGRAM, OB_PART_OPEN, OB_PART_OWN } ob_part_scope;
+
+// Loads obsim-NAME.so; returns its table of "bytes" bytes, which begins with ob_part_head. A module stays loaded. NULL and e: it is missing, lacks a library, or belongs to
 // another obsim; the line ends with the remedy, "package" (Debian). Any thread.
-const void *ob_part_load(const char *name, size_t bytes, bool global, const char *package, ob_error *e);
+const void *ob_part_load(const char *name, size_t bytes, ob_part_scope scope, const char *package, ob_error *e);
 // True if a child process could load it: commands ask before they begin, and workers that are forked later do not
 // inherit the library. Same errors.
 bool ob_part_check(const char *name, const char *package, ob_error *e);

@@ -9,12 +9,15 @@
 
 #include "base/utf8.h"
 #include "control/call.h"
-#include "control/packet.h"
+#include "control/inside.h"
 
 struct ob_controller {
-	int fd;
+	int fd; // -1: the run is inside
+	const ob_inside_part *part; // NULL: outside
+	ob_inside_run *inside;
 	ob_control_packet packet; // the current command
-	ob_control_answer answer; // the last one
+	const ob_control_answer *answer; // the last one
+	ob_control_answer received; // storage of an answer from outside
 };
 
 // Begins a command; call sends it.
@@ -27,11 +30,15 @@ static ob_control_packet *command(ob_controller *c, ob_control_command which)
 	return p;
 }
 
-// Sends the command and waits for its answer: a step takes as long as it takes.
+// Gives the command and waits for its answer: a step takes as long as it takes.
 static bool call(ob_controller *c, ob_error *e)
 {
 	const size_t bytes = offsetof(ob_control_packet, payload) + c->packet.bytes;
-	ob_control_answer *a = &c->answer;
+	ob_control_answer *a = &c->received;
+	if (c->inside) {
+		c->answer = c->part->call(c->inside, &c->packet, bytes);
+		return !*c->answer->error.text || ob_fail(e, "%s", c->answer->error.text);
+	}
 	ssize_t n = send(c->fd, &c->packet, bytes, MSG_NOSIGNAL);
 	if (n != (ssize_t)bytes)
 		return ob_fail(e, "the run has ended");
@@ -54,6 +61,7 @@ ob_controller *ob_controller_open(const ob_universe *u, ob_error *e)
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
+	c->answer = &c->received;
 	c->fd = ob_call_host(u, e);
 	if (c->fd >= 0) {
 		command(c, OB_CONTROL_HELLO);
@@ -64,10 +72,30 @@ ob_controller *ob_controller_open(const ob_universe *u, ob_error *e)
 	return NULL;
 }
 
+ob_controller *ob_controller_open_inside(const char *const *words, size_t n, char name[OB_NAME_MAX], ob_error *e)
+{
+	ob_controller *c = calloc(1, sizeof *c);
+	if (!c) {
+		ob_fail(e, "out of memory");
+		return NULL;
+	}
+	c->fd = -1;
+	c->answer = &c->received;
+	c->part = ob_part_load("inside", sizeof *c->part, OB_PART_OWN, "obsim", e);
+	c->inside = c->part ? c->part->open(words, n, name, e) : NULL;
+	command(c, OB_CONTROL_HELLO);
+	if (c->inside && call(c, e))
+		return c;
+	ob_controller_close(c);
+	return NULL;
+}
+
 void ob_controller_close(ob_controller *c)
 {
 	if (c && c->fd >= 0)
 		close(c->fd);
+	if (c && c->inside)
+		c->part->close(c->inside);
 	free(c);
 }
 
@@ -78,12 +106,12 @@ int ob_controller_fd(const ob_controller *c)
 
 uint64_t ob_controller_steps(const ob_controller *c)
 {
-	return c->answer.step;
+	return c->answer->step;
 }
 
 double ob_controller_time(const ob_controller *c)
 {
-	return c->answer.time;
+	return c->answer->time;
 }
 
 static bool call_number(ob_controller *c, ob_control_command which, uint64_t number, ob_error *e)
@@ -95,6 +123,24 @@ static bool call_number(ob_controller *c, ob_control_command which, uint64_t num
 bool ob_controller_step(ob_controller *c, uint64_t steps, ob_error *e)
 {
 	return call_number(c, OB_CONTROL_STEP, steps, e);
+}
+
+bool ob_controller_step_with(ob_controller *c, uint64_t steps, const ob_change *motor, size_t motors,
+			     const ob_change *force, size_t forces, ob_error *e)
+{
+	if (motors > OB_CONTROL_BATCH || forces > OB_CONTROL_BATCH - motors)
+		return ob_controller_set_motors(c, motor, motors, e) && ob_controller_set_forces(c, force, forces, e) &&
+		       ob_controller_step(c, steps, e);
+	ob_control_packet *p = command(c, OB_CONTROL_STEP);
+	p->number = steps;
+	p->count = (uint32_t)motors;
+	p->forces = (uint32_t)forces;
+	p->bytes = (uint32_t)((motors + forces) * sizeof *motor);
+	if (motors)
+		memcpy(p->payload, motor, motors * sizeof *motor);
+	if (forces)
+		memcpy(p->payload + motors * sizeof *motor, force, forces * sizeof *force);
+	return call(c, e);
 }
 
 bool ob_controller_run(ob_controller *c, double pace, ob_error *e)
@@ -111,7 +157,7 @@ bool ob_controller_pause(ob_controller *c, ob_error *e)
 bool ob_controller_snapshot(ob_controller *c, uint64_t *snapshot, ob_error *e)
 {
 	const bool fine = call_number(c, OB_CONTROL_SNAPSHOT, 0, e);
-	*snapshot = fine ? c->answer.number : 0;
+	*snapshot = fine ? c->answer->number : 0;
 	return fine;
 }
 
@@ -221,8 +267,8 @@ bool ob_controller_create(ob_controller *c, const char *text, uint32_t *ids, siz
 	memcpy(p->payload, text, bytes);
 	if (!call(c, e))
 		return false;
-	const size_t count = c->answer.count < OB_CONTROL_IDS ? c->answer.count : OB_CONTROL_IDS;
-	memcpy(ids, c->answer.id, (count < max ? count : max) * sizeof *ids);
+	const size_t count = c->answer->count < OB_CONTROL_IDS ? c->answer->count : OB_CONTROL_IDS;
+	memcpy(ids, c->answer->id, (count < max ? count : max) * sizeof *ids);
 	*n = count;
 	return true;
 }
@@ -293,9 +339,9 @@ bool ob_controller_take_contacts(ob_controller *c, ob_contact_event *out, size_t
 		const size_t most = max - *n < EACH ? max - *n : EACH;
 		if (!call_number(c, OB_CONTROL_EVENTS, most, e))
 			return false;
-		some = c->answer.count < most ? c->answer.count : most;
-		memcpy(out + *n, c->answer.event, some * sizeof *out);
-		*lost += c->answer.number;
+		some = c->answer->count < most ? c->answer->count : most;
+		memcpy(out + *n, c->answer->event, some * sizeof *out);
+		*lost += c->answer->number;
 	}
 	return true;
 }

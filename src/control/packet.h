@@ -19,7 +19,8 @@ enum { OB_CONTROL_PAYLOAD = 60000, OB_CONTROL_IDS = 1000 };
 
 typedef enum ob_control_command {
 	OB_CONTROL_HELLO,
-	OB_CONTROL_STEP, // number: steps; the answer comes when they are complete
+	OB_CONTROL_STEP, // number: steps; the answer comes when they are complete. payload: count changes of motors, then of
+	// forces, made before
 	OB_CONTROL_RUN, // value: pace; the answer comes at once
 	OB_CONTROL_PAUSE,
 	OB_CONTROL_SNAPSHOT, // the answer has its number
@@ -53,7 +54,7 @@ typedef struct ob_control_packet {
 	char magic[8];
 	uint32_t command; // ob_control_command
 	uint32_t count, bytes; // of the payload
-	uint32_t zero;
+	uint32_t forces; // of OB_CONTROL_STEP
 	uint64_t number;
 	double value;
 	unsigned char payload[OB_CONTROL_PAYLOAD]; // the first bytes of it are sent

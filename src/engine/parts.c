@@ -16,7 +16,7 @@ struct ob_engine {
 static ob_engine *create(const char *name, const char *package, const ob_world *w, const ob_run_settings *s,
 			 uint32_t variant, ob_error *e)
 {
-	const ob_engine_part *part = ob_part_load(name, sizeof *part, false, package, e);
+	const ob_engine_part *part = ob_part_load(name, sizeof *part, OB_PART_PROGRAM, package, e);
 	if (!part)
 		return NULL;
 	ob_engine *p = malloc(sizeof *p);

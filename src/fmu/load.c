@@ -4,7 +4,7 @@
 
 bool ob_fmu_read(const unsigned char *bytes, size_t size, ob_fmu_file *out, ob_error *e)
 {
-	const ob_fmu_part *part = ob_part_load("fmu", sizeof *part, false, "libzip4 and libexpat1", e);
+	const ob_fmu_part *part = ob_part_load("fmu", sizeof *part, OB_PART_PROGRAM, "libzip4 and libexpat1", e);
 	*out = (ob_fmu_file){ .standard = 0 };
 	if (part && part->read(bytes, size, out, e))
 		return true;

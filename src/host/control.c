@@ -23,6 +23,9 @@ enum { IDLE_MS = 50 };
 static const uint32_t pulling = 1u << 31; // origin of the program's pulls; viewers count from 1
 
 struct ob_control {
+	bool inside; // the program gives its commands itself, and takes the answers
+	size_t given; // bytes of its next command, in packet; 0: none
+	bool answered;
 	int taken[2]; // pipe: sockets of programs, from the supervisor
 	atomic_bool busy; // a program controls the run
 	int fd; // its socket; -1: none
@@ -37,7 +40,7 @@ struct ob_control {
 	ob_control_answer answer;
 };
 
-ob_control *ob_control_create(ob_error *e)
+ob_control *ob_control_create(bool inside, ob_error *e)
 {
 	ob_control *c = calloc(1, sizeof *c);
 	if (!c || pipe2(c->taken, O_CLOEXEC | O_NONBLOCK) != 0) {
@@ -45,6 +48,7 @@ ob_control *ob_control_create(ob_error *e)
 		free(c);
 		return NULL;
 	}
+	c->inside = inside;
 	c->fd = -1;
 	c->origin = pulling;
 	ob_pace_begin(&c->pace, 1, false);
@@ -80,6 +84,9 @@ static void answer(ob_control *c, ob_host *h)
 	ob_control_answer *a = &c->answer;
 	a->step = ob_step_count(u);
 	a->time = (double)a->step * ob_universe_settings(u)->step_length;
+	c->answered = true;
+	if (c->inside)
+		return;
 	const ssize_t ignored = send(c->fd, a, sizeof *a, MSG_NOSIGNAL | MSG_DONTWAIT); // it is small, and the only one
 	(void)ignored;
 }
@@ -87,6 +94,7 @@ static void answer(ob_control *c, ob_host *h)
 void ob_control_end(ob_control *c, const char *why)
 {
 	ob_fail(&c->answer.error, "%s", why);
+	c->answered = true;
 	if (c->fd >= 0 && (c->stepping || c->turn == OB_CONTROL_RESETS))
 		send(c->fd, &c->answer, sizeof c->answer, MSG_NOSIGNAL | MSG_DONTWAIT);
 	if (c->fd >= 0)
@@ -145,24 +153,28 @@ static void read_change(const ob_change *change, ob_request *r)
 		r->colour[i] = (float)v[i];
 }
 
-// All of the changes, or none.
-static bool change_objects(ob_control *c, ob_host *h, ob_request_kind kind, ob_error *e)
+// All changes of the packet, or none: those of a kind, and behind them `forces` changes of forces.
+static bool change_objects(ob_control *c, ob_host *h, ob_request_kind kind, uint32_t forces, ob_error *e)
 {
 	const ob_control_packet *p = &c->packet;
-	bool fine = p->count <= OB_CONTROL_BATCH && p->bytes == p->count * sizeof(ob_change);
+	bool fine = p->count <= OB_CONTROL_BATCH && forces <= OB_CONTROL_BATCH - p->count &&
+		    p->bytes == (p->count + forces) * sizeof(ob_change);
 	if (!fine)
 		return ob_fail(e, "the list of changes has a wrong length");
-	ob_request *all = calloc(p->count + 1, sizeof *all);
+	const uint32_t n = p->count + forces;
+	if (!n)
+		return true;
+	ob_request *all = calloc(n, sizeof *all);
 	if (!all)
 		return ob_fail(e, "out of memory");
-	for (uint32_t i = 0; i < p->count && fine; i++) {
+	for (uint32_t i = 0; i < n && fine; i++) {
 		ob_change change;
 		memcpy(&change, p->payload + i * sizeof change, sizeof change);
-		all[i].kind = kind;
+		all[i].kind = i < p->count ? kind : OB_REQUEST_FORCE;
 		read_change(&change, &all[i]);
 		fine = find_object(h, &change, &all[i], e) && ob_request_check(h, &all[i], e);
 	}
-	for (uint32_t i = 0; i < p->count && fine; i++)
+	for (uint32_t i = 0; i < n && fine; i++)
 		fine = ob_host_ask(h, &all[i], e);
 	free(all);
 	flush(h);
@@ -317,6 +329,8 @@ static bool begin_steps(ob_control *c, const ob_host *h, uint64_t last, ob_error
 
 static bool begin_run(ob_control *c, ob_error *e)
 {
+	if (c->inside)
+		return ob_fail(e, "go: inside a program a run goes on by its steps alone; take it outside");
 	if (!(c->packet.value > 0))
 		return ob_fail(e, "pace: expected a positive number, got %g", c->packet.value);
 	ob_pace_set_rate(&c->pace, c->packet.value);
@@ -334,7 +348,7 @@ static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
 		return true;
 	case OB_CONTROL_STEP:
 		c->running = false;
-		return begin_steps(c, h, last, e);
+		return change_objects(c, h, OB_REQUEST_MOTOR, c->packet.forces, e) && begin_steps(c, h, last, e);
 	case OB_CONTROL_RUN:
 		return begin_run(c, e);
 	case OB_CONTROL_PAUSE:
@@ -363,7 +377,7 @@ static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
 	default:
 		if (c->packet.command >= OB_CONTROL_COMMANDS)
 			return ob_fail(e, "this version of obsim has no command %u", c->packet.command);
-		return change_objects(c, h, changes[c->packet.command], e);
+		return change_objects(c, h, changes[c->packet.command], 0, e);
 	}
 }
 
@@ -386,6 +400,26 @@ static void take_command(ob_control *c, ob_host *h, uint64_t last, ssize_t n)
 		c->answer.error = e;
 	if (!c->stepping && c->turn == OB_CONTROL_GOES_ON)
 		answer(c, h);
+}
+
+void ob_control_give(ob_control *c, const ob_control_packet *p, size_t bytes)
+{
+	memcpy(&c->packet, p, bytes);
+	c->given = bytes;
+	c->answered = false;
+}
+
+const ob_control_answer *ob_control_answered(const ob_control *c)
+{
+	return c->answered ? &c->answer : NULL;
+}
+
+static void take_given(ob_control *c, ob_host *h, uint64_t last)
+{
+	const ssize_t n = (ssize_t)c->given;
+	c->given = 0;
+	if (n > 0)
+		take_command(c, h, last, n);
 }
 
 // Waits for the program, or for a first one. false: it has left.
@@ -447,7 +481,9 @@ ob_control_turn ob_control_next(ob_control *c, ob_host *h, uint64_t last, uint64
 		answer(c, h);
 	}
 	const bool stands = !c->stepping && (!c->running || now >= last);
-	if (!listen_for(c, h, last, stands ? IDLE_MS : 0))
+	if (c->inside)
+		take_given(c, h, last);
+	else if (!listen_for(c, h, last, stands ? IDLE_MS : 0))
 		return OB_CONTROL_LEFT;
 	now = ob_step_count(h->u); // a snapshot may have been restored
 	*step = now;

@@ -14,7 +14,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <ob/error.h>
+#include "control/packet.h"
 
 typedef struct ob_host ob_host;
 typedef struct ob_control ob_control;
@@ -27,7 +27,8 @@ typedef enum ob_control_turn {
 	OB_CONTROL_RESETS, // begins the run anew, with the parameters of ob_control_words, in a new host; or refuses
 } ob_control_turn;
 
-ob_control *ob_control_create(ob_error *e);
+// inside: the program is the caller, which gives its commands itself.
+ob_control *ob_control_create(bool inside, ob_error *e);
 void ob_control_destroy(ob_control *c); // the host has been stopped; NULL is allowed
 
 // Takes over a caller's socket. false and e: another program controls the run.
@@ -40,6 +41,9 @@ const char *ob_control_words(const ob_control *c, uint32_t *count, const uint64_
 // Answers that command. why: NULL = done; else the run is as before. A reset that succeeds is answered by the next
 // ob_control_next, for the new host.
 void ob_control_reply(ob_control *c, ob_host *h, const ob_error *why);
+// Inside: gives the next command, of so many bytes; ob_control_next carries it out. answer: NULL until then.
+void ob_control_give(ob_control *c, const ob_control_packet *p, size_t bytes);
+const ob_control_answer *ob_control_answered(const ob_control *c);
 // Tells the program why the run has ended.
 void ob_control_end(ob_control *c, const char *why);
 

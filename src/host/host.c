@@ -61,6 +61,17 @@ static bool check_ode_joints(const ob_scene *scene, ob_error *e)
 	return true;
 }
 
+// Refuses what takes processes of its own.
+static bool check_inside(const ob_host_config *c, ob_error *e)
+{
+	const char *lacks = c->workers != 1      ? "other workers"
+			    : c->free            ? "free runs"
+			    : c->ranks.ranks > 1 ? "ranks"
+			    : c->trace           ? "traces"
+						 : NULL;
+	return !lacks || ob_fail(e, "inside: a run within a program has no %s; take one outside", lacks);
+}
+
 static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_error *e)
 {
 	const ob_run_settings *r = &c->run;
@@ -76,6 +87,8 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 			       c->workers ? (unsigned long long)c->workers
 					  : (unsigned long long)scene->objects + c->spare +
 						    (scene->scripts ? scene->room : 0));
+	if (c->isolation == OB_ISOLATION_INSIDE && !check_inside(c, e))
+		return false;
 	if (c->harden && (c->isolation != OB_ISOLATION_PROCESS || r->monolith))
 		return ob_fail(e, "harden: only object simulators in processes can be contained");
 	if (c->ranks.ranks > 1 && (!has_outboxes(c) || c->workers == 0 || c->on_death != OB_ON_DEATH_ABORT))
@@ -201,6 +214,11 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		texts = script_texts(scene, &setup.script_bytes);
 		if (!texts)
 			return ob_fail(e, "out of memory"), NULL;
+		if (spawn->pass && ob_script_count_foreign(texts, UINT32_MAX)) {
+			free(texts);
+			ob_fail(e, "inside: a run within a program has no FMUs; take one outside");
+			return NULL;
+		}
 		setup.script_text = texts;
 		setup.script_cells = scripted_objects(scene) + scene->room + (scene->avatar ? c->spare : 0);
 		setup.script_cells += !setup.script_cells;
@@ -291,15 +309,17 @@ static bool wait_until_ready(ob_host *h, ob_error *e)
 
 static bool start_workers(ob_host *h, ob_error *e)
 {
-	h->interrupt_fd = ob_interrupt_watch();
-	if (h->interrupt_fd < 0)
+	const bool apart = !h->spawn->pass;
+	if (apart)
+		h->interrupt_fd = ob_interrupt_watch();
+	if (apart && h->interrupt_fd < 0)
 		return ob_fail(e, "cannot watch for signals: %s", strerror(errno));
 	h->running_workers = 0;
 	for (uint32_t w = 0; w < h->workers; w++)
-		h->running_workers += ob_worker_is_here(h->u, w);
+		h->running_workers += apart && ob_worker_is_here(h->u, w);
 	h->group = h->spawn->start(
 		&(ob_worker_group_setup){ .u = h->u, .fork_server = h->fork_server, .run = ob_worker_live }, e);
-	return h->group && ob_supervisor_start(h, e) && wait_until_ready(h, e);
+	return h->group && (!apart || ob_supervisor_start(h, e)) && wait_until_ready(h, e);
 }
 
 ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_error *e)
@@ -330,16 +350,19 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	h->fixed = config->fixed;
 	h->checkpoint = config->checkpoint;
 	h->pace = config->pace;
-	h->spawn = config->isolation == OB_ISOLATION_PROCESS ? &ob_spawn_processes : &ob_spawn_threads;
+	h->spawn = config->isolation == OB_ISOLATION_PROCESS  ? &ob_spawn_processes
+		   : config->isolation == OB_ISOLATION_INSIDE ? &ob_spawn_inside
+							      : &ob_spawn_threads;
 	pthread_mutex_init(&h->failure_lock, NULL);
 	pthread_mutex_init(&h->interval.lock, NULL);
-	raise_task_limit();
+	if (!h->spawn->pass)
+		raise_task_limit();
 	h->u = make_universe(scene, config, h->spawn, e);
 	h->workers = h->u ? ob_universe_workers(h->u) : 0;
 	// the fork server first: it and its children inherit as little as possible
-	h->fork_server = h->u ? ob_fork_server_start(h->u, ob_worker_live, h->patience, e) : NULL;
-	if (!h->fork_server || !start_timeline(h, config->trace, e) || !place_objects(h, scene, config, e) ||
-	    !start_workers(h, e)) {
+	h->fork_server = h->u && !h->spawn->pass ? ob_fork_server_start(h->u, ob_worker_live, h->patience, e) : NULL;
+	if (!(h->fork_server || (h->u && h->spawn->pass)) || !start_timeline(h, config->trace, e) ||
+	    !place_objects(h, scene, config, e) || !start_workers(h, e)) {
 		ob_host_stop(h);
 		return NULL;
 	}

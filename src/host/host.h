@@ -33,7 +33,9 @@ typedef struct ob_saved_host {
 	ob_counters counters; // of all workers together
 } ob_saved_host;
 
-typedef enum ob_isolation { OB_ISOLATION_THREAD, OB_ISOLATION_PROCESS } ob_isolation;
+// INSIDE: the thread that waits for the run is its only worker; the host starts no thread and no process, leaves signals to
+// the program, and is not reached by others than its caller.
+typedef enum ob_isolation { OB_ISOLATION_THREAD, OB_ISOLATION_PROCESS, OB_ISOLATION_INSIDE } ob_isolation;
 
 // Limit of deaths within some seconds; more end the run (OTP's restart intensity). deaths 0: only deaths that prevent
 // progress do (restart.h).

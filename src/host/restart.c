@@ -473,7 +473,7 @@ static bool start_workers(ob_host *h, const char *why)
 	h->restart.requested = false;
 	if (h->interrupted)
 		return false;
-	h->running_workers = h->workers;
+	h->running_workers = h->spawn->pass ? 0 : h->workers;
 	if (!h->spawn->restart(h->group, &e)) {
 		ob_host_set_failure(h, "%s; %s", why, e.text);
 		return false;

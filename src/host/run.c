@@ -222,9 +222,15 @@ static bool spin_for_turn(ob_host *h)
 	return turn;
 }
 
-// True if the host gets its turn within one poll interval.
+// True if the host gets its turn within one poll interval, or by working itself.
 static bool wait_for_turn(ob_host *h)
 {
+	if (h->spawn->pass) {
+		if (!h->spawn->pass(h->group))
+			ob_host_set_failure(h, "out of memory after step %llu",
+					    (unsigned long long)ob_step_count(h->u));
+		return true;
+	}
 	bool turn = spin_for_turn(h);
 	for (int i = 0; i < LOOKS_PER_POLL && !turn; i++) {
 		turn = ob_free_settings_of(h->u) ? ob_host_free_wait(h, poll_interval / LOOKS_PER_POLL)

@@ -1,5 +1,5 @@
-// Workers as threads or as processes. Code above this interface uses an ob_spawn without regard to the kind; only
-// spawn_thread.c and spawn_process.c depend on it.
+// Workers as threads, as processes, or as the calling thread. Code above this interface uses an ob_spawn without regard to the kind; only
+// spawn_thread.c, spawn_process.c and spawn_inside.c depend on it.
 //
 // Thread-safety: one thread at a time per group.
 #ifndef OB_HOST_SPAWN_H
@@ -37,6 +37,9 @@ typedef struct ob_spawn {
 	// After ob_gate_stop: waits until all have left, at most timeout (s), and frees g. false: some have not left
 	// and may still access the universe.
 	bool (*join)(ob_worker_group *g, double timeout);
+	// Works for the thread that waits for the run, until the host has its turn; NULL: workers run by themselves, and each
+	// end is reported. false: no memory.
+	bool (*pass)(ob_worker_group *g);
 	double leave_timeout; // s, for join: a process that does not leave can be killed, a thread cannot
 	bool own_memory; // a worker has an address space apart from the host's, and can die alone
 } ob_spawn;
@@ -47,6 +50,6 @@ static inline int ob_spawn_poll_ms(double left)
 	return left < .1 ? (int)(1000 * left) + 1 : 100;
 }
 
-extern const ob_spawn ob_spawn_threads, ob_spawn_processes;
+extern const ob_spawn ob_spawn_threads, ob_spawn_processes, ob_spawn_inside;
 
 #endif

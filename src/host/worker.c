@@ -14,6 +14,13 @@
 #include "script/script.h"
 #include "step/sim.h"
 
+struct ob_worker {
+	ob_universe *u;
+	uint32_t number;
+	ob_sim *sim;
+	ob_script_runner *scripts; // NULL: the scene has none
+};
+
 static _Thread_local jmp_buf no_memory;
 
 // Leaves from any point of the worker's code; memory held there is not freed.
@@ -45,48 +52,83 @@ static bool join(ob_sim *s, const ob_universe *u, ob_wire **wire, ob_error *e)
 	return ob_sim_join(s, &peers, e);
 }
 
-static int live(ob_universe *u, uint32_t worker)
+ob_worker *ob_worker_begin(ob_universe *u, uint32_t number, bool pinned, ob_error *e)
 {
-	ob_error e;
-	ob_wire *wire = NULL;
-	const bool arranges = ob_universe_contains(u) && worker == ob_universe_simulators(u);
-	int cpu = arranges ? -1 // any core
-			   : ob_cpu_pin(worker); // in turn, where workers or ranks of this machine exceed its cores
+	ob_worker *w = calloc(1, sizeof *w);
+	const bool arranges = ob_universe_contains(u) && number == ob_universe_simulators(u);
+	const int cpu =
+		arranges || !pinned
+			? -1 // any core
+			: ob_cpu_pin(number); // in turn, where workers or ranks of this machine exceed its cores
 	ob_ode_init();
 	ob_ode_thread_init();
-	ob_sim *s = ob_sim_create(u, worker, &e);
-	ob_script_runner *scripts = NULL;
-	if (s && ob_universe_step_data(u)->script_counts) {
-		scripts = ob_script_runner_create(u, worker);
-		if (scripts) {
-			ob_sim_set_scripts(s, ob_script_runner_run, scripts);
-		} else {
-			ob_sim_destroy(s);
-			s = NULL;
-		}
+	if (w)
+		*w = (ob_worker){ .u = u, .number = number, .sim = ob_sim_create(u, number, e) };
+	bool fine = w && w->sim;
+	if (fine && ob_universe_step_data(u)->script_counts) {
+		w->scripts = ob_script_runner_create(u, number);
+		fine = w->scripts;
+		if (fine)
+			ob_sim_set_scripts(w->sim, ob_script_runner_run, w->scripts);
 	}
-	if (s)
-		ob_worker_announce(u, worker, getpid(), gettid(), cpu); // from now on it is ready for the gate
-	bool ready = s && ob_confine(u, worker, &e) && (!arranges || join(s, u, &wire, &e));
-	if (ready && ob_free_settings_of(u))
-		ready = ob_free_work(u, worker, &e);
-	else if (ready)
-		ob_sim_run(s);
-	else if (s)
-		ob_log_warn("worker %u: %s", worker, e.text);
-	if (wire)
-		ob_sim_leave(s);
-	ob_wire_close(wire);
-	ob_sim_destroy(s);
-	ob_script_runner_destroy(scripts);
+	if (fine) {
+		ob_worker_announce(u, number, getpid(), gettid(), cpu); // from now on it is ready for the gate
+		return w;
+	}
+	ob_worker_leave(w);
+	ob_fail(e, "worker %u: no memory", number);
+	return NULL;
+}
+
+void ob_worker_leave(ob_worker *w)
+{
+	if (!w)
+		return;
+	ob_sim_destroy(w->sim);
+	ob_script_runner_destroy(w->scripts);
 	ob_ode_thread_finish();
-	return ready ? EXIT_SUCCESS : s ? EXIT_FAILURE : OB_WORKER_NO_MEMORY;
+	free(w);
+}
+
+bool ob_worker_pass(ob_worker *w)
+{
+	if (setjmp(no_memory) != 0)
+		return false;
+	ob_allocate_or_else(leave_without_memory);
+	while (!ob_gate_host_wait(w->u, 0) && ob_step(w->sim))
+		;
+	ob_allocate_or_else(NULL);
+	return true;
+}
+
+// Runs a worker to the end of the run. false and e: it cannot.
+static bool run(ob_worker *w, ob_error *e)
+{
+	ob_wire *wire = NULL;
+	const bool arranges = ob_universe_contains(w->u) && w->number == ob_universe_simulators(w->u);
+	bool fine = ob_confine(w->u, w->number, e) && (!arranges || join(w->sim, w->u, &wire, e));
+	if (fine && ob_free_settings_of(w->u))
+		fine = ob_free_work(w->u, w->number, e);
+	else if (fine)
+		ob_sim_run(w->sim);
+	if (wire)
+		ob_sim_leave(w->sim);
+	ob_wire_close(wire);
+	return fine;
 }
 
 int ob_worker_live(ob_universe *u, uint32_t worker)
 {
+	ob_error e;
 	if (setjmp(no_memory) != 0)
 		return OB_WORKER_NO_MEMORY;
 	ob_allocate_or_else(leave_without_memory);
-	return live(u, worker);
+	ob_worker *w = ob_worker_begin(u, worker, true, &e);
+	if (!w)
+		return OB_WORKER_NO_MEMORY;
+	const bool fine = run(w, &e);
+	if (!fine)
+		ob_log_warn("worker %u: %s", worker, e.text);
+	ob_worker_leave(w);
+	return fine ? EXIT_SUCCESS : EXIT_FAILURE;
 }

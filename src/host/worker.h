@@ -1,4 +1,4 @@
-// A worker, the same in a thread and in a process: the code it runs, and the report of its end.
+// A worker, the same in a thread, in a process and within a program: the code it runs, and the report of its end.
 #ifndef OB_HOST_WORKER_H
 #define OB_HOST_WORKER_H
 
@@ -11,6 +11,14 @@ typedef int (*ob_worker_run)(ob_universe *u, uint32_t worker);
 
 // The ob_worker_run of all runs: object simulators (or the monolith) until STOP.
 int ob_worker_live(ob_universe *u, uint32_t worker);
+
+// The same, step by step, for a thread that has other things to do, too (spawn_inside.c). All in one thread.
+typedef struct ob_worker ob_worker;
+// Begins a worker, which may be pinned to a core, and announces it. NULL and e: no memory.
+ob_worker *ob_worker_begin(ob_universe *u, uint32_t number, bool pinned, ob_error *e);
+// Takes part in phases until the host has its turn, or the gate is stopped. false: no memory; nothing of it may be used again.
+bool ob_worker_pass(ob_worker *w);
+void ob_worker_leave(ob_worker *w); // NULL is allowed
 
 // Last lines that a process wrote on standard error, as many as fit, newest last, with | between them.
 enum { OB_LAST_WORDS = 400 };

@@ -104,7 +104,7 @@ static _Noreturn void be_child(const char *path, const char *folder, int link, p
 		_exit(EXIT_FAILURE);
 	if (!OB_SANITIZED && !freopen("/dev/null", "w", stderr)) // for what libraries print
 		_exit(EXIT_FAILURE);
-	const ob_import_part *part = ob_part_load("import", sizeof *part, false, MUJOCO, &r.e);
+	const ob_import_part *part = ob_part_load("import", sizeof *part, OB_PART_PROGRAM, MUJOCO, &r.e);
 	limit();
 	guarded = true;
 	FILE *scene = open_memstream(&text[0], &size[0]), *omitted = open_memstream(&text[1], &size[1]);

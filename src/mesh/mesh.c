@@ -167,7 +167,7 @@ bool ob_mesh_read(ob_mesh *m, const void *bytes, size_t size, ob_error *e)
 		return ob_fail(e, "it is larger than %d MiB", OB_MESH_FILE_MAX >> 20);
 	const ob_gltf_part *part = NULL;
 	if (check_header(bytes, size, e))
-		part = ob_part_load("gltf", sizeof *part, false, "libtinygltf2d and libjpeg62-turbo", e);
+		part = ob_part_load("gltf", sizeof *part, OB_PART_PROGRAM, "libtinygltf2d and libjpeg62-turbo", e);
 	if (!part || !part->read(m, bytes, size, e))
 		return false;
 	if (ob_mesh_makes_sense(m))

@@ -8,7 +8,7 @@
 
 static const ob_plot_part *load(ob_error *e)
 {
-	return ob_part_load("cairo", sizeof(ob_plot_part), false, PACKAGE, e);
+	return ob_part_load("cairo", sizeof(ob_plot_part), OB_PART_PROGRAM, PACKAGE, e);
 }
 
 bool ob_plot_check(ob_error *e)

@@ -109,7 +109,7 @@ static bool join(ob_wire *w, const ob_ranks *ranks, ob_error *e)
 	if (!w->mine || !w->first || !w->at || !w->rest_at || !w->rest || !w->mine_at || !w->mine_rest)
 		return ob_fail(e, "out of memory");
 	// global: MPI loads parts of itself, which look for its symbols
-	w->module = ob_part_load("mpi", sizeof *w->module, true, "libopenmpi3", e);
+	w->module = ob_part_load("mpi", sizeof *w->module, OB_PART_OPEN, "libopenmpi3", e);
 	if (!w->module)
 		return false;
 	ob_ranks_limit_start(JOIN_S, ranks->rank);

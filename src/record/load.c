@@ -5,7 +5,7 @@
 
 static const ob_record_part *load(ob_error *e)
 {
-	return ob_part_load("hdf5", sizeof(ob_record_part), false, PACKAGE, e);
+	return ob_part_load("hdf5", sizeof(ob_record_part), OB_PART_PROGRAM, PACKAGE, e);
 }
 
 static const ob_record_part *part_of(const void *object)

@@ -15,7 +15,7 @@ bool ob_render_check(ob_error *e)
 
 ob_renderer *ob_renderer_create(const ob_render_setup *r, const ob_look_def *look, ob_error *e)
 {
-	const ob_render_part *part = ob_part_load("render", sizeof *part, false, PACKAGES, e);
+	const ob_render_part *part = ob_part_load("render", sizeof *part, OB_PART_PROGRAM, PACKAGES, e);
 	ob_renderer *created = part ? part->create(r, look, e) : NULL;
 	if (created)
 		((ob_renderer_base *)created)->part = part;

@@ -10,7 +10,7 @@ bool ob_serve_check(ob_error *e)
 
 ob_server *ob_server_start(const ob_server_config *c, ob_host *const *h, uint32_t hosts, ob_pace *pace, ob_error *e)
 {
-	const ob_serve_part *part = ob_part_load("serve", sizeof *part, false, PACKAGE, e);
+	const ob_serve_part *part = ob_part_load("serve", sizeof *part, OB_PART_PROGRAM, PACKAGE, e);
 	ob_server *s = part ? part->start(c, h, hosts, pace, e) : NULL;
 	if (s)
 		((ob_server_base *)s)->part = part;

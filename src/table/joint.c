@@ -266,6 +266,14 @@ bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *v
 	return ob_joint_value(&j, states, value, rate);
 }
 
+bool ob_universe_get_joint_values(const ob_universe *u, const uint32_t *joint, size_t n, double *values)
+{
+	bool fine = true;
+	for (size_t i = 0; i < n && fine; i++)
+		fine = ob_universe_get_joint_value(u, joint[i], &values[2 * i], &values[2 * i + 1]);
+	return fine;
+}
+
 bool ob_universe_get_joint_load(const ob_universe *u, uint32_t joint, ob_joint_load *out)
 {
 	enum { TRIES = 8 };

@@ -45,7 +45,7 @@ static bool begin(led_run *r, const ob_scene *s, ob_isolation isolation, uint32_
 {
 	ob_error e;
 	ob_host_config c = little_config(s, isolation, workers);
-	r->control = ob_control_create(&e);
+	r->control = ob_control_create(false, &e);
 	c.control = r->control;
 	c.spare = 100;
 	r->host = ob_host_start(s, &c, &e);

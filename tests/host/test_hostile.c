@@ -191,7 +191,7 @@ static void attack(ob_isolation isolation, long packets)
 	ob_error e = { "" };
 	ob_scene s = little_scene(BALLS);
 	ob_host_config c = little_config(&s, isolation, 2);
-	led_run r = { .control = ob_control_create(&e) };
+	led_run r = { .control = ob_control_create(false, &e) };
 	s.object[BALLS].passport.flags |= OB_OBJECT_KINEMATIC;
 	s.object[BALLS].passport.mass = 0;
 	c.control = r.control;

@@ -582,7 +582,7 @@ hinge { "pole", "cart", name = "foot", at = { 0, 0, 1.05 }, axis = { 0, 1, 0 } }
             self.says('must be a number', lambda: setattr(u.joints['rail'], 'target', numpy.nan))
 
     def test_restore_forgets(self):
-        """What was created since is gone without a trace: near many triangles flights follow the number of objects."""
+        """Objects created since are gone without a trace: near many triangles flights follow the number of objects."""
         scene = """
             heightfield { size = { 20, 20 }, cells = { 40, 40 }, height = function(x, y) return .2 * math.sin(x * y) end }
             for i = 1, 10 do

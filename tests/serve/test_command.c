@@ -77,7 +77,8 @@ static void test_meaning(void)
 	CHECK(reads("{\"do\":\"edit\",\"id\":1,\"generation\":1,\"surface\":[1,2,3],\"force\":[0,0,4]}", &c));
 	CHECK(c.requests == 2 && q->kind == OB_REQUEST_SURFACE && q->surface_velocity.z == 3);
 	CHECK(c.request[1].kind == OB_REQUEST_FORCE && c.request[1].force.z == 4 && c.request[1].id == 1);
-	CHECK(reads("{\"do\":\"edit\",\"id\":1,\"generation\":1,\"at\":[1,2,3],\"attitude\":[0.6,0.8,0,0],\"velocity\":[1,2,3],"
+	CHECK(reads("{\"do\":\"edit\",\"id\":1,\"generation\":1,\"at\":[1,2,3],\"attitude\":[0.6,0.8,0,0],\"velocity\":"
+		    "[1,2,3],"
 		    "\"spin\":[0,0,1],\"friction\":0.5,\"colour\":[0.1,0.2,0.3],\"surface\":[1,0,0],\"force\":[0,0,4]}",
 		    &c)); // all lists that a command can have
 	CHECK(c.request[c.requests - 1].force.z == 4);

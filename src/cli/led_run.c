@@ -1,0 +1,181 @@
+#include "cli/led_run.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "checkpoint/saved_run.h"
+#include "cli/observe.h"
+#include "cli/quantity.h"
+#include "cli/save.h"
+#include "host/host.h"
+#include "table/table.h"
+
+// ---- the scene
+
+// Inside, the caller is the only worker.
+static bool take_inside(ob_run_request *q, const ob_arguments *a, ob_error *e)
+{
+	if (q->isolation_given || q->harden)
+		return ob_fail(e, "inside: the program is the only worker: leave --%s away",
+			       q->isolation_given ? "isolation" : "harden");
+	q->isolation = OB_ISOLATION_INSIDE;
+	q->workers = a->value[OB_OPTION_WORKERS] ? q->workers : 1;
+	return true;
+}
+
+static bool load(ob_led_run *r, bool inside, ob_error *e)
+{
+	ob_run_request *q = &r->q;
+	if (!ob_request_read(q, r->a, e) || (inside && !take_inside(q, r->a, e)) ||
+	    !ob_number_count("room", r->a->value[OB_OPTION_ROOM], 0, 1000000, &r->room, e))
+		return false;
+	if (!q->resume) {
+		snprintf(r->path, sizeof r->path, "%s", q->scene);
+		q->scene = r->path;
+		r->scene = ob_scene_load(q->scene, &q->scene_options, e);
+		return r->scene && ob_request_resolve(q, r->scene, e);
+	}
+	r->scene = ob_saved_run_open_with_scene(&r->saved, &r->saved_file, q->resume, e);
+	return r->scene && ob_request_resume(q, &r->saved, r->scene, e);
+}
+
+static void forget_defines(const char **defines, uint32_t first, uint32_t count)
+{
+	for (uint32_t i = first; i < count; i++)
+		free((char *)defines[i]);
+	free(defines);
+}
+
+// Copies the parameters so far, and those of a reset behind them, where they count.
+static const char **add_defines(const ob_led_run *r, const char *words, uint32_t count)
+{
+	const ob_scene_options *o = &r->q.scene_options;
+	const uint32_t first = o->define_count - r->own;
+	const char **all = calloc(o->define_count + count + 1, sizeof *all);
+	bool fine = all;
+	for (uint32_t i = 0; fine && i < o->define_count + count; i++) {
+		const char *word = i < o->define_count ? o->defines[i] : words;
+		words += i < o->define_count ? 0 : strlen(words) + 1;
+		all[i] = i < first ? word : strdup(word);
+		fine = all[i];
+	}
+	if (fine || !all)
+		return all;
+	forget_defines(all, first, o->define_count + count);
+	return NULL;
+}
+
+// ---- the run
+
+bool ob_led_run_start(ob_led_run *r, ob_error *e)
+{
+	ob_host_config config = ob_request_host(&r->q);
+	config.control = r->control;
+	config.spare = (uint32_t)r->room;
+	config.from = r->saved.host.universe.ids ? &r->saved.host : NULL;
+	r->host = ob_host_start(r->scene, &config, e);
+	if (!r->host)
+		return false;
+	ob_warn_of_overlap(r->host);
+	r->step = ob_step_count(ob_host_universe(r->host));
+	ob_host_go(r->host, r->step);
+	return ob_host_wait(r->host, e);
+}
+
+// Begins the run anew, as a reset wants it. false and e: the run has ended.
+static bool reset(ob_led_run *r, ob_error *e)
+{
+	uint32_t words;
+	const uint64_t *seed;
+	const char *word = ob_control_words(r->control, &words, &seed);
+	ob_run_request q = r->q;
+	ob_scene_options *o = &q.scene_options;
+	const uint32_t first = o->define_count - r->own;
+	const char **defines = add_defines(r, word, words);
+	o->defines = defines;
+	o->define_count += words;
+	o->has_seed |= seed != NULL;
+	o->seed = seed ? *seed : o->seed;
+	ob_scene *scene = !defines   ? NULL
+			  : q.resume ? ob_scene_load_text(q.scene, r->scene->text, r->scene->text_size, o, e)
+				     : ob_scene_load(q.scene, o, e);
+	if (!defines)
+		ob_fail(e, "out of memory");
+	if (!scene || (!q.resume && !ob_request_resolve(&q, scene, e))) {
+		ob_scene_free(scene);
+		if (defines)
+			forget_defines(defines, first, o->define_count);
+		ob_control_reply(r->control, r->host, e);
+		return true;
+	}
+	ob_host_stop(r->host);
+	ob_scene_free(r->scene);
+	if (r->defines)
+		forget_defines(r->defines, first, r->q.scene_options.define_count);
+	r->q = q;
+	r->scene = scene;
+	r->defines = defines;
+	r->own += words;
+	r->saved.host.universe.ids = 0; // from the scene's start
+	return ob_led_run_start(r, e);
+}
+
+// Saves the run as it stands, and answers.
+static void save(ob_led_run *r)
+{
+	uint32_t words;
+	const uint64_t *seed;
+	ob_error e;
+	const char *path = ob_control_words(r->control, &words, &seed);
+	const bool fine = ob_save_led_run(&r->q, r->scene, r->host, path, &e);
+	ob_control_reply(r->control, r->host, fine ? NULL : &e);
+}
+
+// Last step that the run may make; a motion carries its step as 32 bits.
+static uint64_t last_step(const ob_led_run *r)
+{
+	return r->a->value[OB_OPTION_DURATION] ? ob_request_steps(r->q.duration, r->q.run.step_length) : UINT32_MAX - 2;
+}
+
+bool ob_led_run_load(ob_led_run *r, const ob_arguments *a, bool inside, ob_error *e)
+{
+	*r = (ob_led_run){ .a = a, .room = 1000 };
+	if (!load(r, inside, e))
+		return false;
+	r->control = ob_control_create(inside, e);
+	return r->control;
+}
+
+bool ob_led_run_go_on(ob_led_run *r, ob_error *e)
+{
+	for (;;) {
+		switch (ob_control_next(r->control, r->host, last_step(r), &r->step)) {
+		case OB_CONTROL_LEFT:
+			return true;
+		case OB_CONTROL_GOES_ON:
+			break;
+		case OB_CONTROL_SAVES:
+			save(r);
+			break;
+		case OB_CONTROL_RESETS:
+			if (!reset(r, e))
+				return false;
+			break;
+		}
+		if (r->q.isolation == OB_ISOLATION_INSIDE && ob_control_answered(r->control))
+			return true;
+		ob_host_go(r->host, r->step);
+		if (!ob_host_wait(r->host, e))
+			return false;
+	}
+}
+
+void ob_led_run_finish(ob_led_run *r)
+{
+	ob_host_stop(r->host);
+	ob_control_destroy(r->control);
+	ob_scene_free(r->scene);
+	if (r->defines)
+		forget_defines(r->defines, r->q.scene_options.define_count - r->own, r->q.scene_options.define_count);
+	ob_saved_run_close(&r->saved, &r->saved_file);
+}
