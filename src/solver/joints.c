@@ -530,14 +530,20 @@ static void pass(ob_island_work *w, const axis_event *event)
 typedef struct bracket {
 	double low, high, low_margin, high_margin;
 	int side; // that moved last
+	double last, before; // its width at the last two tries
 } bracket;
 
-// Next instant to try: a false position (Illinois), or the middle where that says nothing.
-static double try_at(const bracket *b)
+// Next instant to try. Many events happen at once: the shortest flight comes first. Then it is a false position (Illinois),
+// beyond an end that is at the event, so that the bracket closes; the middle where two tries have not halved it.
+static double try_at(bracket *b, double shortest, double resolved)
 {
-	const double little = 1e-9,
+	const double inset = .9 * resolved, width = b->high - b->low,
 		     t = (b->low * b->high_margin - b->high * b->low_margin) / (b->high_margin - b->low_margin);
-	return b->low_margin > little && t > b->low && t < b->high ? t : .5 * (b->low + b->high);
+	const bool halves = width <= .5 * b->before;
+	b->before = b->last, b->last = width;
+	if (b->low <= 0 && b->high > shortest)
+		return shortest;
+	return halves ? ob_max(b->low + inset, ob_min(t, b->high - inset)) : .5 * (b->low + b->high);
 }
 
 static void narrow(bracket *b, double t, double margin)
@@ -562,11 +568,11 @@ static double fly_to_event(ob_solver *s, const division *d, double from, double 
 	axis_event event = next_event(w);
 	if (w->joints.failed || event.margin >= 0 || ob_budget_spent(s))
 		return h;
-	bracket b = { 0, h, 0, event.margin, 0 };
+	bracket b = { .high = h, .high_margin = event.margin, .last = INFINITY, .before = INFINITY };
 	double t = h;
 	for (int round = 0; round < MOST_ROUNDS && b.high - b.low > exact_time && b.high > shortest; round++) {
 		put_back(w, OF_EVENT, w->joints.step_begin + from * d->h);
-		t = try_at(&b);
+		t = try_at(&b, shortest, exact_time);
 		fly_part(s, d, from, t);
 		const axis_event now = next_event(w);
 		narrow(&b, t, now.margin);
