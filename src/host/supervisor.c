@@ -50,13 +50,22 @@ static void request_restart(ob_host *h, const ob_worker_end *end, const char *wo
 		ob_restart_request(h, &d);
 }
 
+// True if workers were ordered to leave.
+static bool is_halted(ob_host *h)
+{
+	pthread_mutex_lock(&h->interval.lock);
+	const bool halted = h->interval.halted;
+	pthread_mutex_unlock(&h->interval.lock);
+	return halted;
+}
+
 static void on_end(ob_host *h, const ob_worker_end *end)
 {
 	char worker[160];
 	unsigned long long step = ob_step_count(h->u);
 	if (h->restart.requested)
 		ob_restart_add_words(h, end);
-	if (h->ending || h->failed || h->restart.requested)
+	if (h->ending || h->failed || h->restart.requested || is_halted(h))
 		return;
 	describe_worker(h, end, worker, sizeof worker);
 	if (ob_universe_traced(h->u) && !end->error)

@@ -54,6 +54,16 @@ class Stopped(program.Case):
 	def waiting(self):
 		return {int(a): int(b) for a, b in re.findall(r"^ +(\d+) .* waits for (\d+)$", self.top(), re.M)}
 
+	def test_end(self):
+		"""A run that is ended while a simulator stands takes the ends of others for no deaths."""
+		for _ in range(3):
+			run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=40", "--sync", "free", "--pace", 1, "--isolation", "process", "--workers", 4,
+				"--duration", 3600, "--measure", "end")
+			pid = int(re.search(r"^ +1 +(\d+) ", self.top(), re.M)[1])
+			os.kill(pid, signal.SIGSTOP)
+			run.send_signal(signal.SIGTERM)
+			self.assertNotIn("before the run was over", run.communicate(timeout=program.PATIENCE)[1])
+
 	def test_a_second(self):
 		scene = self.path("scene.lua")
 		with open(scene, "w") as f:
