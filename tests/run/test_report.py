@@ -290,4 +290,14 @@ for i = 1, 3 do sphere { radius = .1, at = { i, 0, 9 }, script = "door", dies = 
 					self.assertRegex(text, re.escape(option) + r"\b", option)
 
 
+	def test_front_page(self):
+		"""README's overlaps are those of this program, to the digits that it shows."""
+		with open(os.path.join(os.path.dirname(program.SCENES), "README.md"), encoding="utf-8") as f:
+			shown = dict(re.findall(r"^\| deepest overlap, mm: ([\w ]+) \| ([\d.]+) ", f.read(), re.M))
+		for what, words in ("one ODE world", ["--arch", "monolith"]), ("simulators", []):
+			figures = program.report(program.scene("falling_boxes"), "-D", "n=100", "--duration", 3, *words)
+			digits = len(shown[what].partition(".")[2])
+			self.assertEqual(f"{1e3 * figures['worst_penetration_m']:.{digits}f}", shown[what], what)
+
+
 unittest.main()
