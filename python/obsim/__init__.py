@@ -430,10 +430,10 @@ class Run(Universe):
 
     def __init__(self, scene, options, program, parameters, resume=None, inside=False):
         self._program = program
-        self._scene = [*([str(scene)] if scene else []), *(['--resume', str(resume)] if resume else [])]
         self._options, self._parameters = dict(options or {}), parameters
         self._name = self._options.get('name') or f'python-{os.getpid()}-{next(_numbers)}'
-        words = [*self._scene, *self._words(), *([] if 'name' in self._options else ['--name', self._name])]
+        words = [*([str(scene)] if scene else []), *(['--resume', str(resume)] if resume else []), *self._words(),
+                 *([] if 'name' in self._options else ['--name', self._name])]
         self._messages = self._process = self._controller = None
         self._changed = self._joints_read = None, None # as of the last step
         if inside:

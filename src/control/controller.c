@@ -54,16 +54,22 @@ static bool call(ob_controller *c, ob_error *e)
 	return ob_fail(e, "%s", *a->error.text ? a->error.text : "the run is of another version of obsim");
 }
 
-ob_controller *ob_controller_open(const ob_universe *u, ob_error *e)
+static ob_controller *create(ob_error *e)
 {
 	ob_controller *c = calloc(1, sizeof *c);
 	if (!c) {
 		ob_fail(e, "out of memory");
 		return NULL;
 	}
+	c->fd = -1;
 	c->answer = &c->received;
-	c->fd = ob_call_host(u, e);
-	if (c->fd >= 0) {
+	return c;
+}
+
+ob_controller *ob_controller_open(const ob_universe *u, ob_error *e)
+{
+	ob_controller *c = create(e);
+	if (c && (c->fd = ob_call_host(u, e)) >= 0) {
 		command(c, OB_CONTROL_HELLO);
 		if (call(c, e))
 			return c;
@@ -74,13 +80,9 @@ ob_controller *ob_controller_open(const ob_universe *u, ob_error *e)
 
 ob_controller *ob_controller_open_inside(const char *const *words, size_t n, char name[OB_NAME_MAX], ob_error *e)
 {
-	ob_controller *c = calloc(1, sizeof *c);
-	if (!c) {
-		ob_fail(e, "out of memory");
+	ob_controller *c = create(e);
+	if (!c)
 		return NULL;
-	}
-	c->fd = -1;
-	c->answer = &c->received;
 	c->part = ob_part_load("inside", sizeof *c->part, OB_PART_OWN, "obsim", e);
 	c->inside = c->part ? c->part->open(words, n, name, e) : NULL;
 	command(c, OB_CONTROL_HELLO);
