@@ -30,8 +30,8 @@ enum {
 };
 enum { BYTES_AT_ONCE = 1 << 18 };
 // Limits of the first reading, whatever the size of the file: the budget's bytes of memory, and half of its seconds of CPU for
-// each of the advances, the first of which opens the record; the other half is for the second reading. An advance ends with the first state after PAUSE seconds of CPU. The
-// limit of wall time is WALL_PER_CPU times as long. A healthy record takes about 2 s of CPU for each 2^30 bytes.
+// each of the advances, the first of which opens the record; the other half is for the second reading. An advance ends
+// with the first state after PAUSE seconds of CPU. The limit of wall time is WALL_PER_CPU times as long. A healthy record takes about 2 s of CPU for each 2^30 bytes.
 enum { SECONDS = OB_BUDGET_SECONDS / 2, PAUSE = 2, WALL_PER_CPU = 30 };
 static const double number_max = 1e15; // largest of any number in SI units
 
