@@ -46,7 +46,7 @@ typedef struct facts {
 } facts;
 
 static_assert(sizeof(facts) == 48 + sizeof(ob_run_settings) + 80, "facts");
-static_assert(sizeof(ob_counters) % 8 == 0 && sizeof(ob_saved_slot) == 8, "counters, slots");
+static_assert(sizeof(ob_counters) % 8 == 0 && sizeof(ob_saved_slot) == 12, "counters, slots");
 
 enum {
 	OBJECTS_MAX = 1 << 20,

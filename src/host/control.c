@@ -20,7 +20,6 @@
 #include "shape/shape.h"
 
 enum { IDLE_MS = 50 };
-static const uint32_t pulling = 1u << 31; // origin of the program's pulls; viewers count from 1
 
 struct ob_control {
 	bool inside; // the program gives its commands itself, and takes the answers
@@ -35,7 +34,7 @@ struct ob_control {
 	ob_contact_events *events; // NULL: the program has not subscribed
 	uint64_t looked; // step at which contacts were looked at
 	ob_pace pace; // then
-	uint32_t origin; // of the objects that the last command has created
+	uint32_t origin; // of the objects that the last command has created; OB_ORIGIN_PROGRAM: of pulls
 	ob_control_packet packet;
 	ob_control_answer answer;
 };
@@ -50,7 +49,7 @@ ob_control *ob_control_create(bool inside, ob_error *e)
 	}
 	c->inside = inside;
 	c->fd = -1;
-	c->origin = pulling;
+	c->origin = OB_ORIGIN_PROGRAM;
 	ob_pace_begin(&c->pace, 1, false);
 	return c;
 }
@@ -137,7 +136,7 @@ static void read_change(const ob_change *change, ob_request *r)
 {
 	const double *v = change->value;
 	const ob_vec3 first = ob_v3(v[0], v[1], v[2]), second = ob_v3(v[3], v[4], v[5]);
-	r->origin = pulling;
+	r->origin = OB_ORIGIN_PROGRAM;
 	r->force = r->target = first;
 	r->twist = r->kind == OB_REQUEST_TORQUE ? first : second;
 	r->point = second;

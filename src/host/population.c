@@ -133,7 +133,8 @@ static void give_script(ob_population *p, uint32_t id, const ob_object_def *def,
 }
 
 // state: the script's, def->state_bytes
-static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, const unsigned char *state)
+static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, const unsigned char *state,
+		       uint32_t origin)
 {
 	ob_passport pass = def->passport;
 	pass.id = id;
@@ -150,7 +151,7 @@ static void add_object(ob_population *p, uint32_t id, const ob_object_def *def, 
 		ob_free_set_rate(p->u, id, def->update_rate);
 	p->slots[id].use = SLOT_PRESENT;
 	p->slots[id].created = false;
-	p->slots[id].origin = 0;
+	p->slots[id].origin = origin;
 	p->slots[id].kinematic = pass.flags & OB_OBJECT_KINEMATIC;
 	p->kinematic += p->slots[id].kinematic;
 	p->pushed += def->force != NULL;
@@ -198,7 +199,7 @@ static void remove_object(ob_population *p, uint32_t id)
 	ob_sim_remove(p->u, id);
 	ob_joints_remove_of(p->u, id);
 	p->created -= s->created;
-	s->created = false;
+	s->created = false, s->origin = 0;
 	p->first_free = id < p->first_free ? id : p->first_free;
 	s->use = s->removal_scheduled ? SLOT_RESERVED
 				      : SLOT_FREE; // else the timetable would remove the slot's next object
@@ -214,7 +215,7 @@ static void remove_scheduled(ob_population *p, uint32_t id)
 }
 
 // Adds an object in the lowest free slot, which it returns; UINT32_MAX: there is none, and a warning is logged.
-static uint32_t add_on_request(ob_population *p, const ob_object_def *def, const unsigned char *state)
+static uint32_t add_on_request(ob_population *p, const ob_object_def *def, const unsigned char *state, uint32_t origin)
 {
 	const uint32_t capacity = ob_universe_capacity(p->u);
 	uint32_t id = p->first_free;
@@ -239,7 +240,7 @@ static uint32_t add_on_request(ob_population *p, const ob_object_def *def, const
 	const size_t n = strnlen(name, OB_NAME_MAX);
 	if (n > 0 && n < OB_NAME_MAX - 12 && name[n - 1] == '#') // a script's name: it does not know the id
 		snprintf(name + n, OB_NAME_MAX - n, "%u", id);
-	add_object(p, id, &named, state);
+	add_object(p, id, &named, state, origin);
 	return id;
 }
 
@@ -283,7 +284,7 @@ static void create_for_script(ob_population *p, uint32_t cell, const ob_script_p
 		ob_script_request_refuse(p->u, cell, post->line, why);
 		return;
 	}
-	const uint32_t id = add_on_request(p, &def, (const unsigned char *)(post + 1) + sizeof def);
+	const uint32_t id = add_on_request(p, &def, (const unsigned char *)(post + 1) + sizeof def, 0);
 	if (id == UINT32_MAX)
 		return;
 	p->slots[id].created = true;
@@ -484,11 +485,10 @@ static void add_asked_for(ob_population *p, const ob_request *r)
 	ob_error e;
 	ob_object_def def = r->def;
 	ob_passport *pass = &def.passport;
-	uint32_t id;
 	if (ob_shape_is(pass->shape, OB_HULLED) && r->corners.count && !ob_hulls_give(&p->hulls, &r->corners, pass, &e))
 		ob_log_warn("object \"%s\" was not added: %s", pass->name, e.text);
-	else if ((id = add_on_request(p, &def, NULL)) != UINT32_MAX)
-		p->slots[id].origin = r->origin;
+	else
+		add_on_request(p, &def, NULL, r->origin);
 }
 
 bool ob_population_check_avatar(const ob_population *p, const ob_request *r, ob_object_def *def, ob_error *e)
@@ -510,9 +510,7 @@ static void add_avatar(ob_population *p, const ob_request *r)
 		ob_log_warn("no avatar was added: %s", e.text);
 		return;
 	}
-	const uint32_t id = add_on_request(p, &def, p->scene->states + def.state_at);
-	if (id != UINT32_MAX)
-		p->slots[id].origin = r->origin;
+	add_on_request(p, &def, p->scene->states + def.state_at, r->origin);
 }
 
 static void publish_roster(ob_population *p)
@@ -636,7 +634,7 @@ bool ob_population_update(ob_population *p, uint64_t step, ob_requests *q)
 		event *due = &p->events[p->next];
 		const ob_object_def *def = &p->scene->object[due->id];
 		if (due->add)
-			add_object(p, due->id, def, def->state_bytes ? p->scene->states + def->state_at : NULL);
+			add_object(p, due->id, def, def->state_bytes ? p->scene->states + def->state_at : NULL, 0);
 		else
 			remove_scheduled(p, due->id);
 	}
@@ -742,6 +740,7 @@ void ob_population_restore(ob_population *p, const ob_kept_population *k)
 	ob_journal_finish(&p->journal);
 	p->journal = (ob_journal){ 0 };
 	put_back(p, k);
+	ob_pulls_let_go(&p->pulls); // as they hold what is no more, or have left
 }
 
 bool ob_population_is_due_after_scripts(const ob_population *p)
@@ -795,7 +794,8 @@ void ob_population_save(const ob_population *p, ob_saved_population *out)
 						 .use = s->use,
 						 .removal_scheduled = s->removal_scheduled,
 						 .created = s->created,
-						 .unplanned = s->use == SLOT_PRESENT && has_plan(p, id) && !s->driven };
+						 .unplanned = s->use == SLOT_PRESENT && has_plan(p, id) && !s->driven,
+						 .origin = s->origin < OB_ORIGIN_PROGRAM ? s->origin : 0 };
 	}
 	if (out->hulls)
 		memcpy(out->hull, p->hulls.corners, out->hulls * sizeof *out->hull);
@@ -833,7 +833,8 @@ static bool check_slot(const ob_population *p, uint32_t id, const ob_saved_slot 
 	const ob_passport *pass = ob_passport_of(p->u, id);
 	const bool present = id < ob_universe_ids(p->u) && pass->flags & OB_OBJECT_PRESENT;
 	return follows(&p->slots[id], s) && s->created <= present && s->unplanned <= present &&
-	       present == (s->use == SLOT_PRESENT) && (!present || pass->generation == s->generation);
+	       (present || !s->origin) && s->origin < OB_ORIGIN_PROGRAM && present == (s->use == SLOT_PRESENT) &&
+	       (!present || pass->generation == s->generation);
 }
 
 static bool is_near(double a, double b)
@@ -917,7 +918,8 @@ bool ob_population_load(ob_population *p, const ob_saved_population *s, ob_error
 		p->slots[id] = (slot){ .generation = from->generation,
 				       .use = from->use,
 				       .removal_scheduled = from->removal_scheduled,
-				       .created = from->created };
+				       .created = from->created,
+				       .origin = from->origin };
 		p->created += from->created;
 		load_path(p, id, from->unplanned);
 		p->slots[id].kinematic =

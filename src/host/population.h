@@ -47,7 +47,8 @@ bool ob_population_check_avatar(const ob_population *p, const ob_request *r, ob_
 typedef struct ob_kept_population ob_kept_population;
 ob_kept_population *ob_population_copy(const ob_population *p, ob_kept_population *k);
 void ob_kept_population_free(ob_kept_population *k); // NULL is allowed
-// Goes on from a copy, at a universe put back to the same step: what came later is forgotten, and never repeated.
+// Goes on from a copy, at a universe put back to the same step: what came later is forgotten, and never repeated. Viewers'
+// pulls end.
 void ob_population_restore(ob_population *p, const ob_kept_population *k);
 // For a checkpoint in memory (table/checkpoint.h): keeps the state that is not in the universe, and puts it back. Later
 // changes by timetable, scripts and requests are repeated by a run that restarts there (host/journal.h). reached: number of
@@ -63,13 +64,14 @@ bool ob_population_is_due_after_scripts(const ob_population *p);
 // The next step at whose beginning something is due; UINT64_MAX: never.
 uint64_t ob_population_next_step(const ob_population *p);
 
-// Saved state of a slot, beside universe and scene: 8 bytes.
+// Saved state of a slot, beside universe and scene: 12 bytes.
 typedef struct ob_saved_slot {
 	uint32_t generation; // its latest object's
 	uint8_t use; // 0 = free, 1 = reserved: the timetable has another event for it, 2 = present
 	uint8_t removal_scheduled; // 1 = the timetable will remove its object
 	uint8_t created; // 1 = by a script
 	uint8_t unplanned; // 1 = a request has ended its path, or its time-dependent force
+	uint32_t origin; // viewer's connection whose request has added the object; 0: none
 } ob_saved_slot;
 
 typedef struct ob_saved_population {

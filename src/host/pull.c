@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "base/number.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"
 #include "step/now.h"
@@ -47,8 +48,8 @@ static bool check_drag(const ob_pull *pull, ob_error *e)
 	if (!(fabs(t.x) <= OB_PLACE_MOST && fabs(t.y) <= OB_PLACE_MOST && fabs(t.z) <= OB_PLACE_MOST))
 		return ob_fail(e, "target: expected numbers from %g to %g m", -OB_PLACE_MOST, OB_PLACE_MOST);
 	return (pull->frequency >= frequency_least && pull->frequency <= frequency_most) ||
-	       ob_fail(e, "frequency: expected from %g to %g Hz, got %g", frequency_least, frequency_most,
-		       pull->frequency);
+	       ob_fail(e, "frequency: expected from %g to %g Hz, got %s", frequency_least, frequency_most,
+		       ob_number_text(pull->frequency).text);
 }
 
 bool ob_pull_check(const ob_pull *pull, const ob_passport *p, ob_error *e)
@@ -109,6 +110,13 @@ void ob_pulls_release(ob_pulls *p, uint32_t id, uint32_t origin)
 {
 	for (uint32_t i = p->count; i-- > 0;)
 		if (p->at[i].origin == origin && (id == UINT32_MAX || p->at[i].id == id))
+			remove_at(p, i);
+}
+
+void ob_pulls_let_go(ob_pulls *p)
+{
+	for (uint32_t i = p->count; i-- > 0;)
+		if (p->at[i].origin > 0 && p->at[i].origin < OB_ORIGIN_PROGRAM)
 			remove_at(p, i);
 }
 

@@ -47,6 +47,8 @@ bool ob_pull_check(const ob_pull *pull, const ob_passport *p, ob_error *e);
 bool ob_pulls_set(ob_pulls *p, const ob_pull *pull);
 // Ends the pulls of an origin on an object; id UINT32_MAX: on all objects.
 void ob_pulls_release(ob_pulls *p, uint32_t id, uint32_t origin);
+// Ends all pulls of viewers.
+void ob_pulls_let_go(ob_pulls *p);
 // Ends all pulls on an object.
 void ob_pulls_drop(ob_pulls *p, uint32_t id);
 // Copies all. false: no memory, and `to` keeps what it had.

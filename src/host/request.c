@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "free/free.h"
 #include "host/host_state.h"
 #include "host/pace.h"
@@ -125,9 +126,11 @@ static bool check_time(const ob_host *h, const ob_request *r, ob_error *e)
 	if (!h->pace)
 		return ob_fail(e, "the clock of this run is not to be led: obsim serve takes such requests");
 	if (r->kind == OB_REQUEST_RATE && !(r->rate >= 0 && r->rate <= OB_REQUEST_RATE_MOST))
-		return ob_fail(e, "rate: expected a number from 0 to %d, got %g", OB_REQUEST_RATE_MOST, r->rate);
+		return ob_fail(e, "rate: expected a number from 0 to %d, got %s", OB_REQUEST_RATE_MOST,
+			       ob_number_text(r->rate).text);
 	if (r->kind == OB_REQUEST_UNTIL && !(r->until > now && isfinite(r->until)))
-		return ob_fail(e, "until: expected a time after %g s, got %g", now, r->until);
+		return ob_fail(e, "until: expected a time after %s s, got %s", ob_number_text(now).text,
+			       ob_number_text(r->until).text);
 	if (r->kind == OB_REQUEST_UNTIL && ob_free_settings_of(h->u))
 		return ob_fail(e, "until: only simulators in lockstep stand at a time");
 	if (r->kind != OB_REQUEST_STEP)

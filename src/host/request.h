@@ -42,6 +42,9 @@ typedef enum ob_request_kind {
 	OB_REQUEST_KINDS
 } ob_request_kind;
 
+// Origins of requests: connections of viewers count from 1; from this number on they are of the program that leads the run.
+#define OB_ORIGIN_PROGRAM (UINT32_C(1) << 31)
+
 enum { OB_REQUEST_POINTS = OB_CONTROL_POINTS, OB_REQUEST_STEPS = 1000000, OB_REQUEST_RATE_MOST = 1000000 };
 
 // Path from where the object then stands, which is its first point, through others.
@@ -55,7 +58,7 @@ typedef struct ob_request_path {
 typedef struct ob_request {
 	uint32_t kind; // ob_request_kind
 	uint32_t id, generation; // of the object; unused for an object to add
-	uint32_t origin; // of an object to add, or a pull: number of the viewer's connection; 0: none
+	uint32_t origin; // of an object to add, or a pull: number of the connection; 0: none
 	ob_object_def def; // to add
 	union {
 		ob_hull_corners corners; // of a hull to add
