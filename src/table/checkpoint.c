@@ -199,18 +199,30 @@ static void put_motions_back(const ob_checkpoint *c, ob_universe *u)
 	}
 }
 
-// Restores body properties; objects added since then become absent, and their simulators' moves are forgotten.
+// Hides objects that were not there then, before their motions go: readers find a motion of whatever is present. Their
+// simulators' moves are forgotten.
+static void hide_later_objects(const ob_checkpoint *c, ob_universe *u)
+{
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		ob_passport now;
+		if (!ob_passport_read(u, id, &now) || !(now.flags & OB_OBJECT_PRESENT) ||
+		    (id < c->ids && c->passport[id].flags & OB_OBJECT_PRESENT &&
+		     c->passport[id].generation == now.generation))
+			continue;
+		ob_pin_drop(u, id);
+		now.flags &= ~(uint32_t)OB_OBJECT_PRESENT;
+		ob_write_passport(u, id, &now);
+	}
+}
+
 static void put_passports_back(const ob_checkpoint *c, ob_universe *u)
 {
 	static const ob_passport none = { 0 };
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		ob_passport now;
 		const ob_passport *then = id < c->ids ? &c->passport[id] : &none;
-		if (!ob_passport_read(u, id, &now) || memcmp(&now, then, sizeof now) == 0)
-			continue;
-		if (now.generation != then->generation || !(then->flags & OB_OBJECT_PRESENT))
-			ob_pin_drop(u, id);
-		ob_write_passport(u, id, then);
+		if (ob_passport_read(u, id, &now) && memcmp(&now, then, sizeof now) != 0)
+			ob_write_passport(u, id, then);
 	}
 }
 
@@ -252,6 +264,7 @@ void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u)
 {
 	end_traces(u);
 	put_areas_back(c, u);
+	hide_later_objects(c, u);
 	put_motions_back(c, u);
 	put_passports_back(c, u);
 	put_control_back(&c->control, u->control);

@@ -5,7 +5,7 @@
 //   motions            newest of each slot   -->   published anew: readers see one more version, never a torn one
 //   step data          pages in use          -->   the same bytes; pages that came into use since are zeroed
 //   clock, tasks       values                -->   the same values
-//   passports          -                     -->   as they are: the objects must be the same as when it was taken
+//   passports          newest of each slot   -->   written anew; what was not there then goes before motions do
 //   gate               -                     -->   as at the start: the host has the turn, no worker has arrived
 //   worker cells, trace -                    -->   counters and events stay; the pids are cleared
 //

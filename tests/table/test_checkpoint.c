@@ -212,6 +212,47 @@ static void test_readers(void)
 	ob_universe_destroy(l.u, true);
 }
 
+static void *look_for_present(void *argument)
+{
+	look *l = argument;
+	ob_passport p;
+	ob_motion m;
+	for (uint32_t id = 0; !l->over; id = (id + 1) % OBJECTS) {
+		const uint64_t version = ob_universe_get_passport_version(l->u, id);
+		const bool present = ob_universe_get_passport(l->u, id, &p) && p.flags & OB_OBJECT_PRESENT;
+		l->torn += present && !ob_universe_get_motion(l->u, id, &m) &&
+			   ob_universe_get_passport_version(l->u, id) == version;
+		l->looks++;
+	}
+	return NULL;
+}
+
+// An object that came after the checkpoint goes before its motion does: whatever is present has one.
+static void test_comers(void)
+{
+	pthread_t thread;
+	look l = { .u = make() };
+	const ob_passport none = { .id = 0 };
+	ob_checkpoint *c = ob_checkpoint_create(l.u);
+	for (uint32_t id = 0; id < OBJECTS; id++)
+		ob_write_passport(l.u, id, &none);
+	CHECK(ob_checkpoint_take(c, l.u));
+	pthread_create(&thread, NULL, look_for_present, &l);
+	for (int i = 0; i < 300 || l.looks < 100000; i++) {
+		publish_all(l.u, i);
+		for (uint32_t id = 0; id < OBJECTS; id++) {
+			const ob_passport p = { .id = id, .flags = OB_OBJECT_PRESENT, .mass = 1 };
+			ob_write_passport(l.u, id, &p);
+		}
+		ob_checkpoint_put_back(c, l.u);
+	}
+	l.over = true;
+	pthread_join(thread, NULL);
+	CHECK(l.torn == 0);
+	ob_checkpoint_destroy(c);
+	ob_universe_destroy(l.u, true);
+}
+
 static void *note_deaths(void *argument)
 {
 	look *l = argument;
@@ -246,6 +287,7 @@ int main(void)
 	test_moves();
 	test_new_pages();
 	test_readers();
+	test_comers();
 	test_deaths();
 	return check_end();
 }
