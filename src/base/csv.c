@@ -2,8 +2,9 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "base/number.h"
 
 static void begin_cell(ob_csv *c)
 {
@@ -42,15 +43,8 @@ void ob_csv_number(ob_csv *c, double v)
 void ob_csv_numbers(ob_csv *c, const double *v, size_t count)
 {
 	begin_cell(c);
-	for (size_t i = 0; i < count; i++) {
-		char text[32] = "";
-		for (int digits = 15; digits <= 17 && !isnan(v[i]); digits++) {
-			snprintf(text, sizeof text, "%.*g", digits, v[i]);
-			if (strtod(text, NULL) == v[i])
-				break;
-		}
-		fprintf(c->f, "%s%s", i ? " " : "", text);
-	}
+	for (size_t i = 0; i < count; i++)
+		fprintf(c->f, "%s%s", i ? " " : "", isnan(v[i]) ? "" : ob_number_text(v[i]).text);
 }
 
 void ob_csv_end(ob_csv *c)

@@ -686,6 +686,7 @@ static bool box_of_all(const ob_hull *part, uint32_t parts, ob_hull *out, ob_err
 		return false;
 	move_frame(out, ob_v3(0, 0, 0), &same);
 	out->radius = radius;
+	out->inner = fmin(out->inner, radius); // alike for a ball, but for rounding
 	return true;
 }
 

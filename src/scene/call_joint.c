@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "base/number.h"
 #include "base/spelling.h"
 #include "scene/builder.h"
 #include "scene/object_limits.h"
@@ -283,10 +284,11 @@ static void set_axis(lua_State *L, const char *kind, const joint *d, ob_joint_pa
 	if (isnan(a->rest))
 		a->rest = j->kind == OB_JOINT_DISTANCE ? j->length : 0;
 	if (!(a->low <= a->high))
-		ob_sandbox_fail(L, "%s.high: expected at least low, %.10g, got %.10g", kind, a->low, a->high);
+		ob_sandbox_fail(L, "%s.high: expected at least low, %s, got %s", kind, ob_number_text(a->low).text,
+				ob_number_text(a->high).text);
 	if (turns && limited && isfinite(a->high - a->low) && !(a->high - a->low <= OB_TURN_MOST))
-		ob_sandbox_fail(L, "%s.high: expected at most %.10g (rad) above low, got %.10g", kind, OB_TURN_MOST,
-				a->high - a->low);
+		ob_sandbox_fail(L, "%s.high: expected at most %s (rad) above low, got %s", kind,
+				ob_number_text(OB_TURN_MOST).text, ob_number_text(a->high - a->low).text);
 	if (d->motor)
 		read_motor(L, kind, a);
 	if (limited || a->stiffness > 0 || a->damping > 0 || a->friction > 0 || a->armature > 0 || d->motor)

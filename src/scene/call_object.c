@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/allocate.h"
+#include "base/number.h"
 #include "base/spelling.h"
 #include "hull/hull.h"
 #include "scene/builder.h"
@@ -350,7 +351,8 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 		refuse_together(L, kind, "q", "rotation");
 	const char *named = d->kind == STATIC ? "static" : "kinematic";
 	if (d->kind != DYNAMIC && !isnan(d->mass))
-		ob_sandbox_fail(L, "%s.mass: expected none for a %s object, got %.10g", kind, named, d->mass);
+		ob_sandbox_fail(L, "%s.mass: expected none for a %s object, got %s", kind, named,
+				ob_number_text(d->mass).text);
 	if (d->kind != DYNAMIC && !isnan(d->update_rate))
 		ob_sandbox_fail(L, "%s.update_rate: expected none for a %s object, which has no steps", kind, named);
 	const struct {
@@ -384,7 +386,8 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 			L, "%s.avatar: expected a name, a script and kind = \"dynamic\" with it, and not born or dies",
 			kind);
 	if (d->dies <= d->born)
-		ob_sandbox_fail(L, "%s.dies: expected a time after born = %.10g, got %.10g", kind, d->born, d->dies);
+		ob_sandbox_fail(L, "%s.dies: expected a time after born = %s, got %s", kind,
+				ob_number_text(d->born).text, ob_number_text(d->dies).text);
 }
 
 static void find_kind(lua_State *L, const char *kind, body *d)

@@ -8,6 +8,7 @@
 #include <lauxlib.h>
 
 #include "base/allocate.h"
+#include "base/number.h"
 #include "base/spelling.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
@@ -148,9 +149,11 @@ static void take_number(lua_State *L, const char *name, const char *text)
 	push_number(L, name, text, l.whole);
 	const double x = lua_tonumber(L, -1);
 	if (x < l.min)
-		ob_sandbox_fail(L, "param.%s: expected a number of at least %.10g, got %.10g", name, l.min, x);
+		ob_sandbox_fail(L, "param.%s: expected a number of at least %s, got %s", name,
+				ob_number_text(l.min).text, ob_number_text(x).text);
 	if (x > l.max)
-		ob_sandbox_fail(L, "param.%s: expected a number of at most %.10g, got %.10g", name, l.max, x);
+		ob_sandbox_fail(L, "param.%s: expected a number of at most %s, got %s", name,
+				ob_number_text(l.max).text, ob_number_text(x).text);
 	if (isfinite(l.min) && isfinite(l.max))
 		offer(L, ((ob_builder *)ob_sandbox_user(L))->scene, name, &l);
 }

@@ -11,6 +11,7 @@
 #include <ob/vec.h>
 
 #include "base/log.h"
+#include "base/number.h"
 #include "base/spelling.h"
 #include "elementary/elementary.h"
 #include "scene/flat.h"
@@ -46,13 +47,15 @@ static _Noreturn void fail_range(const reader *r, const char *what)
 	const ob_field *f = r->field;
 	char expected[160];
 	if (f->above && f->high == INFINITY)
-		snprintf(expected, sizeof expected, "%s above %.10g", what, f->low);
+		snprintf(expected, sizeof expected, "%s above %s", what, ob_number_text(f->low).text);
 	else if (f->above)
-		snprintf(expected, sizeof expected, "%s above %.10g, up to %.10g", what, f->low, f->high);
+		snprintf(expected, sizeof expected, "%s above %s, up to %s", what, ob_number_text(f->low).text,
+			 ob_number_text(f->high).text);
 	else if (f->high == INFINITY)
-		snprintf(expected, sizeof expected, "%s of at least %.10g", what, f->low);
+		snprintf(expected, sizeof expected, "%s of at least %s", what, ob_number_text(f->low).text);
 	else
-		snprintf(expected, sizeof expected, "%s from %.10g to %.10g", what, f->low, f->high);
+		snprintf(expected, sizeof expected, "%s from %s to %s", what, ob_number_text(f->low).text,
+			 ob_number_text(f->high).text);
 	fail(r, expected);
 }
 

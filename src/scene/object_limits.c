@@ -3,13 +3,15 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "scene/scene.h"
 #include "shape/shape.h"
 
 static bool within(const char *property, const char *unit, double least, double most, double value, ob_error *e)
 {
 	return (value >= least && value <= most) || // false for NaN
-	       ob_fail(e, "%s: expected from %.10g to %.10g%s, got %.10g%s", property, least, most, unit, value, unit);
+	       ob_fail(e, "%s: expected from %s to %s%s, got %s%s", property, ob_number_text(least).text,
+		       ob_number_text(most).text, unit, ob_number_text(value).text, unit);
 }
 
 static bool within3(const char *property, const char *unit, double most, ob_vec3 v, ob_error *e)
@@ -72,8 +74,8 @@ static bool check_inertia(const ob_passport *p, ob_error *e)
 		return ob_fail(e, "inertia: expected no moment above the sum of the others, got {%.10g, %.10g, %.10g}",
 			       x, y, z);
 	if (ob_shape_is(p->shape, OB_ROUND) && x != y)
-		return ob_fail(e, "inertia: expected the first two alike for a %s, got %.10g and %.10g",
-			       ob_shape_name(p->shape), x, y);
+		return ob_fail(e, "inertia: expected the first two alike for a %s, got %s and %s",
+			       ob_shape_name(p->shape), ob_number_text(x).text, ob_number_text(y).text);
 	if (ob_shape_is(p->shape, OB_ISOTROPIC) && x != z)
 		return ob_fail(e, "inertia: expected all three alike for a %s", ob_shape_name(p->shape));
 	return within("inertia", " times mass and radius squared", OB_INERTIA_LEAST, 1 / OB_INERTIA_LEAST, most / unit,
@@ -164,8 +166,8 @@ static bool check_point(const ob_path *path, uint32_t i, ob_error *e)
 	const ob_quat q = at->q;
 	const double before = i ? at[-1].t : 0, norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
 	if (!(i ? at->t > before && at->t <= OB_TIME_MOST : at->t == 0))
-		return ob_fail(e, "points: expected times that grow from 0 and end before %g s, got %.10g at point %u",
-			       OB_TIME_MOST, at->t, i + 1);
+		return ob_fail(e, "points: expected times that grow from 0 and end before %g s, got %s at point %u",
+			       OB_TIME_MOST, ob_number_text(at->t).text, i + 1);
 	if (path->turns && !(fabs(norm - 1) < 1e-6))
 		return ob_fail(e, "points: expected a unit quaternion at point %u", i + 1);
 	return within3("points", " m", OB_PLACE_MOST, at->p, e);

@@ -6,6 +6,7 @@
 
 #include <lauxlib.h>
 
+#include "base/number.h"
 #include "scene/builder.h"
 #include "scene/object_limits.h"
 #include "scene/sandbox.h"
@@ -135,8 +136,9 @@ static uint32_t read_points(lua_State *L, const char *where, bool begins, double
 						: "eight numbers {t, x, y, z, qw, qx, qy, qz}, as point 1 has,",
 					(int)i + 1);
 		if (i == 0 && begins ? point[0].t != 0 : !(point[i].t > (i ? point[i - 1].t : 0)))
-			ob_sandbox_fail(L, "%s.points: expected times that %s and grow, got %.10g at point %d", where,
-					begins ? "begin with 0" : "are after 0", point[i].t, (int)i + 1);
+			ob_sandbox_fail(L, "%s.points: expected times that %s and grow, got %s at point %d", where,
+					begins ? "begin with 0" : "are after 0", ob_number_text(point[i].t).text,
+					(int)i + 1);
 		lua_pop(L, 1);
 	}
 	lua_pop(L, 1);
@@ -226,7 +228,7 @@ static void check_force(lua_State *L, const char *where, const force_draft *d)
 	};
 	check_for_kind(L, where, d->kind, kinds[d->kind], fields, sizeof fields / sizeof *fields);
 	if (d->kind == OB_FORCE_PULSE && !(d->to > (isnan(d->from) ? 0 : d->from)))
-		ob_sandbox_fail(L, "%s.to: expected a time after from, got %.10g", where, d->to);
+		ob_sandbox_fail(L, "%s.to: expected a time after from, got %s", where, ob_number_text(d->to).text);
 }
 
 void ob_builder_read_force(lua_State *L, const char *kind, ob_object_def *o)

@@ -4,6 +4,7 @@
 
 #include <lauxlib.h>
 
+#include "base/number.h"
 #include "base/random.h"
 #include "elementary/elementary.h"
 #include "scene/builder.h"
@@ -82,7 +83,8 @@ int ob_scene_call_random(lua_State *L)
 				n == 1 ? "" : "s");
 	double low = n ? luaL_checknumber(L, 1) : 0, high = n ? luaL_checknumber(L, 2) : 1;
 	if (!isfinite(high - low) || !(low <= high))
-		ob_sandbox_fail(L, "random: expected low <= high, got %.10g and %.10g", low, high);
+		ob_sandbox_fail(L, "random: expected low <= high, got %s and %s", ob_number_text(low).text,
+				ob_number_text(high).text);
 	lua_pushnumber(L, low + (high - low) * ob_random_real(scene_random(L)));
 	return 1;
 }

@@ -1,16 +1,15 @@
 #include "scene/text.h"
 
-#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/utf8.h"
 
 static size_t put_number(double x, char *out, size_t size)
 {
-	// printf shows the sign of a NaN, which differs between machines
-	return (size_t)snprintf(out, size, isnan(x) ? "nan" : "%.10g", x);
+	return (size_t)snprintf(out, size, "%s", ob_number_text(x).text);
 }
 
 // Short lists of numbers are shown whole: most mistakes are in vectors.

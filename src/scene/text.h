@@ -9,7 +9,7 @@
 
 #include "base/spelling.h"
 
-#define OB_TEXT_VALUE 96 // bytes, the longest description of a value with its final 0
+#define OB_TEXT_VALUE 112 // bytes, the longest description of a value with its final 0
 
 // "nothing", "-3", "nan", "\"wood\"", "{1, 0, -2}", "a table", "a function"
 void ob_text_of_value(lua_State *L, int index, char out[OB_TEXT_VALUE]);

@@ -5,6 +5,7 @@
 
 #include <lauxlib.h>
 
+#include "base/number.h"
 #include "motion/depth.h"
 #include "motion/flight.h"
 #include "motion/joint_value.h"
@@ -316,7 +317,8 @@ static void add_up(lua_State *L, const char *call, ob_vec3 more, double most, ob
 	const ob_vec3 all = ob_add(*sum, more);
 	const double largest = fmax(fabs(all.x), fmax(fabs(all.y), fabs(all.z)));
 	if (!(largest <= most))
-		ob_sandbox_fail(L, "%s: expected at most %g along an axis in a step, got %g", call, most, largest);
+		ob_sandbox_fail(L, "%s: expected at most %s along an axis in a step, got %s", call,
+				ob_number_text(most).text, ob_number_text(largest).text);
 	*sum = all;
 }
 

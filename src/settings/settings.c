@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/number.h"
+
 #define UNSET UINT32_MAX // in counts, choices and switches; NaN in reals
 
 #define MEMBER(member) .offset = offsetof(ob_run_settings, member)
@@ -184,8 +186,8 @@ bool ob_run_settings_check(const ob_run_settings *s, ob_error *e)
 {
 	const ob_vec3 g = s->gravity;
 	if (!(fmax(fabs(g.x), fmax(fabs(g.y), fabs(g.z))) <= OB_GRAVITY_MOST) || isnan(g.x + g.y + g.z))
-		return ob_fail(e, "gravity: expected up to %g m/s^2 along each axis, got %g, %g, %g", OB_GRAVITY_MOST,
-			       g.x, g.y, g.z);
+		return ob_fail(e, "gravity: expected up to %g m/s^2 along each axis, got %s, %s, %s", OB_GRAVITY_MOST,
+			       ob_number_text(g.x).text, ob_number_text(g.y).text, ob_number_text(g.z).text);
 	if (s->fault.probability != 0) // drawn anew
 		return ob_fail(e, "a fault is asked for");
 	for (int i = 0; i < OB_SETTINGS; i++)

@@ -5,6 +5,7 @@
 #include <ob/error.h>
 
 #include "base/csv.h"
+#include "base/number.h"
 #include "base/utf8.h"
 #include "check.h"
 
@@ -54,6 +55,13 @@ static void test_csv_foreign(void)
 		ob_csv_reader bad = { .at = copy };
 		CHECK(ob_csv_read(&bad, cell, 2) == 0);
 	}
+}
+
+static void test_numbers(void)
+{
+	CHECK(strcmp(ob_number_text(.132).text, "0.132") == 0 && strcmp(ob_number_text(1e6).text, "1000000") == 0);
+	CHECK(strcmp(ob_number_text(nextafter(.132, 1)).text, ob_number_text(.132).text) != 0);
+	CHECK(strcmp(ob_number_text(-NAN).text, "nan") == 0 && strcmp(ob_number_text(-INFINITY).text, "-inf") == 0);
 }
 
 static void test_utf8(void)
@@ -121,6 +129,7 @@ int main(void)
 {
 	test_csv_round_trip();
 	test_csv_foreign();
+	test_numbers();
 	test_utf8();
 	test_plain();
 	return check_end();

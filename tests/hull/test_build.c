@@ -260,11 +260,35 @@ static void check_none(void)
 	check_whole(&h, ball, 64);
 }
 
+// ---- compounds
+
+// A compound of one round part is that part: the ball in it is no larger than the ball about it, wherever its points' origin is.
+static void check_one_round(void)
+{
+	uint64_t seed = 5;
+	for (int run = 0; run < 300; run++) {
+		ob_hull h[2];
+		ob_error e = { "" };
+		uint32_t failed;
+		const double angle = ob_splitmix_within(&seed, 0, 3);
+		const ob_hull_part part = { .round = OB_SHAPE_SPHERE,
+					    .size = { .x = ob_splitmix_within(&seed, .01, 1) },
+					    .pose = { ob_splitmix_vector(&seed, 1),
+						      { cos(angle), .6 * sin(angle), 0, .8 * sin(angle) } },
+					    .density = 1 };
+		CHECK(ob_hull_build_compound(&part, 1, ob_v3(NAN, 0, 0), h, &failed, &e));
+		CHECK(h->inner <= h->radius);
+		CHECK_NEAR(h->inner, part.size.x, 1e-14);
+		CHECK_NEAR(h->radius, part.size.x, 1e-14);
+	}
+}
+
 int main(void)
 {
 	check_solids();
 	check_box();
 	check_many();
 	check_none();
+	check_one_round();
 	return check_end();
 }
