@@ -266,6 +266,20 @@ static bool are_lower_around(const ob_terrain *t, uint32_t triangle, uint32_t ve
 	return true;
 }
 
+// The edge at the border below which x is, on the side of solid ground; -1: none.
+static int border_above(const ob_terrain *t, uint32_t triangle, const ob_vec3 c[3], ob_vec3 x)
+{
+	const ob_terrain_triangle *own = &ob_terrain_triangles(t)[triangle];
+	const ob_terrain_region *r = region_of(t, triangle);
+	if (!t->solid || !(r->normal.z > 0))
+		return -1;
+	x.z += (r->offset - ob_dot(r->normal, x)) / r->normal.z;
+	for (int k = 0; k < 3; k++)
+		if (!own->across[k] && share_inside(c, r->normal, k, x) <= on_edge)
+			return k;
+	return -1;
+}
+
 bool ob_terrain_supports(const ob_terrain *t, uint32_t triangle, ob_vec3 x, ob_vec3 n, double lean)
 {
 	lean = ob_max(lean, least_lean);
@@ -279,7 +293,7 @@ bool ob_terrain_supports(const ob_terrain *t, uint32_t triangle, ob_vec3 x, ob_v
 			edge = edges == 1 && edge == 0 && k == 2 ? 2 : edges ? edge : k; // 2, if corner 0
 			edges++;
 		}
-	if (!edges)
+	if (!edges && (edge = border_above(t, triangle, c, x)) < 0)
 		return ob_dot(n, normal) > 1 - 1e-12;
 	if (edges > 1) { // edge k and the next meet at corner k + 1
 		const int corner = (edge + 1) % 3;
