@@ -184,7 +184,7 @@ static const char *commit_bounds(ob_committer *c, ob_universe *u, const ob_mail_
 static const char *commit_effort(ob_committer *c, ob_universe *u, const ob_mail_record *from)
 {
 	const ob_effort_record *r = from->data;
-	if (from->bytes != sizeof *r || !owns_island(c, from->worker, r->island) || r->share > OB_MOST_EFFORT)
+	if (from->bytes != sizeof *r || !owns_island(c, from->worker, r->island) || r->share > OB_EFFORT_GIVEN_UP)
 		return "has counted what it was not given";
 	ob_write_effort(u, r->island, r->share);
 	return NULL;
@@ -520,11 +520,25 @@ static void compare_before(ob_committer *c)
 	}
 }
 
+// Of a phase that has failed, commits which islands were given up, and no results.
+static void commit_given_up(ob_committer *c, ob_universe *u, ob_phase phase)
+{
+	ob_mail_record r;
+	for (uint32_t rank = 0; rank < mails(c); rank++) {
+		ob_record_reader from = { .mail = ob_committer_mail_of(c, rank), .commits = true };
+		while (ob_committer_next(c, u, &from, &r))
+			if (r.kind == OB_RECORD_EFFORT)
+				commit_record(c, u, phase, &r);
+	}
+}
+
 static void commit_mails(ob_committer *c, ob_universe *u, ob_phase phase)
 {
 	uint32_t worker = 0;
-	if (fails(c, u))
+	if (fails(c, u)) {
+		commit_given_up(c, u, phase);
 		return;
+	}
 	for (uint32_t rank = 0; rank < mails(c); rank++)
 		if (!commit_records(c, u, phase, ob_committer_mail_of(c, rank), &worker))
 			return;

@@ -79,7 +79,7 @@ typedef struct ob_posts_record {
 	unsigned char part[];
 } ob_posts_record;
 
-enum { OB_CHANGES_AT_ONCE = 512, OB_POSTS_AT_ONCE = 2048, OB_MOST_EFFORT = 1 << 16 };
+enum { OB_CHANGES_AT_ONCE = 512, OB_POSTS_AT_ONCE = 2048 };
 
 // Write a result into the universe: by a worker that can, and by the arranger once it has checked the record.
 void ob_write_result(ob_universe *u, const ob_found_result *r);

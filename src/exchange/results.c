@@ -213,9 +213,7 @@ void ob_commit_bounds(ob_universe *u, uint32_t id, const float box[6])
 
 void ob_commit_effort(ob_universe *u, uint32_t island, uint32_t share)
 {
-	const ob_effort_record r = { island, share < OB_MOST_EFFORT
-						     ? share
-						     : OB_MOST_EFFORT }; // so that sums stay within bounds
+	const ob_effort_record r = { island, share };
 	if (!hand_over(u, OB_RECORD_EFFORT, &r, sizeof r))
 		ob_write_effort(u, island, r.share);
 }

@@ -52,7 +52,7 @@ void ob_kept_population_free(ob_kept_population *k); // NULL is allowed
 void ob_population_restore(ob_population *p, const ob_kept_population *k);
 // For a checkpoint in memory (table/checkpoint.h): keeps the state that is not in the universe, and puts it back. Later
 // changes by timetable, scripts and requests are repeated by a run that restarts there (host/journal.h). reached: number of
-// steps that were complete before the restart; new requests wait until as many are complete again.
+// steps that were complete before the restart, and one more if it failed; new requests wait until as many are complete.
 bool ob_population_keep(ob_population *p); // false: out of memory
 void ob_population_put_back(ob_population *p, uint64_t reached);
 // True until a run that was put back so is where it was, with all requests since.

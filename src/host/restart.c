@@ -507,8 +507,10 @@ bool ob_restart(ob_host *h)
 	back_off(h);
 	const uint64_t count = ob_step_count(h->u), // a simulator may have overwritten it
 		reached = count < h->interval.most ? count : h->interval.most;
+	// a step that was too much is complete before newcomers come: else each attempt would find more of them
+	const bool failed = latest(r)->cause == OB_DEATH_FAILURE;
 	ob_checkpoint_put_back(r->checkpoint, h->u);
-	ob_population_put_back(h->population, reached);
+	ob_population_put_back(h->population, reached + failed);
 	return start_workers(h, text.text);
 }
 

@@ -21,9 +21,10 @@
 // Freezing (ob_on_death): the dead simulator's objects, or those of the island that failed, are noted with their place
 // (journal.h): the number of complete steps, and whether the scripts before the coming step had run. Then the restart
 // goes as above; the run pauses in that place again, the objects become static, their scripts stop, and a checkpoint is
-// taken. So they stay where they were when their simulator died, wherever
-// the checkpoint was. If it dies in the same step of every run, all runs end in the same bits. Threads restart, too,
-// once they have left, which they do unless they hang.
+// taken. So they stay where they were when their simulator died, wherever the checkpoint was. All islands that are too much in
+// a step are frozen at once, and new requests wait until it is complete: each attempt would find more of them. If it dies in
+// the same step of every run, all runs end in the same bits. Threads restart, too, once they have left, which they do unless
+// they hang.
 //
 // The run fails where a restart is impossible, useless, or not wanted:
 //   - by policy, or if simulators have died more often than the limit allows;

@@ -323,7 +323,10 @@ static uint64_t cost_so_far(const ob_sim *s)
 static void note_effort(ob_sim *s, uint32_t island, uint64_t cost)
 {
 	const uint64_t share = cost / s->data->island[island].members;
-	ob_commit_effort(s->u, island, (uint32_t)(share < UINT32_MAX ? share : UINT32_MAX));
+	ob_commit_effort(s->u, island,
+			 s->solver.budget.spent   ? OB_EFFORT_GIVEN_UP
+			 : share < OB_EFFORT_MOST ? (uint32_t)share
+						  : OB_EFFORT_MOST);
 }
 
 // ---- ballistic advance
@@ -417,8 +420,12 @@ void ob_island_advance(ob_sim *s, uint32_t i)
 {
 	const ob_island *is = &s->data->island[i];
 	ob_budget_begin_share(s, s->data->member[is->first_member]);
-	if (advance_pair(s, is) || !has_few_regions(s, is))
+	if (advance_pair(s, is))
 		return;
+	if (!has_few_regions(s, is)) {
+		ob_commit_effort(s->u, i, OB_EFFORT_GIVEN_UP);
+		return;
+	}
 	const uint64_t before = cost_so_far(s);
 	ob_profile_enter(s, OB_PROFILE_LOAD);
 	const ob_island_input *in = read_island(s, is);

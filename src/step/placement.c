@@ -279,6 +279,17 @@ bool ob_sim_freeze(ob_universe *u, uint32_t id)
 	return true;
 }
 
+// Lists the members of all islands that were given up.
+static uint32_t list_given_up(const ob_universe *u, uint32_t *ids, uint32_t most)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	uint32_t n = 0;
+	for (uint32_t id = 0; id < ob_universe_ids(u) && n < most; id++)
+		if (data->effort[id] == OB_EFFORT_GIVEN_UP)
+			ids[n++] = id;
+	return n;
+}
+
 uint32_t ob_sim_failed_objects(const ob_universe *u, uint32_t object, uint32_t *ids, uint32_t most)
 {
 	const ob_step_data *data = ob_universe_step_data(u);
@@ -287,9 +298,12 @@ uint32_t ob_sim_failed_objects(const ob_universe *u, uint32_t object, uint32_t *
 	const ob_step_failure why = ob_step_failed(u, NULL);
 	if (why == OB_STEP_PAIRS_FULL || why == OB_STEP_NEIGHBOURS_FULL)
 		return ob_crowd(u, ids, most);
+	const bool worked = why == OB_STEP_OVERWORKED || why == OB_STEP_SURFACES_FULL;
+	const uint32_t given_up = worked ? list_given_up(u, ids, most) : 0;
+	if (given_up)
+		return given_up;
 	const uint32_t place = data->result_island[object];
-	const bool solved =
-		ob_gate_phase(u) == OB_PHASE_ISLANDS || why == OB_STEP_OVERWORKED || why == OB_STEP_SURFACES_FULL;
+	const bool solved = ob_gate_phase(u) == OB_PHASE_ISLANDS || worked;
 	const ob_island *is = solved && place < data->objects_max ? &data->island[place] : NULL;
 	if (!is || is->members > data->objects_max || is->first_member > data->objects_max - is->members) {
 		ids[0] = object;

@@ -71,8 +71,8 @@ void ob_sim_remove(ob_universe *u, uint32_t id);
 // wake. false: it does not exist, or does not move anyway.
 bool ob_sim_freeze(ob_universe *u, uint32_t id);
 // Host, after the workers have left, before anything is restored: lists the objects for which a simulator, or a step,
-// failed at "object": those of its island while islands are solved, else itself alone. Writes at most `most` ids;
-// returns how many there are.
+// failed at "object": those of all islands that were given up, or of its island while islands are solved, else itself alone.
+// Writes at most `most` ids; returns how many there are.
 uint32_t ob_sim_failed_objects(const ob_universe *u, uint32_t object, uint32_t *ids, uint32_t most);
 
 // Host, at the start and after each pause: opens the first phase. The run then goes on until the next pause step.

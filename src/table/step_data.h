@@ -261,6 +261,9 @@ typedef struct ob_step_data {
 	uint32_t *first_joint; // [object]: 1 + the first of its joints, ascending; 0: it has none
 } ob_step_data;
 
+// Bounds of ob_step_data.effort, so that sums stay within theirs. GIVEN_UP: the island is more than a step may take.
+enum { OB_EFFORT_MOST = 1 << 16, OB_EFFORT_GIVEN_UP };
+
 typedef enum ob_step_failure {
 	OB_STEP_OK,
 	OB_STEP_PAIRS_FULL,
