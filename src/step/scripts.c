@@ -21,12 +21,25 @@ static bool pauses_after(const ob_script_counts *count)
 	return count->pause_for > 0 && count->pause_for == ob_scripts_ran_for(count);
 }
 
+bool ob_scripts_had_run(const ob_universe *u)
+{
+	const ob_script_counts *count = ob_universe_step_data(u)->script_counts;
+	return count && ob_scripts_ran_for(count) == ob_step_count(u) + 1;
+}
+
+void ob_scripts_forget(ob_universe *u)
+{
+	ob_script_counts *count = ob_universe_step_data(u)->script_counts;
+	if (count)
+		ob_scripts_set_ran_for(count, (uint32_t)ob_step_count(u));
+}
+
 bool ob_scripts_due(ob_universe *u)
 {
 	ob_step_data *data = ob_universe_step_data(u);
 	ob_script_counts *count = data->script_counts;
 	const uint64_t step = ob_step_count(u);
-	if (!count || ob_scripts_ran_for(count) == step + 1)
+	if (!count || ob_scripts_had_run(u))
 		return false;
 	ob_scripts_set_ran_for(count, (uint32_t)step + 1);
 	count->due = 0;

@@ -12,6 +12,10 @@
 // Lists the scripts due before the coming step, once for each step; the scheduling worker calls it. true: there are
 // some, or the host wants a pause when they have run.
 bool ob_scripts_due(ob_universe *u);
+// True once it has been called for the coming step.
+bool ob_scripts_had_run(const ob_universe *u);
+// Makes it as if it had not been called, where the step fails before the scripts run.
+void ob_scripts_forget(ob_universe *u);
 // Carries out the scripts' requests after they have run. true: the motion of an object changes, now or later.
 bool ob_scripts_carry_out(ob_sim *s);
 // True if the host has creations and removals to carry out now, or wants the pause.

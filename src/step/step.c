@@ -558,8 +558,12 @@ static ob_phase after_broadphase_start(const scheduler *c)
 	ob_requery_list(c->u, &queries);
 	if (!queries)
 		return begin_step(c);
+	const bool had_run = ob_scripts_had_run(c->u);
 	const ob_phase next = !must_pause(c) && ob_scripts_due(c->u) ? OB_PHASE_SCRIPTS : OB_PHASE_FORECAST;
-	return merge_pairs(c, ob_step_count(c->u), next) ? next : OB_PHASE_PAUSE;
+	const bool merged = merge_pairs(c, ob_step_count(c->u), next);
+	if (!had_run && ob_step_failed(c->u, NULL) != OB_STEP_OK)
+		ob_scripts_forget(c->u);
+	return merged ? next : OB_PHASE_PAUSE;
 }
 
 // Queries the neighbours of objects whose motion has changed. The host creates and removes objects at once.

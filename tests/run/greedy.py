@@ -108,12 +108,12 @@ def innocent(port, token, run, waits):
 				while len(mine()) != wanted:
 					v.receive()
 			finally:
-				waits.append((time.monotonic() - began[0], max(0, cpu_of(run.pid) - began[1]))) # one that was killed took its own along
+				waits.append((time.monotonic() - began[0], max(0, cpu_of(run.pid) - began[1])))
 		time.sleep(.05)
 
 
 def cpu_of(pid):
-	"""CPU seconds of a process and its descendants so far; 0: they have ended."""
+	"""CPU seconds of a process and its descendants so far, of those that have ended, too; 0: it has ended."""
 	parents, used = {}, {}
 	for name in filter(str.isdigit, os.listdir("/proc")):
 		try:
@@ -121,7 +121,7 @@ def cpu_of(pid):
 				words = f.read().rpartition(")")[2].split()
 		except OSError: # it has ended meanwhile
 			continue
-		parents[int(name)], used[int(name)] = int(words[1]), int(words[11]) + int(words[12])
+		parents[int(name)], used[int(name)] = int(words[1]), sum(map(int, words[11:15])) # its children's that have ended, too
 	own, before = {pid} & used.keys(), None
 	while own != before:
 		before, own = own, own | {child for child, parent in parents.items() if parent in own}

@@ -92,12 +92,14 @@ class Policy(program.Case):
 		self.assertEqual(seen, {(r["state_hash"], r["frozen"])})
 
 	def test_freeze_crowd(self):
-		"""More pairs of neighbours than there is room for, all found in one step or in time: those with most are frozen, the same
+		"""More pairs of neighbours than there is room for, all found in one step or in time, also where a script waits for its turn: those with most are frozen, the same
 		in threads and processes, with any number of workers."""
-		for n in 725, 1200:
+		scripted = "script('still', 'function on_step() end') sphere { radius = .1, at = { 0, 900, 0 }, script = 'still' }"
+		for n, more in (725, ""), (725, scripted), (1200, ""):
 			with open(self.path("rods.lua"), "w") as f: # side by side, aslant: their bounds overlap, and none touches another
 				f.write(f"""
 scene {{ gravity = {{ 0, 0, 0 }}, duration = .05 }}
+{more}
 for i = 1, {n} do
 	box {{ size = {{ .002, .002, 5 }}, rotation = {{ axis = {{ 0, 1, 0 }}, degrees = 45 }}, at = {{ i * .002, 0, -i * .002 }} }}
 end""")
