@@ -462,6 +462,8 @@ static void note_end(ob_universe *u, const ob_mail_record *r)
 		ob_step_blame(u, r->worker, "has ended in a way that is unknown");
 	else if (why)
 		ob_step_fail(u, why, object);
+	else if (ob_universe_settings(u)->freezes)
+		ob_step_work_add(u, end->work); // compared when the phase ends
 	else
 		ob_work_add(u, end->work, end->worked_on);
 }

@@ -43,6 +43,8 @@ typedef struct ob_client {
 	bool pulls; // it may hold on to objects
 	uint32_t frozen, first_frozen; // its objects that were frozen, of which it was not notified; id of the first
 	ob_allowance commands, creations;
+	uint64_t roster; // its number when creations were last counted
+	uint32_t awaited; // creations since then
 	char command[OB_COMMAND_BYTES_MAX + 1];
 	size_t command_size;
 } ob_client;

@@ -29,6 +29,7 @@ static const double interval = 1. / 60; // s, between two reads of the universe
 static const double share = .3; // limit of their share of the time
 static const double detail_interval = .25; // s, between two statistics, and details of inspected objects
 static const double commands_rate = 200, creations_rate = 40; // 1/s, per client
+enum { CREATIONS_AWAITED = 8 }; // of a client: a step that takes long finds no more of them when it ends
 static const char film_path[] = "/recording", meshes_path[] = "/meshes/";
 static const char player_path[] = "/player.html"; // a page for the record that a viewer makes
 static const char metrics_path[] = "/metrics";
@@ -280,12 +281,17 @@ static void look(lws_sorted_usec_list_t *tick)
 // True if the visitor may create one more object now.
 static bool may_create(const ob_host *h, ob_client *c)
 {
+	const uint64_t roster = ob_roster_number(ob_host_roster(h));
+	if (c->roster != roster)
+		c->roster = roster, c->awaited = 0;
 	if (!ob_allowance_take(&c->creations, ob_clock_wall(), creations_rate))
 		send_error(c, "too many objects in a second: try again");
 	else if (ob_roster_copy(ob_host_roster(h), NULL, 0) >= ob_universe_capacity(ob_host_universe(h)))
 		send_error(c, "the universe is full: remove an object first");
+	else if (c->awaited == CREATIONS_AWAITED)
+		send_error(c, "your last objects have not come yet: try again");
 	else
-		return true;
+		return ++c->awaited;
 	return false;
 }
 

@@ -18,6 +18,7 @@ void ob_budget_begin_share(ob_sim *s, uint32_t object)
 static bool spends_share(ob_sim *s, uint64_t work)
 {
 	s->budget.share += work;
+	ob_step_work_add(s->u, work);
 	const bool stopped = ob_gate_stopped(s->u);
 	if (stopped || s->budget.share > ob_work_limit(s->u))
 		ob_step_fail(s->u, stopped ? OB_STEP_LEFT : OB_STEP_OVERWORKED, s->budget.object);

@@ -11,7 +11,8 @@
 // The rest at a share's end is dropped, so that the sum does not depend on the distribution among workers.
 //
 // If failing objects are frozen (ob_run_settings.freezes), each share has the whole budget for itself. All shares of
-// the phase are finished even if one has failed. So the same objects fail in every run.
+// the phase are finished even if one has failed. So the same objects fail in every run. If all shares together have taken more
+// when a phase ends, those that took most fail (crowd.h).
 #ifndef OB_STEP_BUDGET_H
 #define OB_STEP_BUDGET_H
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/allocate.h"
+#include "schedule/work.h"
 #include "step/crowd.h"
 #include "step/islands.h"
 #include "step/sim.h"
@@ -75,6 +76,36 @@ uint32_t ob_crowd(const ob_universe *u, uint32_t *ids, uint32_t most)
 	const uint32_t n = list_crowd(u, pairs, ids, most);
 	free(pairs);
 	return n;
+}
+
+// Cost of the object's island in this step; 0: it has none.
+static uint64_t cost_of_island(const ob_universe *u, uint32_t id)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t place = data->result_island[id];
+	return place < data->count->islands ? (uint64_t)data->effort[id] * data->island[place].members : 0;
+}
+
+void ob_crowd_limit_work(ob_universe *u, bool solved)
+{
+	const ob_step_data *data = ob_universe_step_data(u);
+	if (ob_step_failed(u, NULL) != OB_STEP_OK || data->count->work <= ob_work_limit(u))
+		return;
+	const uint32_t ids = ob_universe_ids(u);
+	uint32_t *pairs = count_pairs(u), worst = 0;
+	uint64_t *cost = ob_allocate_zeroed((ids + 1) * sizeof *cost);
+	for (uint32_t id = 0; id < ids; id++) {
+		cost[id] = !ob_schedule_is_dynamic(&data->schedule[id]) ? 0
+			   : solved                                     ? cost_of_island(u, id)
+									: pairs[id];
+		worst = cost[id] > cost[worst] ? id : worst;
+	}
+	for (uint32_t id = 0; id < ids; id++)
+		if (cost[id] > 0 && 2 * cost[id] >= cost[worst])
+			data->effort[id] = OB_EFFORT_GIVEN_UP;
+	free(cost);
+	free(pairs);
+	ob_step_fail(u, OB_STEP_OVERWORKED, worst);
 }
 
 // Names the object with most pairs, or the largest: it is too large, or too fast.

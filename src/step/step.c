@@ -48,6 +48,7 @@
 #include "step/broadphase.h"
 #include "step/budget.h"
 #include "step/critical_path.h"
+#include "step/crowd.h"
 #include "step/fault.h"
 #include "step/invariants.h"
 #include "step/island_builder.h"
@@ -673,6 +674,8 @@ static const step_phase phases[] = {
 // Returns the phase that follows. A failed step publishes nothing more: the universe stays at the step before.
 static ob_phase next_phase(const scheduler *c, ob_phase finished)
 {
+	if (c->settings->freezes)
+		ob_crowd_limit_work(c->u, finished == OB_PHASE_ISLANDS);
 	return ob_step_failed(c->u, NULL) == OB_STEP_OK ? phases[finished].next(c) : OB_PHASE_PAUSE;
 }
 

@@ -19,7 +19,8 @@ static ob_scene heaps(void)
 	return s;
 }
 
-static void test_all_at_once(ob_isolation isolation, unsigned harden)
+// substeps: 1000: each heap is more than a step may take; 200: all together are.
+static void test_all_at_once(ob_isolation isolation, unsigned harden, uint32_t substeps)
 {
 	ob_scene s = heaps();
 	ob_host_config c = little_config(&s, isolation, 2);
@@ -28,7 +29,7 @@ static void test_all_at_once(ob_isolation isolation, unsigned harden)
 	c.on_death = OB_ON_DEATH_KEEP;
 	c.harden = harden;
 	c.budget = 1;
-	c.run.substeps = 1000;
+	c.run.substeps = substeps;
 	ob_host *h = ob_host_start(&s, &c, &e);
 	CHECK(h);
 	ob_host_go(h, 3);
@@ -83,9 +84,11 @@ static void test_newcomers_wait(ob_isolation isolation)
 
 int main(void)
 {
-	test_all_at_once(OB_ISOLATION_THREAD, 0);
-	test_all_at_once(OB_ISOLATION_PROCESS, 0);
-	test_all_at_once(OB_ISOLATION_PROCESS, OB_HARDEN_ALL);
+	for (uint32_t substeps = 200; substeps <= 1000; substeps += 800) {
+		test_all_at_once(OB_ISOLATION_THREAD, 0, substeps);
+		test_all_at_once(OB_ISOLATION_PROCESS, 0, substeps);
+		test_all_at_once(OB_ISOLATION_PROCESS, OB_HARDEN_ALL, substeps);
+	}
 	test_newcomers_wait(OB_ISOLATION_THREAD);
 	test_newcomers_wait(OB_ISOLATION_PROCESS);
 	return check_end();

@@ -595,6 +595,27 @@ controls { label = "Power", sends = "power", min = 0, max = 2, value = 1 }
 		self.assertEqual(len(v.objects), before + 64)
 		self.end()
 
+	def test_awaited(self):
+		"""While a step does not end, each visitor can ask for eight objects; they come when it does."""
+		self.serve("--isolation", "process", "--workers", "1")
+		v, other = self.viewer(), self.viewer()
+		before = len(v.objects)
+		pid = next(iter(program.simulators(self.run_.pid)))
+		os.kill(pid, signal.SIGSTOP)
+		v.send(do="create", shape="sphere", size=[.1, 0, 0], at=[9, 0, 50], mass=1) # it may still find a pause
+		time.sleep(1)
+		for i in range(20):
+			v.send(do="create", shape="sphere", size=[.1, 0, 0], at=[10 + i, 0, 50], mass=1)
+		v.until(lambda: "have not come yet" in v.told.get("error", ""))
+		other.send(do="create", shape="sphere", size=[.1, 0, 0], at=[10, 9, 50], mass=1)
+		time.sleep(.5)
+		os.kill(pid, signal.SIGCONT)
+		other.until(lambda: len(other.objects) >= before + 9)
+		time.sleep(.5)
+		v.until(lambda: len(v.objects) >= before + 9)
+		self.assertIn(len(v.objects), (before + 9, before + 10))
+		self.end()
+
 	def closed(self, v):
 		"""The code with which the server closes."""
 		try:
