@@ -81,7 +81,7 @@ static bool is_plain(const char *text, size_t room)
 
 static void check_passport(const ob_passport *p, uint32_t id)
 {
-	CHECK(p->id == id && p->shape <= OB_SHAPE_HULL && is_finite(p->size) && p->mass >= 0 &&
+	CHECK(p->id == id && p->shape <= OB_SHAPE_TERRAIN && is_finite(p->size) && p->mass >= 0 &&
 	      is_plain(p->name, sizeof p->name));
 }
 
