@@ -147,6 +147,15 @@ static void to_another(hid_t file, const char *name)
 	H5Lcreate_hard(file, place[below(places)], file, name, H5P_DEFAULT, H5P_DEFAULT);
 }
 
+// True if it stands for parts of others: HDF5 itself would read one of itself until the stack is full.
+static bool is_virtual(hid_t set)
+{
+	const hid_t how = H5Dget_create_plist(set);
+	const bool is = H5Pget_layout(how) == H5D_VIRTUAL;
+	H5Pclose(how);
+	return is;
+}
+
 // Puts another dataset of the same type and space, made in this way; or one of doubles in place of a group.
 static void put_dataset(hid_t file, const char *name, hid_t how, bool fill)
 {
@@ -155,8 +164,10 @@ static void put_dataset(hid_t file, const char *name, hid_t how, bool fill)
 	hid_t type = old >= 0 ? H5Dget_type(old) : H5Tcopy(H5T_NATIVE_DOUBLE);
 	hid_t space = old >= 0 ? H5Dget_space(old) : H5Screate_simple(1, &one, NULL);
 	void *bytes = calloc((size_t)H5Sget_simple_extent_npoints(space) + 1, H5Tget_size(type));
+	if (old >= 0 && !is_virtual(old))
+		H5Dread(old, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
 	if (old >= 0)
-		H5Dread(old, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes), H5Dclose(old);
+		H5Dclose(old);
 	hsize_t size[4], most[4];
 	H5Sget_simple_extent_dims(space, size, most);
 	if (H5Sget_simple_extent_ndims(space) > 0)
