@@ -737,10 +737,10 @@ bool ob_population_is_behind(const ob_population *p)
 void ob_population_restore(ob_population *p, const ob_kept_population *k)
 {
 	p->reached = 0;
-	ob_journal_finish(&p->journal);
-	p->journal = (ob_journal){ 0 };
+	ob_journal_finish(&p->journal), p->journal = (ob_journal){ 0 };
+	ob_pulls_set_aside(&p->pulls);
 	put_back(p, k);
-	ob_pulls_let_go(&p->pulls); // as they hold what is no more, or have left
+	ob_pulls_take_up(&p->pulls, p->u);
 }
 
 bool ob_population_is_due_after_scripts(const ob_population *p)

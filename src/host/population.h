@@ -48,7 +48,7 @@ typedef struct ob_kept_population ob_kept_population;
 ob_kept_population *ob_population_copy(const ob_population *p, ob_kept_population *k);
 void ob_kept_population_free(ob_kept_population *k); // NULL is allowed
 // Goes on from a copy, at a universe put back to the same step: what came later is forgotten, and never repeated. Viewers'
-// pulls end.
+// pulls stay as they are now: some may have let go since, or have left.
 void ob_population_restore(ob_population *p, const ob_kept_population *k);
 // For a checkpoint in memory (table/checkpoint.h): keeps the state that is not in the universe, and puts it back. Later
 // changes by timetable, scripts and requests are repeated by a run that restarts there (host/journal.h). reached: number of

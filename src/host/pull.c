@@ -113,11 +113,35 @@ void ob_pulls_release(ob_pulls *p, uint32_t id, uint32_t origin)
 			remove_at(p, i);
 }
 
-void ob_pulls_let_go(ob_pulls *p)
+static bool is_viewers(const ob_pull *pull)
 {
+	return pull->origin > 0 && pull->origin < OB_ORIGIN_PROGRAM;
+}
+
+void ob_pulls_set_aside(ob_pulls *p)
+{
+	p->asides = 0;
+	if (!p->count || !OB_GROW(p->aside, p->count))
+		return;
+	for (uint32_t i = 0; i < p->count; i++)
+		if (is_viewers(&p->at[i]))
+			p->aside[p->asides++] = p->at[i];
+}
+
+void ob_pulls_take_up(ob_pulls *p, const ob_universe *u)
+{
+	ob_error e;
 	for (uint32_t i = p->count; i-- > 0;)
-		if (p->at[i].origin > 0 && p->at[i].origin < OB_ORIGIN_PROGRAM)
+		if (is_viewers(&p->at[i]))
 			remove_at(p, i);
+	for (uint32_t i = 0; i < p->asides; i++) {
+		const ob_pull *pull = &p->aside[i];
+		const ob_passport *pass = pull->id < ob_universe_ids(u) ? ob_passport_of(u, pull->id) : NULL;
+		if (pass && pass->flags & OB_OBJECT_PRESENT && pass->generation == pull->generation &&
+		    ob_pull_check(pull, pass, &e))
+			ob_pulls_set(p, pull);
+	}
+	p->asides = 0;
 }
 
 void ob_pulls_drop(ob_pulls *p, uint32_t id)
@@ -140,6 +164,7 @@ bool ob_pulls_copy(ob_pulls *to, const ob_pulls *from)
 void ob_pulls_finish(ob_pulls *p)
 {
 	free(p->at);
+	free(p->aside);
 	*p = (ob_pulls){ 0 };
 }
 

@@ -36,6 +36,8 @@ enum { OB_PULLS_MAX = 10000 };
 typedef struct ob_pulls {
 	ob_pull *at; // [count], in the order in which they act
 	uint32_t count, room;
+	ob_pull *aside; // [asides], viewers'
+	uint32_t asides;
 } ob_pulls;
 
 // True for a request that begins a pull; that pull.
@@ -47,8 +49,10 @@ bool ob_pull_check(const ob_pull *pull, const ob_passport *p, ob_error *e);
 bool ob_pulls_set(ob_pulls *p, const ob_pull *pull);
 // Ends the pulls of an origin on an object; id UINT32_MAX: on all objects.
 void ob_pulls_release(ob_pulls *p, uint32_t id, uint32_t origin);
-// Ends all pulls of viewers.
-void ob_pulls_let_go(ob_pulls *p);
+// Sets the pulls of viewers aside, while others are put in their place. Without memory they end.
+void ob_pulls_set_aside(ob_pulls *p);
+// Takes them up again in place of all pulls of viewers, as far as their objects are there.
+void ob_pulls_take_up(ob_pulls *p, const ob_universe *u);
 // Ends all pulls on an object.
 void ob_pulls_drop(ob_pulls *p, uint32_t id);
 // Copies all. false: no memory, and `to` keeps what it had.

@@ -1,5 +1,5 @@
 // An object belongs to the connection that has created it, whether the run goes on, is resumed from a file, or is put back. An
-// object of a program's command belongs to none in a file. Viewers let go when the run is put back.
+// object of a program's command belongs to none in a file. Viewers hold what they hold, also when the run is put back.
 #include "check.h"
 
 #include "checkpoint/saved_run.h"
@@ -66,12 +66,15 @@ static uint32_t pulls_of(ob_host *h)
 	return saved.population.pulls;
 }
 
-static void put_back(ob_host *h)
+// leaves: the visitor lets go before the run is put back.
+static void put_back(ob_host *h, bool leaves)
 {
 	ask(h, (ob_request){ .kind = OB_REQUEST_KEEP });
 	CHECK(!ob_host_operate(h));
 	go(h, 3);
 	ask(h, (ob_request){ .kind = OB_REQUEST_REMOVE, .id = OWN });
+	if (leaves)
+		ask(h, (ob_request){ .kind = OB_REQUEST_RELEASE, .id = UINT32_MAX, .origin = VISITOR });
 	go(h, 3);
 	ask(h, (ob_request){ .kind = OB_REQUEST_RETURN });
 	CHECK(ob_host_operate(h));
@@ -101,16 +104,18 @@ int main(void)
 	CHECK(pulls_of(h) == 2);
 	CHECK(ob_saved_run_make(&r, &f, h, "test", &e));
 	ob_checkpoint_seal(&f);
-	put_back(h);
-	check_owners(h, before);
-	CHECK(pulls_of(h) == 1); // the program's
+	for (uint32_t leaves = 0; leaves < 2; leaves++) {
+		put_back(h, leaves);
+		check_owners(h, before);
+		CHECK(pulls_of(h) == 2 - leaves); // the program's, and the visitor's
+	}
 	ob_host_stop(h);
 	for (int i = 0; i < 2; i++) {
 		CHECK(ob_saved_run_parse(&opened, &copy, f.bytes, f.size, "file", &e));
 		h = start(s, &opened.settings, (ob_isolation)i, &opened.host);
 		check_owners(h, origin);
 		CHECK(pulls_of(h) == 2);
-		put_back(h);
+		put_back(h, true);
 		check_owners(h, origin);
 		CHECK(pulls_of(h) == 1);
 		ob_host_stop(h);
