@@ -6,8 +6,9 @@
 
 #include "base/spelling.h"
 #include "cli/command.h"
-#include "table/table.h"
 #include "cli/version.h"
+#include "ranks/ranks.h"
+#include "table/table.h"
 
 static const struct {
 	const char *name;
@@ -73,6 +74,15 @@ static void print_help(ob_command_bit command)
 		ob_send_help(stdout);
 }
 
+// Only rank 0 prints the line and fails: a launcher ends the others then.
+static int refuse_ranks(const char *command)
+{
+	ob_error e;
+	ob_fail(&e, "%s has a single rank: start it without mpirun or srun, or use obsim run, which has several",
+		command);
+	return ob_ranks_started().rank == 0 ? ob_command_fail(OB_EXIT_USAGE, e.text) : OB_EXIT_OK;
+}
+
 static int carry_out(int argc, char **argv)
 {
 	const char *word = argc > 1 ? argv[1] : NULL;
@@ -105,6 +115,9 @@ static int carry_out(int argc, char **argv)
 		code = ob_command_fail(OB_EXIT_USAGE, e.text);
 	else if (a.value[OB_OPTION_HELP])
 		print_help(commands[command].bit);
+	else if (ob_ranks_started().ranks > 1 &&
+		 (commands[command].bit & (OB_COMMAND_SERVE | OB_COMMAND_CONTROL) || a.value[OB_OPTION_LIVE]))
+		code = refuse_ranks(word);
 	else
 		code = commands[command].main(&a);
 	ob_options_finish(&a);

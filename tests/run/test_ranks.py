@@ -50,6 +50,16 @@ class Ranks(program.Case):
 		self.assertEqual(done.returncode, 0, done.stderr)
 		return json.loads(done.stdout)["state_hash"]
 
+	def test_single(self):
+		"""Commands that show or lead one universe refuse several ranks: one line with the remedy, exit 2."""
+		for words in ["serve"], ["serve", "--replay", "record.h5"], ["control"], ["compare", "--live"]:
+			words += [] if "record.h5" in words else [program.scene("stack")]
+			done = subprocess.run(["mpirun", "-n", "2", program.OBSIM, *words], env=program.RANKS, stdin=subprocess.DEVNULL,
+				stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=program.PATIENCE)
+			lines = [line for line in done.stderr.splitlines() if line.startswith("obsim: ")]
+			self.assertEqual((done.returncode, done.stdout, lines), (2, "", [f"obsim: {words[0]} has a single rank: start it without "
+				"mpirun or srun, or use obsim run, which has several"]), done.stderr)
+
 	def test_same_bits(self):
 		for name, words in SCENES.items():
 			words = [program.scene(name), *words, "--measure", "end", "--json", "-"]
