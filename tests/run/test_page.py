@@ -34,6 +34,8 @@ const shown = (e) => {
 	}
 	return { left, top, right, bottom };
 };
+// What covers the end of a column that scrolls, and says so.
+const sign = (p) => { const s = getComputedStyle(p, '::after'); return s.content !== 'none' && s.position === 'sticky' && Number(s.opacity) > .9 ? parseFloat(s.height) : 0; };
 const parts = new Map([...document.querySelectorAll('#page *')].filter((e) => e.checkVisibility()).map((e) => [e, shown(e)]));
 const visible = (e) => (({ left, top, right, bottom }) => right - left > 1 && bottom - top > 1)(parts.get(e));
 const all = [...parts.keys()].filter(visible), cards = all.filter((e) => e.matches(card));
@@ -41,7 +43,14 @@ const leaves = all.filter((e) => e.matches('button, select, input, svg, #strip i
 """
 
 FAULTS = LEAVES + """
-const faults = [];
+const faults = [], [whole] = arguments;
+for (const p of [...document.querySelectorAll('#page, #page *')].filter((e) => e.checkVisibility() && scrolls(e))) {
+	const below = p.scrollHeight - p.clientHeight - p.scrollTop;
+	if (below > 1 && !sign(p))
+		faults.push(`hides ${below} px without a sign: ${p.id}`);
+	if (below > 1 && whole && p.id !== 'tree')
+		faults.push(`hides ${below} px of ${[...p.querySelectorAll('.panel')].filter((e) => e.checkVisibility()).map((e) => e.id)}: ${p.id}`);
+}
 for (const e of leaves) {
 	const box = e.getBoundingClientRect(), text = document.createRange();
 	text.selectNodeContents(e);
@@ -68,17 +77,13 @@ over(leaves);
 return [faults, leaves.filter((e) => e.closest('.panel')).length];
 """
 
-# Opens one panel, or with help all.
+# Opens one panel, or all, with the picked object's fields where they are asked for.
 OPEN = """
 const [panel, picked] = arguments, { on } = obsim.panel, set = (what, value) => on[what] === value || obsim.panel.ask(what);
 for (const what of ['offers', 'simulators', 'objects', 'make', 'help'])
-	set(what, what === panel || panel === 'help');
-obsim.pick(panel === 'details' || panel === 'help' ? picked : null);
-if (panel === 'walk')
-	obsim.panel.ask('walk');
-else if (panel !== 'help')
-	obsim.walk.end();
-document.querySelector('#edit').open = true;
+	set(what, what === panel || panel === 'all');
+obsim.pick(['details', 'edit', 'all'].includes(panel) ? picked : null);
+document.querySelector('#edit').open = panel !== 'details';
 """
 
 # Draws nothing: without a GPU pictures take most of the time, and these tests look at the page around them.
@@ -143,25 +148,40 @@ class Page(server.Case):
 		if PICTURES:
 			b.picture(os.path.join(PICTURES, "-".join(map(str, words)) + ".png"))
 
+	def look(self, b, whole, *words):
+		"""Nothing is clipped, covered or over anything else; with whole, nothing has to be scrolled."""
+		with self.subTest(" ".join(map(str, words))):
+			b.run("return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))") # signs follow
+			faults, seen = b.run(FAULTS, whole)
+			self.assertEqual(faults, [])
+			self.assertGreater(seen, 2 if "offers" not in words else -1) # a scene may offer nothing
+		self.keep(b, *words)
+
 	def test_panels(self):
-		"""All panels of all scenes, one by one and together, at three sizes: nothing is clipped or over anything else."""
+		"""All panels of all scenes at three sizes, at a first visit and later: nothing is clipped or over anything else. A panel
+		that is open alone, beside the first steps, too, is whole; where several are open, or an object is edited, a column says
+		that it scrolls."""
 		b = self.window()
 		for scene in SCENES:
-			self.serve("--workers", "3", scene=scene)
+			self.serve("--workers", "4", scene=scene)
 			self.open(b=b)
-			b.wait("obsim.workers.list.length === 3")
+			b.wait("obsim.workers.list.length === 4 && (obsim.walk.steps.length || obsim.workers.world)")
 			picked = b.run("return [...obsim.universe.objects.values()].find((o) => !o.fixed)?.id ?? 0")
-			for size in SIZES:
-				self.emulate(b, size)
-				for panel in "walk", "offers", "simulators", "objects", "details", "make", "help":
-					b.run(OPEN, panel, picked)
-					if panel in ("details", "help"): # help: all at once
-						b.wait("!document.querySelector('#details').hidden && document.querySelector('#details dl').childElementCount > 0")
-					with self.subTest(scene=scene, size=size, panel=panel):
-						faults, seen = b.run(FAULTS)
-						self.assertEqual(faults, [])
-						self.assertGreater(seen, 2 if panel != "offers" else -1) # a scene may offer nothing
-					self.keep(b, scene, *size, panel)
+			steps, own = b.run("return [obsim.walk.steps.length, obsim.panel.on.offers ? 'offers' : 'none']") # the page opens it itself
+			for visit in "first", "later":
+				for size in SIZES:
+					self.emulate(b, size)
+					b.run(OPEN, own, picked)
+					b.run("if (arguments[0]) obsim.panel.ask('walk')", visit == "first")
+					for step in range(steps if visit == "first" else 0):
+						b.run("if (arguments[0]) obsim.walk.next()", step)
+						self.look(b, True, scene, *size, visit, "step", step, "offers")
+					for panel in "offers", "simulators", "objects", "details", "make", "help", "edit", "all":
+						b.run(OPEN, panel, picked)
+						if panel in ("details", "edit", "all"):
+							b.wait("!document.querySelector('#details').hidden && document.querySelector('#details dl').childElementCount > 0")
+						self.look(b, panel not in ("edit", "all"), scene, *size, visit, panel)
+				b.run("obsim.walk.end()")
 			self.assertEqual(b.console(), [])
 			b.go("about:blank") # a page whose server has ended tries again
 			self.end()
@@ -178,6 +198,19 @@ class Page(server.Case):
 				b.run("document.querySelectorAll('#left, #right, #panels').forEach((e) => { e.scrollTop = 0; }); const panel = document.querySelector(arguments[1]); for (let i = panel.hidden ? 1 : 2; i--;) obsim.panel.ask(arguments[0])", what, panel)
 				top, nav = b.run("return [document.querySelector(arguments[0]).getBoundingClientRect().top, document.querySelector('nav').getBoundingClientRect().top]", panel)
 				self.assertTrue(0 < top < nav - 80, (size, what, top, nav))
+		self.end()
+
+	def test_fold(self):
+		"""Rows of workers fold into bars where that alone makes the panels below whole, and unfold after."""
+		self.serve("--workers", "8", scene="falling_boxes")
+		b = self.open()
+		b.wait("obsim.workers.list.length === 8")
+		height = "document.querySelector('#strip').offsetHeight"
+		rows = b.run(f"return {height}")
+		for panel, folds in ("objects", True), ("simulators", False), ("all", False), ("objects", True), ("none", False):
+			b.run(OPEN, panel, 0)
+			b.wait(f"({height} < {rows}) === {'true' if folds else 'false'}")
+			self.look(b, panel != "all", panel, "offers")
 		self.end()
 
 	def test_colour(self):

@@ -3,7 +3,7 @@ import { $, element } from './page.js';
 
 const MOST = 100; // objects of an open group; beyond, the search finds them
 const SPAN = 240; // values in a plot: a minute, a quarter of a second each
-const LINES = { awake: 'objects awake', pace: 'pace, simulated seconds a second', cpu: 'CPU of all simulators, cores', energy: 'energy, J', penetration: 'deepest penetration, mm', height: 'height of the picked object, m', speed: 'speed of the picked object, m/s' };
+const LINES = { awake: 'objects awake', pace: 'pace, times real time', cpu: 'CPU of all simulators, cores', energy: 'energy, J', penetration: 'deepest penetration, mm', height: 'height of the picked object, m', speed: 'speed of the picked object, m/s' };
 const HIGH = 34; // px
 const FPS = 30;
 const SVG = 'http://www.w3.org/2000/svg';

@@ -254,7 +254,7 @@ function showSteps() {
 	const colours = { about: '#strip', begin: () => workers.choose('worker'), end: () => workers.choose('own') };
 	const kills = panel.kills ? 'Kill one: its objects turn pale, all start again from the last checkpoint, and reach the same bits.' : 'In processes (--isolation process) one may be killed: all reach the same bits.';
 	walk.start([
-		{ text: `Each object is a simulator of its own, ${count(movers(), 'simulator')} here. Click one to see what it knows and reads.` },
+		{ text: 'Each object is a simulator of its own. Click one to see what it knows and reads.' },
 		{ text: `They live in ${where}, each with its colour. ${kills}`, ...colours },
 		...look_only ? [] : [
 			{ text: 'Drag an object that you have clicked: a spring pulls it to the pointer, before all visitors.' },

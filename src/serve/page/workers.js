@@ -4,6 +4,7 @@ import { $, count, element } from './page.js';
 
 const SPAN = 1; // s over which a share of CPU is taken: the host refreshes CPU times twice a second
 const FEW = 8; // workers that have a row each; more have a bar each
+const ROW = 24, BAR = 18, GAP = 10; // px: heights, and between panels (style.css)
 const MOST = 128; // bars: beyond that, the workers with the most CPU
 const PALE = 2.5; // s in which the objects of a worker that died come back
 const PLACES = 128; // in the ribbon of own times: simulators at one place share a line
@@ -25,6 +26,9 @@ export class Workers extends EventTarget {
 		this.past = []; // { at: s, of the clock, homes }, by message, for as long as a death shows
 		this.pale = new Map(); // by id: s, of the clock, at which its worker died
 		$('#colours').addEventListener('change', () => this.choose(this.key));
+		const resized = new ResizeObserver(() => this.fold());
+		for (const panel of [$('#left'), ...$('#left').children])
+			resized.observe(panel);
 	}
 
 	get key() { return $('#colours').value; }
@@ -83,8 +87,8 @@ export class Workers extends EventTarget {
 		if (shown.length > MOST)
 			shown.sort((a, b) => b.died - a.died || (b.share ?? 0) - (a.share ?? 0) || a.i - b.i);
 		$('#strip').hidden = this.world;
-		$('#strip').classList.toggle('many', shown.length > FEW);
 		this.rows(shown.slice(0, MOST));
+		this.fold();
 		const more = shown.length - MOST;
 		$('#strip .rest').textContent = more > 0 ? `and ${more} more, with less CPU` : '';
 		const busy = this.list.filter((w) => w.busy !== null);
@@ -148,6 +152,14 @@ export class Workers extends EventTarget {
 			show(home, `${objects}`);
 			kill.hidden = !this.kills;
 		});
+	}
+
+	// Many rows become bars, and few where that alone makes the panels below whole.
+	fold() {
+		const many = $('#strip').classList, rows = $('#strip ol').children.length, gain = ROW * rows - BAR, left = $('#left');
+		const need = [...left.children].filter((e) => e.offsetHeight).reduce((sum, e) => sum + e.offsetHeight + GAP, -GAP);
+		const room = left.clientHeight - (many.contains('many') ? gain : 0);
+		many.toggle('many', rows > FEW || (left.clientHeight > 0 && room < need && need <= room + gain));
 	}
 
 	row() {
