@@ -15,11 +15,6 @@ const ob_content *ob_content_find(const char *path)
 	return NULL;
 }
 
-const ob_content *ob_content_at(size_t i)
-{
-	return i < sizeof contents / sizeof *contents ? &contents[i] : NULL;
-}
-
 // Reads a number of at most 15 digits; false: none is there.
 static bool take_number(const char **s, uint64_t *out)
 {

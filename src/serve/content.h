@@ -1,5 +1,5 @@
-// Contents of the content server: the viewer's page, style, scripts, and the shaders of shaders/, which the renderer
-// uses, too. They are built into the program. Pure; any thread.
+// Contents of the content server: the pages, their style, and a script for each, with the shaders of shaders/, which the
+// renderer uses, too. They are built into the program. Pure; any thread.
 #ifndef OB_SERVE_CONTENT_H
 #define OB_SERVE_CONTENT_H
 
@@ -15,9 +15,8 @@ typedef struct ob_content {
 	bool lasting; // its path contains its hash, so a browser need not revalidate it
 } ob_content;
 
-// NULL: not found. Paths of requests begin with '/'. "all.js" holds all scripts in one, for a page in a single file.
+// NULL: not found. Paths of requests begin with '/'.
 const ob_content *ob_content_find(const char *path);
-const ob_content *ob_content_at(size_t i); // all contents by index; NULL: no more
 
 typedef enum ob_range_kind { OB_RANGE_ALL, OB_RANGE_PART, OB_RANGE_NONE } ob_range_kind;
 

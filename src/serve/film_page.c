@@ -72,17 +72,10 @@ ob_message *ob_film_page_served(void)
 	return whole_or_none(m);
 }
 
-// Adds the shaders and the film, as elements that film.js and drawing.js find by their ids.
+// Adds the film as an element that film.js finds by its id.
 static void put_recording(ob_message *m, const ob_message *film)
 {
 	put_text(m, "<meta name=\"recording\" content=\"#recording\">\n");
-	for (size_t i = 0; ob_content_at(i); i++) {
-		const ob_content *c = ob_content_at(i);
-		if (strncmp(c->path, "/shaders/", 9) != 0)
-			continue;
-		ob_message_print(m, "<script type=\"text/plain\" id=\"%s\">", c->path + 1);
-		put_content(m, "", c->path, "</script>\n");
-	}
 	put_text(m, "<script type=\"text/plain\" id=\"recording\">");
 	if (film)
 		put_base64(m, film->bytes, film->size);
@@ -106,7 +99,7 @@ ob_message *ob_film_page_whole(const ob_message *film)
 		else if (i == MARK_STYLE)
 			put_content(m, "<style>\n", "/style.css", "</style>\n");
 		else if (i == MARK_SCRIPT)
-			put_content(m, "<script type=\"module\">\n", "all.js", "</script>\n");
+			put_content(m, "<script type=\"module\">\n", "/main.js", "</script>\n");
 	}
 	ob_message_put(m, page->bytes + from, page->size - from);
 	return whole_or_none(m);

@@ -102,7 +102,7 @@ class Served(Case):
 		self.assertTrue(told[4:].startswith(b'{"welcome":'))
 		head, body = self.http(f"GET /recording HTTP/1.1\nHost: HOST\nIf-None-Match: {tag}\nConnection: close")
 		self.assertIn("304", head)
-		for path in "/all.js", "all.js":
+		for path in "/drawing.js", "main.js":
 			self.assertNotIn("200 OK", self.http(f"GET {path} HTTP/1.1\nHost: HOST\nConnection: close")[0])
 		with self.assertRaises(server.Refused):
 			server.Viewer(self.port)

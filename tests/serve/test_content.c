@@ -16,11 +16,12 @@ static void check_range(const char *header, ob_range_kind kind, size_t first, si
 
 int main(void)
 {
-	const ob_content *page = ob_content_find("/index.html"), *shader = ob_content_find("/shaders/body.frag");
-	CHECK(page && shader && !ob_content_find("/") && !ob_content_find("/../etc/passwd") && !ob_content_find(""));
+	const ob_content *page = ob_content_find("/index.html"), *script = ob_content_find("/main.js");
+	CHECK(page && script && !ob_content_find("/") && !ob_content_find("/../etc/passwd") && !ob_content_find(""));
 	CHECK(page && strstr(page->type, "html") && page->size > 100 && page->tag[0] == '"');
-	CHECK(shader && memmem(shader->bytes, shader->size, "uniform Frame", 13)); // its includes are in it
-	CHECK(page && shader && strcmp(page->tag, shader->tag) != 0);
+	CHECK(script && memmem(script->bytes, script->size, "module_drawing = ", 17));
+	CHECK(script && memmem(script->bytes, script->size, "uniform Frame", 13)); // shaders, with their includes
+	CHECK(page && script && strcmp(page->tag, script->tag) != 0);
 
 	check_range("bytes=0-99", OB_RANGE_PART, 0, 100);
 	check_range("bytes=10-", OB_RANGE_PART, 10, 1000);

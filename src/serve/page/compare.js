@@ -42,7 +42,7 @@ class World {
 			setTimeout(() => this.universe.connect(), 1000 * AGAIN);
 		});
 		control(this.canvas, camera, () => {}, () => false);
-		this.drawing.load().then(() => this.universe.connect(), (error) => notice(error.message));
+		this.universe.connect();
 	}
 
 	welcome(look) {

@@ -3,6 +3,7 @@
 import { isEndless, isHulled, outlineOf } from './shapes.js';
 import { BOX_MESH, CYLINDER_MESH, MESHES, PATTERNED_BOX_MESH, ROUND_MESH, buildMeshes, hullVertices } from './meshes.js';
 import { turned } from './motion.js';
+import { SHADERS } from './shaders.js';
 
 const SAMPLES = 4, SHADOW_TEXELS = 1280, SKY_TEXELS = 512, OCCLUSION_TEXELS = 128, MARGIN = 4; // texels; MARGIN: border for the
                                                                                   // filter
@@ -36,24 +37,12 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 const unit = (a) => scale(a, 1 / Math.hypot(...a));
 
-async function text(path) {
-	const here = document.getElementById(path); // a page in a single file has it
-	if (here)
-		return here.textContent;
-	const answer = await fetch(path);
-	if (!answer.ok)
-		throw new Error(`${path}: ${answer.status}`);
-	return answer.text();
-}
-
-// Compiles a shader. Their text is written for OpenGL 3.3; with another first line it is GLSL ES 3.00.
-function compile(gl, kind, name, source, defines) {
+// Begins to compile a shader. Their text is written for OpenGL 3.3; with another first line it is GLSL ES 3.00.
+function compile(gl, kind, source, defines) {
 	const shader = gl.createShader(kind);
 	const head = '#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2DShadow;\n' + defines;
 	gl.shaderSource(shader, head + source.slice(source.indexOf('\n') + 1));
 	gl.compileShader(shader);
-	if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
-		throw new Error(`shader ${name}: ${gl.getShaderInfoLog(shader)}`);
 	return shader;
 }
 
@@ -193,30 +182,32 @@ export class Drawing {
 		this.renderer = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER);
 		this.software = /llvmpipe|softpipe|swiftshader/i.test(this.renderer);
 		this.draft = light ? light === 'draft' : this.software;
-	}
-
-	async load() {
 		this.createBuffers();
 		this.createMaps();
 		this.gl.depthFunc(this.gl.LEQUAL);
 		this.program = {};
-		const names = [...new Set(Object.values(PROGRAMS).flatMap((p) => p.slice(0, 2)))];
-		const sources = Object.fromEntries(await Promise.all(names.map(async (n) => [n, await text(`shaders/${n}`)])));
-		// Each is linked at its first use: without a GPU that takes 10 ms and more, and no scene uses all.
-		for (const [name, [vertex, fragment, define = '']] of Object.entries(PROGRAMS)) {
-			const link = () => this.link(name, sources[vertex], sources[fragment], define + (this.draft ? '#define OB_DRAFT\n' : ''));
+		// Without a GPU each takes 10 ms and more. Those of nearly all scenes are begun now, before a scene has arrived, and waited
+		// for at their first use; others are begun then.
+		const usual = new Set(['body', 'plane', 'farPlane', 'sky', 'shadow', ...this.draft ? ['occlusion', 'blur'] : ['skyShadow']]);
+		for (const name of Object.keys(PROGRAMS)) {
+			const begun = usual.has(name) && this.begin(name);
 			let linked;
-			Object.defineProperty(this.program, name, { get: () => (linked ??= link()) });
+			Object.defineProperty(this.program, name, { get: () => (linked ??= this.link(name, begun || this.begin(name))) });
 		}
 	}
 
-	link(name, vertex, fragment, defines) {
-		const gl = this.gl, id = gl.createProgram(), at = {};
-		gl.attachShader(id, compile(gl, gl.VERTEX_SHADER, name, vertex, defines));
-		gl.attachShader(id, compile(gl, gl.FRAGMENT_SHADER, name, fragment, defines));
+	begin(name) {
+		const gl = this.gl, id = gl.createProgram(), [vertex, fragment, define = ''] = PROGRAMS[name], defines = define + (this.draft ? '#define OB_DRAFT\n' : '');
+		const shaders = [compile(gl, gl.VERTEX_SHADER, SHADERS[vertex], defines), compile(gl, gl.FRAGMENT_SHADER, SHADERS[fragment], defines)];
+		shaders.forEach((shader) => gl.attachShader(id, shader));
 		gl.linkProgram(id);
+		return { id, shaders };
+	}
+
+	link(name, { id, shaders }) {
+		const gl = this.gl, at = {};
 		if (!gl.getProgramParameter(id, gl.LINK_STATUS))
-			throw new Error(`shader ${name}: ${gl.getProgramInfoLog(id)}`);
+			throw new Error(`shader ${name}: ${[...shaders.map((shader) => gl.getShaderInfoLog(shader)), gl.getProgramInfoLog(id)].join(' ')}`);
 		const block = gl.getUniformBlockIndex(id, 'Frame');
 		if (block !== gl.INVALID_INDEX)
 			gl.uniformBlockBinding(id, block, 0);
@@ -343,9 +334,12 @@ export class Drawing {
 		gl.enable(gl.CULL_FACE);
 		gl.depthMask(true);
 		gl.disable(gl.BLEND);
-		this.drawShadowMap(solid.filter((b) => contains(f.shadow, b)), view, height);
+		// The first picture has no shadows in the cheap light: without a GPU their passes take 150 ms at first.
+		const shades = !this.draft || this.begun;
+		this.begun = true;
+		this.drawShadowMap(shades ? solid.filter((b) => contains(f.shadow, b)) : [], view, height);
 		f.sky.forEach(({ map }, i) => this.drawSkyMap(i, solid.filter((b) => contains(map, b)), view, height));
-		if (ground && this.draft)
+		if (ground && this.draft && shades)
 			this.drawOcclusionMap(solid.filter((b) => dot(b.p, up) - b.radius < f.level + OCCLUSION_HEIGHT &&
 				contains(f.occlusion, b)), view, height);
 		this.target(smooth ? this.samples(width, height) : null, width, height);

@@ -1,35 +1,36 @@
 #!/usr/bin/env python3
 """Writes the content that the server hands out as C arrays and one table: embed.py OUTPUT EXPAND.py PATH=FILE...
 
-A shader's includes are put in by EXPAND.py, as for the renderer. The hash of a content's bytes is its entity tag.
-Beside them stands all.js, which is main.js with all modules that it imports, for a page that is one file.
+Each page has one script, with all modules that it imports: a browser fetches one after the other, and a page may be one file.
+Shaders are the module shaders.js. Their includes are put in by EXPAND.py, as for the renderer. The hash of a content's bytes is
+its entity tag.
 """
 import hashlib
 import importlib.util
+import json
 import pathlib
 import re
 import sys
 
 TYPES = {'.html': 'text/html; charset=utf-8', '.css': 'text/css; charset=utf-8', '.js': 'text/javascript; charset=utf-8',
-         '.svg': 'image/svg+xml', '.vert': 'text/plain; charset=utf-8', '.frag': 'text/plain; charset=utf-8'}
+         '.svg': 'image/svg+xml'}
+PAGES = 'main.js', 'compare.js'  # their scripts
 
 
 IMPORT = re.compile(r"^import \{([^}]*)\} from '\./([\w.]+)';\n", re.M)
 
 
-def one_script(modules):
-    """main.js and what it imports: each module a function that returns what others import from it."""
+def one_script(first, modules):
+    """A module and what it imports: each a function that returns what others import from it."""
     wanted, order = {}, []
-    for text in modules.values():
-        for names, source in IMPORT.findall(text):
-            wanted.setdefault(source, set()).update(n.split(' as ')[0].strip() for n in names.split(',') if n.strip())
 
     def visit(name):
         if name not in order:
-            for _, source in IMPORT.findall(modules[name]):
+            for names, source in IMPORT.findall(modules[name]):
+                wanted.setdefault(source, set()).update(n.split(' as ')[0].strip() for n in names.split(',') if n.strip())
                 visit(source)
             order.append(name)
-    visit('main.js')
+    visit(first)
 
     variable = lambda name: 'module_' + name.removesuffix('.js')
     out = []
@@ -46,12 +47,19 @@ def main(output, expander, *contents):
     spec = importlib.util.spec_from_file_location('expander', expander)
     shaders = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(shaders)
-    files = {}
+    files, modules, sources = {}, {}, {}
     for content in contents:
         path, file = content.split('=', 1)
         file = pathlib.Path(file)
-        files[path] = shaders.expand(file).encode() if file.suffix in ('.vert', '.frag') else file.read_bytes()
-    files['all.js'] = one_script({p[1:]: d.decode() for p, d in files.items() if p.endswith('.js')}).encode()
+        if file.suffix == '.js':
+            modules[file.name] = file.read_text(encoding='utf-8')
+        elif file.suffix in ('.vert', '.frag'):
+            sources[file.name] = shaders.expand(file)
+        else:
+            files[path] = file.read_bytes()
+    modules['shaders.js'] = f'export const SHADERS = {json.dumps(sources)};\n'
+    for page in PAGES:
+        files['/' + page] = one_script(page, modules).encode()
     arrays, table = [], []
     for number, (path, data) in enumerate(files.items()):
         if re.search(rb'</(script|style)', data, re.I) and not path.endswith('.html'):

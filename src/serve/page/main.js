@@ -484,10 +484,10 @@ universe.addEventListener('close', (e) => {
 async function begin() {
 	panel.restore();
 	drawing = new Drawing(canvas, asked.get('light'));
-	await Promise.all([drawing.load(), new Promise((resolve, reject) => {
-		universe.addEventListener('welcome', resolve, { once: true });
+	await new Promise((resolve, reject) => {
+		universe.addEventListener('population', resolve, { once: true }); // the first objects
 		universe.connect()?.catch(reject);
-	})]);
+	});
 	requestAnimationFrame(frame);
 }
 
