@@ -95,9 +95,9 @@ export class Workers extends EventTarget {
 		$('#busy').textContent = busy.length ? `Busy now: ${busy.slice(0, FEW).map((w) => nameOf(w.busy)).join(', ')}${busy.length > FEW ? ' ..' : ''}` : 'All wait for the next step.';
 	}
 
-	// Worker i died: the objects that it simulated then turn pale.
+	// Worker i died: the objects that it simulated then turn pale. All leave their homes as they start again.
 	die(i, at) {
-		for (const [id, home] of this.past.findLast((p) => p.at < at)?.homes ?? [])
+		for (const [id, home] of this.past.findLast((p) => p.at < at && [...p.homes.values()].includes(i))?.homes ?? [])
 			if (home === i)
 				this.pale.set(id, at);
 	}
