@@ -4,7 +4,11 @@ keyboard, the first steps, and a death that is seen. With names of scenes: only 
 If OBSIM_PICTURES names a directory, screenshots of all panels are kept there.
 """
 
+import json
 import os
+import re
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -400,10 +404,6 @@ class Page(server.Case):
 		self.assertEqual(b.console(), [])
 		self.end(saying="was killed by SIGKILL")
 
-	def test_tour(self):
-		"""The tour goes to its end: simulators are killed and come back, one is slow, and the hash is the same each time."""
-		self.serve(scene="tour")
-		b = self.open()
 	def test_late(self):
 		"""A death is seen though the page hears of it after its simulators have left their homes, as on a busy machine."""
 		self.serve("-D", "n=1", "--paused", scene="falling_boxes")
@@ -415,6 +415,10 @@ class Page(server.Case):
 			return [...w.pale.keys()]"""), [0])
 		self.end()
 
+	def test_tour(self):
+		"""The tour goes to its end: simulators are killed and come back, one is slow, and the hash is the same each time."""
+		self.serve(scene="tour")
+		b = self.open()
 		loaded = b.run("return performance.getEntries().reduce((sum, e) => sum + (e.transferSize ?? 0), 0) + obsim.universe.bytes")
 		self.assertLess(loaded, 1e6, "bytes to load")
 		told, text = [], "document.querySelector('#walk p').textContent"
@@ -431,12 +435,18 @@ class Page(server.Case):
 		self.assertEqual([("the same as before" in line, " 1 death;" in line, " 3 deaths;" in line) for line in told[:4]],
 			[(False, False, False), (True, True, False), (True, False, True), (True, False, False)], told)
 		self.assertIn("simulated seconds a second", told[3])
+		for command in "obsim serve tour --sync free nobody waits: simulators are up to 250 ms", "mpirun -n 2 obsim run tour --duration 4, ", f"the same hash, {hashes[0]}.":
+			self.assertIn(command, told[4]) # the first one is run by test_free_tour
+		if shutil.which("mpirun") and "Open MPI" in program.call("--version").stdout:
+			ranks = subprocess.run(["mpirun", "-n", "2", program.OBSIM, "run", program.scene("tour"), "--duration", "4", "--json", "-"],
+				env=program.RANKS, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=program.PATIENCE, check=True)
+			self.assertEqual(json.loads(ranks.stdout)["state_hash"], hashes[0])
 		b.wait("!obsim.universe.paused")
 		self.assertEqual(b.console(), [])
 		self.end(saying="was killed by SIGKILL")
 
 	def test_free_tour(self):
-		"""In a free run the tour pauses and kills, too, and nobody waits."""
+		"""In a free run the tour pauses and kills, too, and nobody waits; simulators are as far ahead as the other tour says."""
 		self.serve("--sync", "free", scene="tour")
 		b = self.open()
 		b.wait("obsim.walk.steps.length === 4")
@@ -445,6 +455,11 @@ class Page(server.Case):
 		b.run("document.querySelector('[data-do=next]').click()")
 		b.wait("obsim.tour.act?.deaths === 1 && obsim.tour.act.done", 900)
 		self.assertIn("1 death; at most ", b.run("return document.querySelector('#walk p').textContent"))
+		b.run("document.querySelector('[data-do=next]').click()")
+		b.wait("obsim.tour.act?.deaths === 3 && obsim.tour.act.done", 900)
+		b.run("document.querySelector('[data-do=next]').click()")
+		most = int(re.search(r"up to (\d+) ms ahead", b.run("return document.querySelector('#walk p').textContent"))[1])
+		self.assertTrue(0 < most <= 250, most)
 		self.assertEqual(b.console(), [])
 		self.end(saying="was killed by SIGKILL")
 

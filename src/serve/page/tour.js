@@ -5,6 +5,7 @@ import { count, kept } from './page.js';
 const END = 4; // s, simulated, at which an act pauses
 const HASTE = 4; // simulated seconds a second that the act of the slow one asks for
 const NEAR = 1e-6; // s
+const AHEAD = 250; // ms, that simulators of a free run are ahead at most (src/cli/serve.c)
 
 export class Tour {
 	// kill: kills the process of a worker.
@@ -18,7 +19,7 @@ export class Tour {
 		const step = (text, act, colours) => ({ text, about: '#strip', begin: () => this.play({ text, kills: [], slow: 0, ...act }, colours), end: () => { this.act = null; } });
 		const free = sync === 'free', kills = isolation === 'process', by = free ? 'lag' : 'process';
 		const told = 'In processes simulators can be killed: obsim serve tour.';
-		Object.assign(this, { free, name: `hash ${version} ${seed}` });
+		Object.assign(this, { free, most: 0, name: `hash ${version} ${seed}` });
 		this.walk.start([
 			step(`Boxes fall. Each is a simulator of its own; colours show ${free ? 'how far its own time is ahead' : `its ${by}`}.`, {}, by),
 			...kills ? [
@@ -26,8 +27,7 @@ export class Tour {
 				step('Three more die, one after another.', { kills: [0.6, 1.2, 1.8] }, by),
 			] : [{ text: told }],
 			...free ? [] : [step(`One simulator is slow, and time should pass ${HASTE} times as fast. In lockstep all wait for it.`, { slow: 1, rate: HASTE }, by)],
-			{ text: free ? 'That was a free run: nobody waits for a slow or a dead one. Without --sync free all go in lockstep, and reach the same bits.' :
-				`That was lockstep; in obsim serve tour --sync free nobody waits. On two ranks, mpirun -n 2 obsim run tour --duration ${END}, the end has the same hash.`, begin: () => this.workers.choose('own') },
+			{ text: '', begin: () => this.conclude() },
 		], () => {
 			this.workers.choose('own');
 			this.universe.send({ do: 'resume' });
@@ -80,11 +80,18 @@ export class Tour {
 		}
 	}
 
+	conclude() {
+		this.workers.choose('own');
+		this.walk.say(this.free ? `That was a free run: nobody waited for a dead one, and simulators were up to ${this.most.toFixed(0)} ms ahead. In obsim serve tour all go in lockstep, and reach the same bits.` :
+			`That was lockstep. In obsim serve tour --sync free nobody waits: simulators are up to ${AHEAD} ms ahead. On two ranks, mpirun -n 2 obsim run tour --duration ${END}, the end has the same hash, ${kept(this.name)}.`);
+	}
+
 	// Tells the figures of an act.
 	end(s) {
 		const { act } = this, seconds = performance.now() / 1000 - act.began;
 		const before = kept(this.name); // the hash after an act before, maybe in another run
 		act.done = true;
+		this.most = Math.max(this.most, 1000 * act.most);
 		const figures = [s.deaths && count(s.deaths, 'death'), act.rate && `${(END / seconds).toFixed(1)} simulated seconds a second`,
 			this.free ? `at most ${(1000 * act.most).toFixed(0)} ms ahead` : `hash at ${END} s: ${s.hash}${before ? before === s.hash ? ', the same as before' : ', another than before' : ''}`];
 		this.walk.say(`${act.text} ${figures.filter((f) => f).join('; ')}.`);
