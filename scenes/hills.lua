@@ -41,6 +41,6 @@ for i = 1, balls do
 	sphere { radius = random(.15, .4), at = { bx, by, height(bx, by) + random(.6, 2) }, density = 300, friction = .6, restitution = .3 }
 end
 
-camera "main" { follow = "car", eye = { x - 4.8, y - 6, z + 4.6 }, target = { x + 2.3, y + 1.5, z - .3 }, fov = 42 }
+camera "main" { follow = "car", eye = { x - 5.6, y - 4.2, z + 4.7 }, target = { x + 2.1, y + 1, z - .3 }, fov = 34 }
 camera "all" { eye = { -27, -15, 11 }, target = { -8, 0, 0 }, fov = 46 }
 camera "behind" { follow = "car", eye = { x - 7, y - 3, z + 3 }, target = { x, y, z } }
