@@ -85,7 +85,7 @@ class Live(program.Case):
 		self.assertEqual(lit[1:], [[], []])
 		self.assertIn("The end: all at the same instant, 1.20 s", b.run("return document.querySelector('#statistics').textContent"))
 		self.assertRegex(b.run("return document.querySelector('#worlds').innerText.replace(/\\s+/g, ' ')"),
-			r"One ODE world CPU per object and simulated second [\d,]+ µs deepest overlap so far \d+ mm .* deepest overlap so far 0\.\d+ mm")
+			r"One ODE world CPU per object and second [\d,]+ µs deepest overlap so far \d+ mm .* deepest overlap so far 0\.\d+ mm")
 		self.assertEqual(b.console(), [])
 		self.end()
 

@@ -12,7 +12,7 @@ const HALOS = [[2.6, 0.04], [1.7, 0.07], [1, 0.12]]; // radii of its body, and o
 const LEAST = 0.1, DECADES = 2.3; // share of the glow from the tolerance on; powers of 10 until it is whole
 const FADE = 0.4; // s, in which a glow goes out
 const AGAIN = 2; // s: wait before it connects again
-const FACTS = ['CPU per object and simulated second', 'deepest overlap so far', 'overlap now'];
+const FACTS = ['CPU per object and second', 'deepest overlap so far', 'overlap now'];
 
 const worlds = [], camera = new Camera(), sharpness = new Sharpness(), calm = matchMedia('(prefers-reduced-motion: reduce)');
 const show = (e, text) => e.textContent === text || (e.textContent = text);
