@@ -334,7 +334,7 @@ export class Drawing {
 		gl.enable(gl.CULL_FACE);
 		gl.depthMask(true);
 		gl.disable(gl.BLEND);
-		// The first picture has no shadows in the cheap light: without a GPU their passes take 150 ms at first.
+		// The first picture has no shadows in the cheap light: without a GPU their passes take longest when they are new.
 		const shades = !this.draft || this.begun;
 		this.begun = true;
 		this.drawShadowMap(shades ? solid.filter((b) => contains(f.shadow, b)) : [], view, height);

@@ -8,7 +8,7 @@ const HIGH = 34; // px
 const FPS = 30;
 const SVG = 'http://www.w3.org/2000/svg';
 
-const short = (x) => (Math.abs(x) >= 1e5 || (x !== 0 && Math.abs(x) < 1e-3) ? x.toExponential(1) : Number(x.toPrecision(3)).toString());
+const short = (x) => (Math.abs(x) >= 1e6 || (x !== 0 && Math.abs(x) < 1e-3) ? x.toExponential(1) : Number(x.toPrecision(3)).toString());
 
 // An empty plot, as SVG: a canvas would compete with the picture for the GPU.
 function line() {
