@@ -216,7 +216,7 @@ class Viewer(server.Case):
 		b.wait(f"{at}[0] > .9")
 		b.run("obsim.panel.edit('attitude', '0 0 2 30')")
 		b.wait("Math.abs(obsim.universe.pose([...obsim.universe.objects.values()].find((o) => o.name === 'crate')).q[3] - Math.sin(Math.PI / 12)) < 1e-3")
-		b.wait("document.querySelector('#edit [name=attitude]').value === '0  0  1  30'")
+		b.wait("document.querySelector('#edit [name=attitude]').value === '0 0 1 30'")
 		b.run("obsim.panel.edit('attitude', '0 0 0 30')")
 		b.wait("document.querySelector('#notice').textContent.includes('an axis and degrees')")
 		b.run("const f = document.querySelector('#talk'); f.elements.text.value = '#00ff00'; f.requestSubmit()")
