@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "solver/bodies.h"
+#include "solver/budget.h"
 #include "solver/contact_solver.h"
 #include "solver/contacts.h"
 
@@ -143,12 +144,14 @@ static bool is_deep(const ob_island_work *w, const ob_batch *b, double left)
 static void push_free(ob_solver *s, double left)
 {
 	ob_island_work *w = &s->island;
-	for (uint32_t k = 0; k < w->batches; k++) {
+	for (uint32_t k = 0; k < w->batches && !ob_budget_spent(s); k++) {
 		ob_batch *b = &w->batch[w->batch_order[k]];
 		if (!b->live || !is_deep(w, b, left))
 			continue;
 		for (int l = 0; l < OB_LANES; l++)
 			if (b->live >> l & 1) {
+				// each pose updates the gaps of all its body's contacts
+				ob_budget_note(s, w->body[b->body_a[l]].adjacent + w->body[b->body_b[l]].adjacent);
 				ob_body_update_pose(w, b->body_a[l]);
 				ob_body_update_pose(w, b->body_b[l]);
 			}

@@ -90,6 +90,36 @@ static void test_small_shares(void)
 	free(s);
 }
 
+// Work of a step in which a ball is pushed out of so many static boxes, far from any force.
+static uint64_t work_of_push(int boxes)
+{
+	little_scene *s = little_scene_new();
+	s->run.gravity = ob_v3(0, 0, 0);
+	s->run.tolerance = 0;
+	s->run.substeps = 8;
+	ob_world_sphere(&s->world, 500, .5, ob_v3(0, 0, .99));
+	for (int i = 0; i < boxes; i++)
+		ob_world_box(&s->world, 500, ob_v3(.5, .5, .5), ob_v3(.001 * i, 0, 0)).passport->flags |=
+			OB_OBJECT_STATIC;
+	little_universe l;
+	little_open(&l, s);
+	const uint64_t before = l.sim->solver.budget.noted;
+	little_run(&l, 1);
+	const uint64_t work = l.sim->solver.budget.noted - before;
+	little_close(&l);
+	free(s);
+	return work;
+}
+
+// A push moves a body, and finds the gaps of all its contacts anew: pushes out of each of n cost n^2.
+static void test_pushes(void)
+{
+	const uint64_t few = work_of_push(20), many = work_of_push(160);
+	printf("pushed out of 20 boxes: %llu units of work, out of 160: %llu\n", (unsigned long long)few,
+	       (unsigned long long)many);
+	CHECK(many > 16 * few);
+}
+
 // Each triangle of a terrain that is tested counts, whether the body touches there or not: a cylinder that others hold off a
 // ridge is compared with all of it.
 static void test_terrain(void)
@@ -308,6 +338,7 @@ int main(void)
 	test_spent_in_flight();
 	test_small_shares();
 	test_collision_tests();
+	test_pushes();
 	test_terrain();
 	test_searches();
 	test_surfaces();
