@@ -203,7 +203,7 @@ static rulers solve_beside(ob_solver *s)
 	const bool refined = w->bodies == 1 && ob_is_refined(&s->in->object[0]),
 		   finer = (refined || n < 2 || w->joints.count) && 2 * n <= OB_MAX_SUBSTEPS;
 	const uint32_t other = finer ? 2 * n : coarser_than(n, w->bodies);
-	ob_probe_solve(s->estimate.probe, s->in, other, n);
+	ob_probe_solve(s->estimate.probe, s, other, n);
 	return (rulers){ { { s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) } }, 1, !finer };
 }
 
@@ -276,7 +276,7 @@ void ob_estimate_update(ob_solver *s)
 		for (uint32_t row = 1; row <= w->bodies; row++)
 			error = ob_max(error, error_of_run(s, &r, row));
 		if (r.coarser && 2 * n < OB_MAX_SUBSTEPS && is_doubtful(s, &r, weight)) {
-			ob_probe_solve(s->estimate.finer, s->in, 2 * n + 1, n);
+			ob_probe_solve(s->estimate.finer, s, 2 * n + 1, n);
 			r.by[r.count++] = (ruler){ s->estimate.finer, (2 * n + 1.) / (n + 1) };
 		}
 	}

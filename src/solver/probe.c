@@ -4,19 +4,23 @@
 #include <string.h>
 
 #include "shape/shape.h"
+#include "solver/budget.h"
 #include "solver/island_solver.h"
 
 struct ob_probe {
 	ob_run_settings settings; // of the run, with other substeps
 	ob_solver solver;
 	uint64_t work, most; // in the running island
+	ob_solver *payer; // whose budget it takes, too; NULL: none
 };
 
 static bool spend(void *probe, uint64_t work)
 {
 	ob_probe *p = probe;
 	p->work += work;
-	return p->work > p->most;
+	if (p->payer)
+		ob_budget_note(p->payer, work);
+	return p->work > p->most || (p->payer && ob_budget_spent(p->payer));
 }
 
 static void attempt_nothing(void *probe) {}
@@ -48,9 +52,11 @@ void ob_probe_destroy(ob_probe *p)
 	free(p);
 }
 
-static bool solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, double stretch, uint64_t most)
+static bool solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, double stretch, uint64_t most,
+		  ob_solver *payer)
 {
 	p->work = 0;
+	p->payer = payer;
 	p->most = most;
 	memset(&p->solver.budget, 0, sizeof p->solver.budget);
 	p->solver.counters.pair_solves = 0;
@@ -60,7 +66,7 @@ static bool solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, dou
 
 bool ob_probe_try(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most)
 {
-	return solve(p, in, substeps, 1, most);
+	return solve(p, in, substeps, 1, most, NULL);
 }
 
 // Largest distance by which a turn from a to b moves the surface of a body: one that is the same however it is turned about
@@ -82,9 +88,9 @@ static double turned_by(const ob_body *body, ob_quat a, ob_quat b)
 	return 2 * body->radius * sqrt(ob_min(square[0], square[1]));
 }
 
-void ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint32_t beside)
+void ob_probe_solve(ob_probe *p, ob_solver *s, uint32_t substeps, uint32_t beside)
 {
-	(void)solve(p, in, substeps, (double)beside / substeps, UINT64_MAX);
+	(void)solve(p, s->in, substeps, (double)beside / substeps, UINT64_MAX, s);
 }
 
 const ob_island_work *ob_probe_island(const ob_probe *p)

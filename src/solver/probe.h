@@ -4,7 +4,7 @@
 //   input ──> probe: other substeps ──> bodies at the step's end ──────────┐
 //     └─────> solver of the run ──────> bodies at the step's end ──> ob_probe_distance
 //
-// It leaves no trace: it has its own memory, counters and budget, and its contacts and touches go nowhere.
+// It leaves no trace: it has its own memory and counters, and its contacts and touches go nowhere.
 #ifndef OB_SOLVER_PROBE_H
 #define OB_SOLVER_PROBE_H
 
@@ -29,9 +29,9 @@ static inline double ob_error_of_run(const ob_solver *s, double error, double sp
 ob_probe *ob_probe_create(const ob_run_settings *run, uint32_t substeps);
 void ob_probe_destroy(ob_probe *p);
 
-// Solves the island. ob_probe_solve: beside a solution with other substeps; its partial substeps (solver/adaptive_substep.h)
+// Solves the island. ob_probe_solve: beside s's solution with other substeps, by its budget; its partial substeps (solver/adaptive_substep.h)
 // are longer or shorter in proportion. ob_probe_try: returns false if it would take more work (solver/budget.h) than `most`.
-void ob_probe_solve(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint32_t beside);
+void ob_probe_solve(ob_probe *p, ob_solver *s, uint32_t substeps, uint32_t beside);
 bool ob_probe_try(ob_probe *p, const ob_island_input *in, uint32_t substeps, uint64_t most);
 // Returns the probe's own solution.
 const ob_island_work *ob_probe_island(const ob_probe *p);

@@ -25,9 +25,9 @@ static uint32_t find_substeps(ob_solver *s, double error)
 	const uint32_t first = 2 * now > LEAST * usual ? 2 * now : LEAST * usual;
 	if (2 * most > OB_MAX_SUBSTEPS || first > most)
 		return 0;
-	ob_probe_solve(coarse, s->in, first, first);
+	ob_probe_solve(coarse, s, first, first);
 	for (uint32_t n = first; n <= most; n *= 2) {
-		ob_probe_solve(fine, s->in, 2 * n, 2 * n);
+		ob_probe_solve(fine, s, 2 * n, 2 * n);
 		const double ratio = (double)n / s->island.partial;
 		if (error_of(s, coarse, fine) * ratio * sqrt(ratio) <= error)
 			return n;
