@@ -73,21 +73,22 @@ static ob_motion motion_from(const ob_motion *m, const ob_state *state, double t
 void ob_free_enter_objects(ob_universe *u)
 {
 	const double now = (double)ob_step_count(u) * ob_universe_settings(u)->step_length;
-	bool woken = false;
+	uint64_t passports = 0;
+	bool changed = false;
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		ob_passport p;
 		ob_motion m;
 		uint32_t generation;
 		const ob_free_kind known = ob_free_kind_of(u, id, &generation);
-		if (!ob_universe_get_passport_version(u, id) || !ob_universe_get_passport(u, id, &p))
+		const uint64_t version = ob_universe_get_passport_version(u, id);
+		passports += version;
+		if (!version || !ob_universe_get_passport(u, id, &p))
 			p = (ob_passport){ 0 };
 		const ob_free_kind kind = kind_of(&p);
 		if (kind == known && (kind == OB_FREE_ABSENT || generation == p.generation) &&
 		    !(p.flags & OB_OBJECT_KINEMATIC))
 			continue;
-		if (!woken)
-			ob_free_wake(u);
-		woken = true;
+		changed = true;
 		if (kind == OB_FREE_SIMULATED) {
 			if (!ob_universe_get_motion(u, id, &m))
 				continue;
@@ -98,17 +99,21 @@ void ob_free_enter_objects(ob_universe *u)
 		}
 		ob_free_enter(u, id, kind, p.generation, &m);
 	}
+	if (changed || passports != ob_free_passports(u))
+		ob_free_note_entered(u, passports);
 }
 
 // ---- the common time
 
-// True if all simulators have passed a time.
+// True if all simulators have passed a time, at once: unless a flight was lowered meanwhile, each time that was read is still
+// passed at the end.
 static bool all_passed(const ob_universe *u, double t)
 {
+	const uint64_t lowerings = ob_free_lowerings(u);
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++)
 		if (ob_free_kind_of(u, id, NULL) == OB_FREE_SIMULATED && ob_free_time(u, id) < t - instant)
 			return false;
-	return true;
+	return lowerings == ob_free_lowerings(u);
 }
 
 // Shows an object's state at a boundary in its slot.

@@ -8,9 +8,6 @@
 // Runs a worker: the simulators of its objects, each at its own time, until the run stops. false and e: no memory.
 bool ob_free_work(ob_universe *u, uint32_t worker, ob_error *e);
 
-// Worker of an object's simulator: blocks of ids, so that neighbours in a scene are often one worker's.
-uint32_t ob_free_worker_of(const ob_universe *u, uint32_t id);
-
 // Depths of the rings that a run needs: versions of motions, and mail. step: s; capacity: objects.
 void ob_free_plan_depths(const ob_free_settings *f, double step, uint32_t capacity, uint32_t *history,
 			 uint32_t *ledgers);

@@ -21,9 +21,10 @@
 bool ob_free_lag_allows(ob_free_sim *s, const ob_free_scratch *x);
 // True if the noted blocker blocks no more.
 bool ob_free_lag_is_over(const ob_free_sim *s, const ob_universe *u);
-// Own time, s, until which the object cannot touch a neighbour that goes on as it is seen. rate: bound of
-// their relative acceleration, m/s^2.
-double ob_free_apart(const ob_free_sim *s, const ob_free_neighbour *n, const ob_state *other, double rate);
+// Own time, s, until which the object and a neighbour that goes on as it is seen cannot touch. outer,
+// theirs: accelerations of the two, m/s^2.
+double ob_free_apart(const ob_free_sim *s, const ob_free_neighbour *n, const ob_state *other, ob_vec3 outer,
+		     ob_vec3 theirs);
 // Bound (s) for a neighbour that is apart in the coming step, by gap and closing speed.
 double ob_free_lag_apart(const ob_free_sim *s, const ob_free_neighbour *n, const ob_state *other);
 

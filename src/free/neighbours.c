@@ -8,6 +8,7 @@
 #include "base/allocate.h"
 
 static const double cover_steps = 8, cover_least = .02; // steps, and s, for which a fat AABB is meant to last
+static const double cover_most = 1; // s, of a flight, which is to go as far as its radius in this time
 static const double margin_share = .1, margin_most = .05; // of the radius; m: margin of a fat AABB
 
 // The motion from the simulator's time on.
@@ -42,7 +43,7 @@ static bool renew_bounds(ob_free_sim *s, ob_free_scratch *x, double h)
 	const double radius = ob_shape_radius((ob_shape)s->passport.shape, s->passport.size),
 		     margin = ob_min(margin_most, margin_share * radius), lead = ob_free_lead(x->free, x->boundary);
 	double box[6];
-	bool fits = s->bounded;
+	bool fits = s->bounded && !s->flies; // a flight is to have a box for long
 	const ob_motion now = motion_now(s);
 	swept_box(s, &now, lead, lead + h, margin / 2, box);
 	for (int c = 0; c < 3; c++)
@@ -51,13 +52,18 @@ static bool renew_bounds(ob_free_sim *s, ob_free_scratch *x, double h)
 		s->covered = s->time + h;
 		return false;
 	}
-	swept_box(s, &now, lead, lead + ob_max(cover_steps * h, cover_least), margin, box);
+	double cover = ob_max(cover_steps * h, cover_least);
+	if (s->flies) {
+		const double speed = ob_norm(now.v), falls = 2 * radius * ob_norm(now.a);
+		cover = ob_max(cover, ob_min(cover_most, 2 * radius / (speed + sqrt(speed * speed + falls) + 1e-9)));
+	}
+	swept_box(s, &now, lead, lead + cover, margin, box);
 	for (int c = 0; c < 3; c++) {
 		s->bounds[c] = nextafterf((float)box[c], -FLT_MAX);
 		s->bounds[3 + c] = nextafterf((float)box[3 + c], FLT_MAX);
 	}
 	s->bounded = true;
-	s->covered = s->time + ob_max(cover_steps * h, cover_least);
+	s->covered = s->time + cover;
 	ob_free_publish_bounds(x->u, s->id, s->bounds);
 	return true;
 }
@@ -97,10 +103,8 @@ static void add(ob_free_sim *s, ob_free_scratch *x, uint32_t id, ob_free_kind ki
 	ob_free_neighbour *n = &s->neighbour[s->neighbours++];
 	*n = (ob_free_neighbour){ .id = id, .generation = generation, .kind = kind };
 	read_passport(n, x->u);
-	if (!ob_passport_collides(&s->passport, &n->passport))
-		s->neighbours--;
-	else if (kind == OB_FREE_SIMULATED)
-		ob_free_call(x->u, id);
+	s->neighbours -= !ob_passport_collides(&s->passport, &n->passport);
+	s->relisted = true;
 }
 
 static bool is_there(const ob_free_neighbour *n, const ob_universe *u)
@@ -124,21 +128,65 @@ static void drop_far(ob_free_sim *s, const ob_free_scratch *x)
 {
 	for (uint32_t i = s->neighbours; i-- > 0;) {
 		const ob_free_neighbour *n = &s->neighbour[i];
-		if (!is_there(n, x->u) || !(ob_free_overlaps(x->u, n->id, s->bounds) || has_account(s, n->id)))
-			s->neighbour[i] = s->neighbour[--s->neighbours];
+		if (is_there(n, x->u) && (ob_free_overlaps(x->u, n->id, s->bounds) || has_account(s, n->id)))
+			continue;
+		s->neighbour[i] = s->neighbour[--s->neighbours];
+		s->relisted = true;
 	}
 }
 
-static void add_near(ob_free_sim *s, ob_free_scratch *x, uint32_t first, uint32_t end)
+// Adds an object to the neighbours if it is near, and not there yet.
+static void consider(ob_free_sim *s, ob_free_scratch *x, uint32_t id)
 {
 	uint32_t generation;
-	for (uint32_t id = first; id < end; id++) {
-		if (!(ob_free_overlaps(x->u, id, s->bounds) || has_account(s, id)) || id == s->id ||
-		    find(s, id) < s->neighbours)
+	if (id == s->id || !(ob_free_overlaps(x->u, id, s->bounds) || has_account(s, id)) ||
+	    find(s, id) < s->neighbours)
+		return;
+	const ob_free_kind kind = ob_free_kind_of(x->u, id, &generation);
+	if (kind != OB_FREE_ABSENT)
+		add(s, x, id, kind, generation);
+}
+
+// Looks at all boxes, or at those that the grid finds.
+static void look_around(ob_free_sim *s, ob_free_scratch *x)
+{
+	const bool grid = x->boxes.box;
+	const uint32_t n = grid ? ob_free_boxes_query(&x->boxes, s->bounds) : ob_universe_ids(x->u);
+	for (uint32_t i = 0; i < n; i++)
+		consider(s, x, grid ? x->boxes.found[i] : i);
+	for (uint32_t i = 0; i < s->ledger.head.accounts; i++)
+		consider(s, x, s->ledger.account[i].partner);
+}
+
+static int sim_by_id(const void *id, const void *sim)
+{
+	const uint32_t a = *(const uint32_t *)id, b = ((const ob_free_sim *)sim)->id;
+	return a < b ? -1 : a > b;
+}
+
+// Has those of the worker's simulators that an object is near consider it.
+static void spread(ob_free_scratch *x, uint32_t id)
+{
+	const bool grid = x->boxes.box;
+	const uint32_t n = grid ? ob_free_boxes_query(&x->boxes, x->boxes.box[id]) : x->sims;
+	for (uint32_t i = 0; i < n; i++) {
+		ob_free_sim *s = grid ? bsearch(&x->boxes.found[i], x->all, x->sims, sizeof *s, sim_by_id) : &x->all[i];
+		if (s && s->present && s->bounded)
+			consider(s, x, id);
+	}
+}
+
+// Takes over changes of boxes for all simulators of the worker.
+static void take_changes(ob_free_scratch *x)
+{
+	const uint32_t ids = ob_universe_ids(x->u);
+	uint32_t changed[OB_FREE_GROUP];
+	for (uint32_t g = 0; g * OB_FREE_GROUP < ids; g++) {
+		if (ob_free_moved(x->u, g) == x->boxes.looked[g])
 			continue;
-		const ob_free_kind kind = ob_free_kind_of(x->u, id, &generation);
-		if (kind != OB_FREE_ABSENT)
-			add(s, x, id, kind, generation);
+		const uint32_t n = ob_free_boxes_look(&x->boxes, x->u, g, changed);
+		for (uint32_t i = 0; i < n; i++)
+			spread(x, changed[i]);
 	}
 }
 
@@ -179,41 +227,21 @@ static void replay(ob_free_sim *s, ob_free_scratch *x)
 	sort(s);
 }
 
-// Looks at the boxes of a group that have changed since the last look, or at all.
-static void look_at(ob_free_sim *s, ob_free_scratch *x, uint32_t group, uint32_t moved, bool all)
-{
-	const uint32_t first = group * OB_FREE_GROUP, ids = ob_universe_ids(x->u);
-	uint32_t id[OB_FREE_CHANGES], n = 0;
-	all |= moved - s->group[group] > OB_FREE_CHANGES;
-	for (uint32_t k = s->group[group]; !all && k != moved; k++)
-		all = (id[n++] = ob_free_changed(x->u, group, k)) == OB_NO_OBJECT;
-	s->group[group] = moved;
-	if (all)
-		add_near(s, x, first, first + OB_FREE_GROUP < ids ? first + OB_FREE_GROUP : ids);
-	for (uint32_t i = 0; !all && i < n; i++)
-		add_near(s, x, id[i], id[i] + 1);
-}
-
 void ob_free_neighbours_update(ob_free_sim *s, ob_free_scratch *x, double h)
 {
-	const bool all = renew_bounds(s, x, h);
-	const uint32_t ids = ob_universe_ids(x->u), groups = (ids + OB_FREE_GROUP - 1) / OB_FREE_GROUP;
-	bool any = all;
+	const bool renewed = renew_bounds(s, x, h);
 	renew_passports(s, x->u);
 	if (ob_free_schedule_replays(x->schedule)) {
 		replay(s, x);
 		return;
 	}
-	for (uint32_t g = 0; g < groups; g++) {
-		const uint32_t moved = ob_free_moved(x->u, g);
-		if (!all && moved == s->group[g])
-			continue;
-		any = true;
-		look_at(s, x, g, moved, all);
-	}
-	if (!any)
-		return;
+	take_changes(x);
+	if (renewed)
+		look_around(s, x);
 	drop_far(s, x);
+	if (!s->relisted)
+		return;
+	s->relisted = false;
 	sort(s);
 	if (!x->schedule)
 		return;

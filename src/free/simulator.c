@@ -11,27 +11,14 @@
 #include "motion/flight.h"
 #include "table/trace.h"
 
-// Sleeps until the host ends the sleep.
-static void sleep_in_flight(const ob_universe *u, uint32_t id)
-{
-	while (!ob_gate_stopped(u) && ob_free_sleep(u, id))
-		;
-}
-
 bool ob_free_sim_begin(ob_free_sim *s, ob_universe *u, uint32_t id)
 {
 	ob_motion next;
-	uint32_t *group = s->group ? s->group : malloc(ob_free_groups(u) * sizeof *group);
 	ob_free_neighbour *neighbour = s->neighbour;
 	const uint32_t max = s->neighbours_max;
-	if (!group)
-		return false;
-	ob_free_end_wait(u, id);
-	ob_free_call(u, id); // its predecessor may have slept, or waited
-	sleep_in_flight(u, id);
-	*s = (ob_free_sim){
-		.id = id, .group = group, .neighbour = neighbour, .neighbours_max = max, .blocker = OB_NO_OBJECT
-	};
+	ob_free_end_wait(u, id); // its predecessor may have waited, or flown
+	const double time = ob_free_land(u, id, 0, NULL);
+	*s = (ob_free_sim){ .id = id, .neighbour = neighbour, .neighbours_max = max, .blocker = OB_NO_OBJECT };
 	s->present = ob_free_kind_of(u, id, &s->generation) == OB_FREE_SIMULATED &&
 		     ob_free_read(u, id, INFINITY, &s->motion, &next);
 	if (!s->present)
@@ -42,14 +29,13 @@ bool ob_free_sim_begin(ob_free_sim *s, ob_universe *u, uint32_t id)
 	s->rate = ob_free_rate(u, id);
 	s->step = INFINITY;
 	s->anew = true;
-	s->time = s->base = ob_max(s->motion.t0, ob_free_time(u, id));
+	s->time = s->base = ob_max(s->motion.t0, time);
 	s->random = ob_free_settings_of(u)->seed + 0x632be59bd9b4e019u * (1 + id) + s->counts.updates;
 	return true;
 }
 
 void ob_free_sim_finish(ob_free_sim *s)
 {
-	free(s->group);
 	free(s->neighbour);
 }
 
@@ -102,53 +88,49 @@ static bool flies_on(const ob_free_sim *s, const ob_free_scratch *x, double next
 	return flies;
 }
 
-// Own time, s, until which the object flies as published, if nothing near changes. It claims half of the time in which
-// a gap to another can close, as a bound of the lag does.
+// Own time, s, until which the object flies as published, if nothing near changes. It steps again before it may touch one
+// that moves, so that both have short steps by then.
 static double flies_until(const ob_free_sim *s, const ob_free_scratch *x)
 {
 	double until = s->covered;
 	for (uint32_t i = 0; i < s->neighbours; i++) {
 		const ob_free_neighbour *n = &s->neighbour[i];
-		const bool moves = n->kind == OB_FREE_SIMULATED;
-		const double most = s->time + ob_min(x->free->max_lag, (n->apart - s->time) / 2);
-		until = ob_min(until, moves ? most : n->apart);
+		until = ob_min(until, n->kind == OB_FREE_SIMULATED ? ob_free_approach(s, x, n) : n->apart);
 	}
 	return until;
 }
 
-// True if boxes may have changed since the simulator looked.
-static bool has_changes(const ob_free_sim *s, const ob_free_scratch *x)
+// Lets the object fly until something may happen to it, if that is beyond its next step. A
+// neighbour that changes lowers that time.
+static bool take_off(ob_free_sim *s, ob_free_scratch *x)
 {
-	const uint32_t groups = (ob_universe_ids(x->u) + OB_FREE_GROUP - 1) / OB_FREE_GROUP;
-	for (uint32_t g = 0; g < groups; g++)
-		if (ob_free_moved(x->u, g) != s->group[g])
-			return true;
-	return false;
+	const double holds = s->flies && !x->schedule ? flies_until(s, x) : 0;
+	if (!(holds > ob_free_sim_next(s, x)) || !flies_on(s, x, holds))
+		return false;
+	ob_free_take_off(x->u, s->id, holds);
+	s->aloft = true;
+	if (flies_on(s, x, holds) && ob_free_boxes_are_current(&x->boxes, x->u))
+		ob_free_sim_look(s, x->u);
+	else
+		ob_free_lower(x->u, s->id, s->time); // something has changed meanwhile: it looks again
+	return true;
 }
 
-void ob_free_sim_sleep(ob_free_sim *s, ob_free_scratch *x, double until)
+void ob_free_sim_look(ob_free_sim *s, const ob_universe *u)
 {
-	const double holds = ob_free_lead(x->free, x->boundary) > 0 && !x->schedule && s->flies && s->bounded
-				     ? flies_until(s, x)
-				     : 0;
-	if (!(holds > until) || !flies_on(s, x, holds) || has_changes(s, x))
-		return;
-	ob_free_fall_asleep(x->u, s->id, holds);
-	if (!flies_on(s, x, holds) || has_changes(s, x))
-		ob_free_call(x->u, s->id);
-	sleep_in_flight(x->u, s->id);
-	s->time = s->base = ob_free_time(x->u, s->id);
+	if (s->aloft)
+		s->time = ob_free_holds(u, s->id);
+}
+
+// Ends a flight. false: at the host's boundary, or so close to it that no step fits in between.
+static bool land(ob_free_sim *s, ob_free_scratch *x)
+{
+	if (!s->aloft)
+		return true;
+	s->aloft = false;
+	s->time = s->base = ob_free_land(x->u, s->id, .5 / (OB_FREE_SHORTEST * s->rate), &s->counts);
 	s->since_base = 0;
-	s->counts.updates += (uint64_t)rint((s->time - until) * s->rate); // as of any flight
-	ob_free_put_counts(x->u, s->id, &s->counts);
-}
-
-// Has those near woken that sleep: the object goes on in another way.
-static void call_neighbours(const ob_free_sim *s, const ob_free_scratch *x)
-{
-	for (uint32_t i = 0; i < s->neighbours; i++)
-		if (s->neighbour[i].kind == OB_FREE_SIMULATED)
-			ob_free_call(x->u, s->neighbour[i].id);
+	return s->time < ob_free_until(x->u) * x->boundary;
 }
 
 // Publishes the state at the simulator's time, up to which it has flown.
@@ -165,6 +147,8 @@ static void end_flight(ob_free_sim *s, ob_free_scratch *x)
 bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 {
 	ob_free_planned_step planned;
+	if (!land(s, x))
+		return true;
 	const bool replays = ob_free_schedule_replays(x->schedule) && ob_free_schedule_next(x->schedule, &planned);
 	const double next = replays ? planned.end : ob_free_sim_next(s, x), h = next - s->time;
 	x->sim = s;
@@ -181,13 +165,9 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 			s->neighbour[i].contact.kept = 0;
 	}
 	ob_free_neighbours_update(s, x, h);
-	if (!x->schedule && flies_on(s, x, next)) {
-		s->counts.updates++;
-		ob_free_advance(x->u, s->id, next);
-		advance_time(s, next);
-		ob_free_put_counts(x->u, s->id, &s->counts);
+	ob_free_put_counts(x->u, s->id, &s->counts);
+	if (take_off(s, x))
 		return true;
-	}
 	if (s->time > s->motion.t0)
 		end_flight(s, x);
 	ob_motion m;
@@ -210,8 +190,8 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 	ob_free_schedule_put(x->schedule, x->u, s->id, &m, ledger, s->anew);
 	s->anew = false;
 	ob_free_publish(x->u, s->id, &m, ledger);
-	call_neighbours(s, x);
 	advance_time(s, next);
 	ob_free_put_counts(x->u, s->id, &s->counts);
+	take_off(s, x);
 	return true;
 }

@@ -15,6 +15,7 @@
 
 #include <math.h>
 
+#include "free/boxes.h"
 #include "free/schedule.h"
 #include "solver/solver.h"
 #include "table/free.h"
@@ -52,7 +53,7 @@ typedef struct ob_free_sim {
 	uint32_t id, generation;
 	bool present, failed;
 	bool anew; // it has not stepped since it began
-	double time; // s, own
+	double time; // s, own; in flight, until which it holds, as of the last look at that
 	double rate; // Hz, of its steps
 	double step; // s: longest that the next one should have, by what happens to it and to those that it touches
 	double base; // s: steps are counted from here, so that their lengths do not add up rounding
@@ -66,7 +67,8 @@ typedef struct ob_free_sim {
 	bool bounded; // they are
 	double covered; // s, own time until which they hold a flight that goes on
 	bool flies; // it touches nothing and has no mail: until something near changes, the newest version holds
-	uint32_t *group; // [ob_free_groups] counters of changes at the last look
+	bool aloft; // in a flight, and does nothing before it ends (table/free.h)
+	bool relisted; // neighbours have come or gone since the last step
 	ob_free_neighbour *neighbour;
 	uint32_t neighbours, neighbours_max;
 	uint32_t blocker; // neighbour that is too far behind; OB_NO_OBJECT = none
@@ -87,6 +89,9 @@ typedef struct ob_free_scratch {
 	ob_run_settings run; // the island solver's: its step is the running simulator's
 	double boundary; // s, between boundaries of the host
 	uint32_t substeps; // each step's, at the run's rate
+	ob_free_sim *all; // [sims] the worker's, ascending by id
+	uint32_t sims;
+	ob_free_boxes boxes;
 	ob_solver solver;
 	ob_free_sim *sim; // running
 	ob_island_object *object;
@@ -110,20 +115,15 @@ static inline double ob_free_lead(const ob_free_settings *f, double step)
 	return isinf(f->pace) && !isinf(f->max_lag) ? 2 * step : 0;
 }
 
-static inline uint32_t ob_free_groups(const ob_universe *u)
-{
-	return (ob_universe_capacity(u) + OB_FREE_GROUP - 1) / OB_FREE_GROUP;
-}
-
 // Begins a simulator, or begins it anew, at the newest version of its object.
 bool ob_free_sim_begin(ob_free_sim *s, ob_universe *u, uint32_t id);
 void ob_free_sim_finish(ob_free_sim *s);
 // End of the next step, s, if it were made now.
 double ob_free_sim_next(const ob_free_sim *s, const ob_free_scratch *x);
-// Puts the simulator to sleep if its object's flight holds beyond the time `until` (s) that it has reached. Returns when
-// the host has woken it, or the run stops.
-void ob_free_sim_sleep(ob_free_sim *s, ob_free_scratch *x, double until);
-// Moves the object through its next step and publishes it. false: it diverged, and steps no more.
+// Looks until when its flight holds, if others may have lowered that.
+void ob_free_sim_look(ob_free_sim *s, const ob_universe *u);
+// Moves the object through its next step and publishes it; or lets it fly on until something may happen to it. false: it
+// diverged, and steps no more.
 bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x);
 
 #endif

@@ -217,18 +217,27 @@ static double usual(const ob_free_sim *s, const ob_free_scratch *x)
 	return (1 + x->free->jitter) / s->rate;
 }
 
-// True if bounding balls may touch in two such steps.
-static bool approaches(const ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n)
+// Bounding balls may touch two such steps later.
+double ob_free_approach(const ob_free_sim *s, const ob_free_scratch *x, const ob_free_neighbour *n)
 {
-	return n->apart < s->time + 2 * usual(s, x);
+	return n->apart - 2 * usual(s, x);
+}
+
+// Has a neighbour's flight end in time.
+static void lower(const ob_free_sim *s, ob_free_scratch *x, const ob_free_neighbour *n)
+{
+	const double holds = ob_free_holds(x->u, n->id);
+	if (holds > 0 && n->kind == OB_FREE_SIMULATED && ob_free_approach(s, x, n) < holds)
+		ob_free_lower(x->u, n->id, ob_max(s->time, ob_free_approach(s, x, n)));
 }
 
 // Shortens the next step if the two may touch in a step of the usual length, so that those that a body touches have short
-// steps, too, when it is hit.
+// steps, too, when it is hit. theirs: flags of the neighbour's motion.
 static void approach(const ob_free_sim *s, ob_free_scratch *x, const ob_free_neighbour *n, const ob_state *own,
-		     const ob_state *other)
+		     const ob_state *other, uint32_t theirs)
 {
-	if (may_touch(s, x, n, own, other, usual(s, x)))
+	const bool fly = s->motion.flags & theirs & OB_MOTION_FREE;
+	if (!(fly && n->apart > s->time + usual(s, x)) && may_touch(s, x, n, own, other, usual(s, x)))
 		x->closing = ob_min(x->closing, little_way(s, n, ob_norm(ob_sub(own->v, other->v))));
 }
 
@@ -339,10 +348,21 @@ static void fly(const ob_free_sim *s, const ob_free_scratch *x, double h, const 
 	out->path += ob_norm(end.v) * h;
 }
 
-// Reads all neighbours, and lists those that the object may touch in a step of length h (s).
+// True if mail moves the object in this step.
+static bool has_mail(const ob_free_sim *s)
+{
+	bool any = false;
+	for (int i = 0; i < 12; i++)
+		any |= s->mailed[i] != 0;
+	return any;
+}
+
+// Reads all neighbours, and lists those that the object may touch in a step of length h (s). The list is empty
+// if none can touch it because all fly or stand.
 static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double h)
 {
 	const ob_vec3 outer = ob_external_acceleration(&x->run, &s->passport);
+	bool touches = has_ledger(x) && has_mail(s);
 	x->near = 0;
 	for (uint32_t i = 0; i < s->neighbours; i++) {
 		ob_free_neighbour *n = &s->neighbour[i];
@@ -351,19 +371,33 @@ static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double
 		if (has_ledger(x) && n->kind == OB_FREE_SIMULATED && n->id < s->id)
 			continue; // it solves their contact
 		n->bound = n->apart = 0;
-		const bool seen_now = read_neighbour(s, x, n, seen);
+		const bool seen_now = read_neighbour(s, x, n, seen), fixed = n->passport.flags & OB_OBJECT_STATIC;
 		n->version = seen_now ? seen->version : 0;
+		if (seen_now && (n->kind == OB_FREE_SIMULATED || fixed))
+			n->apart = ob_free_apart(s, n, &seen->now, outer, seen->motion.a);
 		if (seen_now && may_touch(s, x, n, own, &seen->now, h)) {
+			touches |= !(n->apart > s->time + h && (fixed || seen->motion.flags & OB_MOTION_FREE));
 			x->near++;
 			continue;
 		}
 		n->contact.kept = 0;
 		n->bound = ob_free_lag_apart(s, n, &seen->now);
-		if (seen_now && (n->kind == OB_FREE_SIMULATED || n->passport.flags & OB_OBJECT_STATIC))
-			n->apart = ob_free_apart(s, n, &seen->now, ob_norm(ob_sub(outer, seen->motion.a)));
-		if (seen_now && n->kind == OB_FREE_SIMULATED && approaches(s, x, n))
-			approach(s, x, n, own, &seen->now);
+		if (!seen_now || n->kind != OB_FREE_SIMULATED)
+			continue;
+		lower(s, x, n);
+		if (ob_free_approach(s, x, n) < s->time)
+			approach(s, x, n, own, &seen->now, seen->motion.flags);
 	}
+	for (uint32_t i = 0; i < x->near; i++) {
+		ob_free_neighbour *n = &s->neighbour[x->seen[i].neighbour];
+		n->contact.kept = touches ? n->contact.kept : 0;
+		if (n->kind == OB_FREE_SIMULATED && touches)
+			ob_free_lower(x->u, n->id, s->time);
+		else if (n->kind == OB_FREE_SIMULATED)
+			lower(s, x, n), approach(s, x, n, own, &x->seen[i].now, x->seen[i].motion.flags);
+		n->apart = touches ? 0 : n->apart;
+	}
+	x->near = touches ? x->near : 0;
 }
 
 // Receives the mail of all neighbours with lower ids, and moves the object by its displacements.
@@ -381,10 +415,11 @@ static void receive(ob_free_sim *s, ob_free_scratch *x, double h, ob_state *own)
 		if (!ob_ledger_receive(s, x, n, h, &m))
 			continue;
 		ob_state other = unturned_at(&m, s->time);
-		n->apart = ob_free_apart(s, n, &other, ob_norm(ob_sub(outer, m.a)));
-		if (approaches(s, x, n)) {
+		n->apart = ob_free_apart(s, n, &other, outer, m.a);
+		lower(s, x, n);
+		if (ob_free_approach(s, x, n) < s->time) {
 			other = ob_motion_at(&m, n->passport.inertia, s->time);
-			approach(s, x, n, own, &other);
+			approach(s, x, n, own, &other, m.flags);
 		}
 	}
 	ob_ledger_shift(s, own);

@@ -1,5 +1,6 @@
 #include "table/free.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -118,17 +119,22 @@ static double time_of(uint64_t bits)
 	return t;
 }
 
-void ob_free_advance(ob_universe *u, uint32_t id, double t)
+// Wakes those who wait for an own time that the object has reached. In one order with the waiter's store of `awaited` and its
+// load of the time: one of the two sees the other's.
+static void wake_waiting(ob_free_cell *c, uint64_t time)
+{
+	if (__atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST) > time)
+		return;
+	__atomic_store_n(&c->awaited, nobody, __ATOMIC_SEQ_CST);
+	__atomic_fetch_add(&c->moved, 1, __ATOMIC_SEQ_CST);
+	ob_futex_wake(&c->moved, ~0u);
+}
+
+static void advance(ob_universe *u, uint32_t id, double t)
 {
 	ob_free_cell *c = cell_of(u, id);
-	const uint64_t time = bits_of(t);
-	// In one order with the waiter's store of `awaited` and its load of `time`: one of the two sees the other's.
-	__atomic_store_n(&c->time, time, __ATOMIC_SEQ_CST);
-	if (__atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST) <= time) {
-		__atomic_store_n(&c->awaited, nobody, __ATOMIC_SEQ_CST);
-		__atomic_fetch_add(&c->moved, 1, __ATOMIC_SEQ_CST);
-		ob_futex_wake(&c->moved, ~0u);
-	}
+	__atomic_store_n(&c->time, bits_of(t), __ATOMIC_SEQ_CST);
+	wake_waiting(c, bits_of(t));
 }
 
 void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_ledger *ledger)
@@ -140,21 +146,37 @@ void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_l
 		put_words(ledger_place(u, id, next), ledger,
 			  offsetof(ob_ledger, account) + ledger->head.accounts * sizeof *ledger->account);
 	__atomic_store_n(&c->version, next, __ATOMIC_SEQ_CST);
-	ob_free_advance(u, id, m->t0);
+	advance(u, id, m->t0);
+}
+
+// Own time, s, of a flight that holds until then.
+static double flight_time(const ob_universe *u, double holds)
+{
+	const ob_free_control *c = u->free.control;
+	const double until = __atomic_load_n(&c->until, __ATOMIC_SEQ_CST) * u->header.run.step_length,
+		     t = ob_min(holds, until);
+	double stands, pace;
+	__atomic_load(&c->pace, &pace, __ATOMIC_ACQUIRE);
+	if (isinf(pace))
+		return t;
+	__atomic_load(&c->stands, &stands, __ATOMIC_ACQUIRE);
+	const uint64_t since = ob_clock_ns() - __atomic_load_n(&c->begun_ns, __ATOMIC_ACQUIRE);
+	return ob_min(t, ob_min(stands, 1e-9 * (double)since * pace));
+}
+
+double ob_free_holds(const ob_universe *u, uint32_t id)
+{
+	return time_of(__atomic_load_n(&cell_of(u, id)->holds, __ATOMIC_SEQ_CST));
 }
 
 double ob_free_time(const ob_universe *u, uint32_t id)
 {
 	const ob_free_cell *c = cell_of(u, id);
 	for (;;) {
-		const uint64_t time = __atomic_load_n(&c->time, __ATOMIC_SEQ_CST),
-			       holds = __atomic_load_n(&c->holds, __ATOMIC_SEQ_CST);
-		if (!holds)
-			return time_of(time);
-		const double until =
-			__atomic_load_n(&u->free.control->until, __ATOMIC_SEQ_CST) * u->header.run.step_length;
+		const uint64_t holds = __atomic_load_n(&c->holds, __ATOMIC_SEQ_CST),
+			       time = __atomic_load_n(&c->time, __ATOMIC_SEQ_CST);
 		if (__atomic_load_n(&c->holds, __ATOMIC_SEQ_CST) == holds)
-			return until < time_of(holds) ? until : time_of(holds);
+			return holds ? ob_max(time_of(time), flight_time(u, time_of(holds))) : time_of(time);
 	}
 }
 
@@ -251,6 +273,13 @@ uint32_t ob_free_changed(const ob_universe *u, uint32_t group, uint32_t number)
 	return change >> 32 == number + 1 ? (uint32_t)change : OB_NO_OBJECT;
 }
 
+void ob_free_get_bounds(const ob_universe *u, uint32_t id, float box[6])
+{
+	ob_word words[3];
+	get_words(words, u->step_data.bounds[id], sizeof words);
+	memcpy(box, words, sizeof words);
+}
+
 bool ob_free_overlaps(const ob_universe *u, uint32_t id, const float box[6])
 {
 	const ob_word *words = (const ob_word *)u->step_data.bounds[id];
@@ -274,27 +303,59 @@ void ob_free_put_counts(ob_universe *u, uint32_t id, const ob_free_counts *count
 		__atomic_store_n((ob_word *)to + i, ((const ob_word *)counts)[i], __ATOMIC_RELAXED);
 }
 
+// Updates at the simulator's rate from the begin of a flight until now.
+static uint64_t saved_by_flight(const ob_universe *u, uint32_t id)
+{
+	double began;
+	__atomic_load((double *)&cell_of(u, id)->time, &began, __ATOMIC_RELAXED);
+	return ob_free_holds(u, id) > 0 ? (uint64_t)rint((ob_free_time(u, id) - began) * ob_free_rate(u, id)) : 0;
+}
+
 void ob_free_get_counts(const ob_universe *u, uint32_t id, ob_free_counts *out)
 {
 	const ob_free_counts *from = &cell_of(u, id)->counts;
 	for (size_t i = 0; i < sizeof *from / sizeof(ob_word); i++)
 		((ob_word *)out)[i] = __atomic_load_n((const ob_word *)from + i, __ATOMIC_RELAXED);
+	out->updates += saved_by_flight(u, id);
 }
 
 // ---- waiting
 
-uint64_t ob_free_wait_for(ob_universe *u, uint32_t id, uint32_t neighbour, double time)
+uint32_t ob_free_word(const ob_universe *u, uint32_t worker)
+{
+	return __atomic_load_n(&u->free.bed[worker].word, __ATOMIC_SEQ_CST);
+}
+
+// Gives a worker a reason to look again.
+static void rouse(ob_universe *u, uint32_t worker)
+{
+	ob_free_bed *b = &u->free.bed[worker];
+	__atomic_fetch_add(&b->word, 1, __ATOMIC_SEQ_CST);
+	const uint32_t at = __atomic_load_n(&b->at, __ATOMIC_SEQ_CST);
+	if (at == OB_FREE_OWN_WORD) {
+		ob_futex_wake(&b->word, ~0u);
+	} else if (at > 0 && at <= u->header.sizes.capacity) {
+		__atomic_fetch_add(&cell_of(u, at - 1)->moved, 1, __ATOMIC_SEQ_CST);
+		ob_futex_wake(&cell_of(u, at - 1)->moved, ~0u);
+	}
+}
+
+uint64_t ob_free_wait_for(ob_universe *u, uint32_t worker, uint32_t seen, uint32_t id, uint32_t neighbour, double time)
 {
 	ob_free_cell *c = cell_of(u, neighbour);
+	ob_free_bed *b = &u->free.bed[worker];
 	const uint64_t began = ob_clock_ns(), needed = bits_of(time);
 	__atomic_store_n(&cell_of(u, id)->blocker, 1 + neighbour, __ATOMIC_RELAXED);
 	uint64_t least = __atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST);
 	while (needed < least &&
 	       !__atomic_compare_exchange_n(&c->awaited, &least, needed, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
 		;
-	const uint32_t seen = __atomic_load_n(&c->moved, __ATOMIC_SEQ_CST);
-	if (ob_free_time(u, neighbour) < time && __atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST) <= needed)
-		ob_futex_wait_ms(&c->moved, seen, NEIGHBOUR_WAIT_MS);
+	const uint32_t moved = __atomic_load_n(&c->moved, __ATOMIC_SEQ_CST);
+	__atomic_store_n(&b->at, 1 + neighbour, __ATOMIC_SEQ_CST);
+	if (ob_free_time(u, neighbour) < time && __atomic_load_n(&c->awaited, __ATOMIC_SEQ_CST) <= needed &&
+	    ob_free_word(u, worker) == seen)
+		ob_futex_wait_ms(&c->moved, moved, NEIGHBOUR_WAIT_MS);
+	__atomic_store_n(&b->at, 0, __ATOMIC_RELAXED);
 	return ob_clock_ns() - began;
 }
 
@@ -310,31 +371,77 @@ bool ob_free_blocker(const ob_universe *u, uint32_t id, uint32_t *blocker)
 	return found;
 }
 
-void ob_free_wait_for_host(const ob_universe *u, uint32_t step)
+void ob_free_idle(ob_universe *u, uint32_t worker, uint32_t seen, uint32_t step, double next, uint64_t ns)
 {
-	ob_futex_wait_ms(&u->free.control->until, step, HOST_WAIT_MS);
+	static const uint64_t most = HOST_WAIT_MS * UINT64_C(1000000);
+	ob_free_bed *b = &u->free.bed[worker];
+	const struct timespec t = { .tv_nsec = (long)(ns < most ? ns : most) };
+	__atomic_store(&b->next, &(uint64_t){ bits_of(next) }, __ATOMIC_RELAXED);
+	__atomic_store_n(&b->at, OB_FREE_OWN_WORD, __ATOMIC_SEQ_CST);
+	if (__atomic_load_n(&u->free.control->until, __ATOMIC_SEQ_CST) == step && ob_free_word(u, worker) == seen)
+		ob_futex_wait_for(&b->word, seen, &t);
+	__atomic_store_n(&b->at, 0, __ATOMIC_RELAXED);
 }
 
-void ob_free_fall_asleep(ob_universe *u, uint32_t id, double holds)
-{
-	__atomic_store_n(&cell_of(u, id)->holds, bits_of(holds), __ATOMIC_SEQ_CST);
-}
+// ---- flights
 
-bool ob_free_sleep(const ob_universe *u, uint32_t id)
-{
-	const ob_free_cell *c = cell_of(u, id);
-	const uint32_t seen = __atomic_load_n(&c->slept, __ATOMIC_ACQUIRE);
-	if (!__atomic_load_n(&c->holds, __ATOMIC_SEQ_CST))
-		return false;
-	ob_futex_wait_ms(&c->slept, seen, HOST_WAIT_MS);
-	return true;
-}
-
-void ob_free_call(ob_universe *u, uint32_t id)
+void ob_free_take_off(ob_universe *u, uint32_t id, double holds)
 {
 	ob_free_cell *c = cell_of(u, id);
-	if (__atomic_load_n(&c->holds, __ATOMIC_SEQ_CST))
-		__atomic_store_n(&c->called, 1, __ATOMIC_RELEASE);
+	__atomic_store_n(&c->holds, bits_of(holds), __ATOMIC_SEQ_CST);
+	wake_waiting(c, bits_of(holds));
+}
+
+double ob_free_land(ob_universe *u, uint32_t id, double within, ob_free_counts *counts)
+{
+	ob_free_cell *c = cell_of(u, id);
+	const double until = ob_free_until(u) * u->header.run.step_length, now = ob_free_time(u, id),
+		     t = until - now < within ? until : now;
+	if (!__atomic_load_n(&c->holds, __ATOMIC_SEQ_CST))
+		return now;
+	if (counts)
+		counts->updates += saved_by_flight(u, id);
+	advance(u, id, t); // who lowers the flight from now on is too late
+	__atomic_store_n(&c->holds, 0, __ATOMIC_SEQ_CST);
+	return t;
+}
+
+uint32_t ob_free_worker_of(const ob_universe *u, uint32_t id)
+{
+	const uint32_t workers = u->header.sizes.workers, capacity = u->header.sizes.capacity;
+	const uint32_t most = u->free.control->settings.objects;
+	if (u->header.run.one_per_object || workers >= capacity)
+		return id;
+	return id < most ? (uint32_t)((uint64_t)id * workers / most) : id % workers;
+}
+
+void ob_free_lower(ob_universe *u, uint32_t id, double t)
+{
+	ob_free_cell *c = cell_of(u, id);
+	const uint64_t bits = bits_of(ob_max(t, DBL_MIN)); // 0: no flight
+	uint64_t holds = __atomic_load_n(&c->holds, __ATOMIC_SEQ_CST);
+	while (bits < holds &&
+	       !__atomic_compare_exchange_n(&c->holds, &holds, bits, false, __ATOMIC_SEQ_CST, __ATOMIC_SEQ_CST))
+		;
+	if (bits >= holds)
+		return;
+	__atomic_fetch_add(&u->free.control->lowerings, 1, __ATOMIC_SEQ_CST);
+	__atomic_fetch_or(&u->free.group[id / OB_FREE_GROUP].lowered, UINT64_C(1) << id % OB_FREE_GROUP,
+			  __ATOMIC_SEQ_CST);
+	rouse(u, ob_free_worker_of(u, id));
+}
+
+uint64_t ob_free_lowerings(const ob_universe *u)
+{
+	return __atomic_load_n(&u->free.control->lowerings, __ATOMIC_SEQ_CST);
+}
+
+uint64_t ob_free_take_lowered(ob_universe *u, uint32_t group, uint64_t mask)
+{
+	uint64_t *lowered = &u->free.group[group].lowered;
+	return __atomic_load_n(lowered, __ATOMIC_SEQ_CST) & mask
+		       ? __atomic_fetch_and(lowered, ~mask, __ATOMIC_SEQ_CST) & mask
+		       : 0;
 }
 
 // ---- host
@@ -345,6 +452,7 @@ void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t gene
 	ob_free_cell *c = cell_of(u, id);
 	if (!ob_free_version(u, id))
 		__atomic_store_n(&c->awaited, nobody, __ATOMIC_RELAXED);
+	__atomic_store_n(&c->holds, 0, __ATOMIC_SEQ_CST);
 	if (kind == OB_FREE_SIMULATED)
 		ob_free_publish(u, id, m, u->header.sizes.ledgers ? &none : NULL);
 	__atomic_store_n(&c->generation, generation, __ATOMIC_RELAXED);
@@ -358,40 +466,30 @@ void ob_free_set_rate(ob_universe *u, uint32_t id, double rate)
 	__atomic_store(&cell_of(u, id)->update_rate, &f, __ATOMIC_RELAXED);
 }
 
-// Ends the sleep of a simulator at the time of `until`.
-static void end_sleep(ob_universe *u, uint32_t id)
+void ob_free_note_entered(ob_universe *u, uint64_t passports)
 {
-	ob_free_cell *c = cell_of(u, id);
-	__atomic_store_n(&c->called, 0, __ATOMIC_RELAXED);
-	ob_free_advance(u, id, ob_free_time(u, id));
-	__atomic_store_n(&c->holds, 0, __ATOMIC_SEQ_CST);
-	__atomic_fetch_add(&c->slept, 1, __ATOMIC_RELEASE);
-	ob_futex_wake(&c->slept, ~0u);
+	const double until = ob_free_until(u) * u->header.run.step_length;
+	for (uint32_t id = 0; id < u->header.sizes.capacity; id++)
+		ob_free_lower(u, id, until);
+	__atomic_store_n(&u->free.control->passports, passports, __ATOMIC_RELAXED);
+	__atomic_fetch_add(&u->free.control->entered, 1, __ATOMIC_SEQ_CST);
+	ob_free_stop(u);
 }
 
-// Ends sleeps that hold until less than a time, s; called: those that were called, too.
-static void end_sleeps(ob_universe *u, double before, bool called)
+uint64_t ob_free_passports(const ob_universe *u)
 {
-	for (uint32_t id = 0; id < u->header.sizes.capacity; id++) {
-		const ob_free_cell *c = cell_of(u, id);
-		const uint64_t holds = __atomic_load_n(&c->holds, __ATOMIC_SEQ_CST);
-		if (holds && (time_of(holds) < before || (called && __atomic_load_n(&c->called, __ATOMIC_ACQUIRE))))
-			end_sleep(u, id);
-	}
+	return __atomic_load_n(&u->free.control->passports, __ATOMIC_RELAXED);
 }
 
-void ob_free_wake(ob_universe *u)
+uint32_t ob_free_entered(const ob_universe *u)
 {
-	end_sleeps(u, INFINITY, true);
+	return __atomic_load_n(&u->free.control->entered, __ATOMIC_SEQ_CST);
 }
 
 void ob_free_stop(ob_universe *u)
 {
-	ob_futex_wake(&u->free.control->until, ~0u);
-	for (uint32_t id = 0; id < u->header.sizes.capacity; id++) {
-		ob_futex_wake(&cell_of(u, id)->moved, ~0u);
-		ob_futex_wake(&cell_of(u, id)->slept, ~0u);
-	}
+	for (uint32_t w = 0; w < u->header.sizes.workers; w++)
+		rouse(u, w);
 }
 
 void ob_free_run_until(ob_universe *u, uint64_t step)
@@ -399,12 +497,16 @@ void ob_free_run_until(ob_universe *u, uint64_t step)
 	ob_free_control *c = u->free.control;
 	if (c->begun_ns == 0 && step > 0)
 		ob_free_set_clock(u, 0, c->settings.pace, INFINITY);
-	const bool moves = __atomic_load_n(&c->until, __ATOMIC_RELAXED) != (uint32_t)step;
-	end_sleeps(u, (double)step * u->header.run.step_length, moves);
-	if (!moves)
+	if (__atomic_load_n(&c->until, __ATOMIC_RELAXED) == (uint32_t)step)
 		return;
 	__atomic_store_n(&c->until, (uint32_t)step, __ATOMIC_SEQ_CST);
-	ob_futex_wake(&c->until, ~0u);
+	const uint64_t until = bits_of((double)step * u->header.run.step_length);
+	for (uint32_t w = 0; w < u->header.sizes.workers; w++) {
+		const ob_free_bed *b = &u->free.bed[w];
+		if (__atomic_load_n(&b->at, __ATOMIC_SEQ_CST) == OB_FREE_OWN_WORD &&
+		    __atomic_load_n(&b->next, __ATOMIC_RELAXED) < until)
+			rouse(u, w);
+	}
 }
 
 void ob_free_looked(ob_universe *u)
@@ -428,6 +530,7 @@ void ob_free_set_clock(ob_universe *u, double t, double pace, double stands)
 	__atomic_store(&c->stands, &stands, __ATOMIC_RELEASE);
 	__atomic_store(&c->pace, &pace, __ATOMIC_RELEASE);
 	__atomic_store_n(&c->begun_ns, ob_clock_ns() - (uint64_t)(1e9 * t / pace), __ATOMIC_RELEASE);
+	ob_free_stop(u);
 }
 
 uint64_t ob_free_due_ns(const ob_universe *u, double t)

@@ -24,11 +24,16 @@
 // sleeps on its futex word. The neighbour wakes all when it has reached that time. A time, not a count, so that a
 // waiter's death leaves one wake too many behind.
 //
-// Sleeping flights: a simulator whose newest version holds for long sets `holds`, and sleeps. Meanwhile the object's own
-// time is that of `until`, as if its simulator had gone so far at once. Whoever comes near, or changes near it, calls it.
-// Only the host ends such a sleep, before it moves `until`: of those that were called, and those that hold no longer. So own
-// times never fall back. Storing `holds` and looking once more, publishing and looking at `holds` are in one order: one
-// side sees the other's.
+// Flights: while nothing comes near, an object's newest version holds, in closed form. Its simulator says until when
+// (`holds`), and does nothing before. Meanwhile the object's own time is `holds`, the time of `until`, or the clock's, whichever
+// is least: as if the simulator had gone so far at once. A simulator that finds that its object may touch a flight sooner
+// lowers `holds`, marks the flight for its worker (`lowered`), and has that worker woken. Storing `holds` and looking at
+// versions once more, publishing and looking at `holds` are in one order: one side sees the other's. So own times of flights
+// may fall, but not below that of whoever lowers them. `lowerings` counts that, before the lowerer goes on: a reader of all
+// own times that finds the same count before and after has seen times that all have passed at once (common.c).
+//
+// Workers sleep at their own word (`word`), or at that of the neighbour they wait for; `at` says where. Whoever changes what
+// a worker waits for moves its word first, then looks at `at`; the worker stores `at`, then looks at its word.
 //
 // Neighbours: bounds are published as three words of two numbers. A counter for 64 objects moves afterwards, so a reader
 // compares counters. The last changes of a group stand in a ring, each with its number; a reader that finds another
@@ -94,30 +99,44 @@ typedef struct ob_free_cell {
 	_Alignas(64) uint32_t moved; // futex word: times that were awaited
 	uint32_t blocker; // 1 + the object that it waits for; 0 = none
 	uint64_t awaited; // bits of a double: least own time, s, for which a simulator waits; all ones: nobody does
-	uint64_t holds; // bits of a double: own time, s, until which it sleeps; 0: it does not
-	uint32_t called; // 1 = its sleep ends before anybody passes `until`
-	uint32_t slept; // futex word: sleeps that the host has ended
+	uint64_t holds; // bits of a double: own time, s, until which its flight holds; 0: it is in none
 	float update_rate; // Hz; 0: the run's
-	uint32_t zero;
+	uint32_t zero[3];
 	ob_free_counts counts;
 } ob_free_cell;
 
 // 64 objects.
 typedef struct ob_free_group {
 	_Alignas(64) uint32_t moved; // changes of their boxes, arrivals, departures
+	uint64_t lowered; // bit of each object whose flight others have lowered
 	uint64_t change[OB_FREE_CHANGES]; // (number of the change, from 1) << 32 | object
 } ob_free_group;
 
+// A worker's place to sleep.
+typedef struct ob_free_bed {
+	_Alignas(64) uint32_t word; // futex word: reasons to look again
+	uint32_t
+		at; // where it sleeps: 0 = it does not; OB_FREE_OWN_WORD; else 1 + the object whose `moved` it waits for
+	uint64_t
+		next; // bits of a double: own time, s, of the next that it has to do; it sleeps while `until` is not beyond
+} ob_free_bed;
+
+enum { OB_FREE_OWN_WORD = INT32_MAX };
+
 typedef struct ob_free_control {
 	ob_free_settings settings;
-	_Alignas(64) uint32_t until; // futex word: step (from 0) at which simulators stop and wait; the host's
+	_Alignas(64) uint32_t until; // step (from 0) at which simulators stop and wait; the host's
+	uint32_t entered; // changes of objects, each while all wait
+	uint64_t passports; // sum of their versions at the last of these
+	uint64_t lowerings; // of flights
 	uint32_t looks; // of the host, after which it did nothing but wait
 	uint64_t begun_ns; // clock at which own time 0 was due; 0 = not yet
 	double pace; // s a second of that clock; infinity: simulators follow none
 	double stands; // s: own time at which the clock stands; infinity: it goes on
 } ob_free_control;
 
-static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 448 && sizeof(ob_free_group) == 192,
+static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 448 && sizeof(ob_free_group) == 192 &&
+		      sizeof(ob_free_bed) == 64,
 	      "free run");
 static_assert(sizeof(ob_account) == 160 && sizeof(ob_ledger) == 40 + OB_LEDGER_ACCOUNTS * 160, "mail");
 
@@ -133,23 +152,31 @@ uint32_t ob_free_depth(const ob_universe *u);
 void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t generation, const ob_motion *m);
 // Sets the rate (Hz) of an object's simulator, before the object is entered; 0: the run's.
 void ob_free_set_rate(ob_universe *u, uint32_t id, double rate);
-// Lets simulators run until so many steps are complete. The first call starts their clock. Wakes simulators that sleep, but
-// those whose flights hold until then: one that falls asleep meanwhile is woken by the next call.
+// Lets simulators run until so many steps are complete. The first call starts their clock. Wakes workers that have something
+// to do before.
 void ob_free_run_until(ob_universe *u, uint64_t step);
 // Sets the clock of all simulators: own time t (s) is due now, later times at this pace, and none from `stands` (s) on.
 // While it changes, a step may begin that is due by neither clock. Infinity: no pace; it goes on.
 void ob_free_set_clock(ob_universe *u, double t, double pace, double stands);
 // Counts a look at all simulators after which the host waits for them, with `until` as it was.
 void ob_free_looked(ob_universe *u);
-// Wakes all that sleep in flight: something has changed.
-void ob_free_wake(ob_universe *u);
+// Says that objects have come, gone or changed, while all wait: ends all flights at `until`, and has all workers look.
+void ob_free_note_entered(ob_universe *u, uint64_t passports);
+// Sum of passports' versions at the last call of it.
+uint64_t ob_free_passports(const ob_universe *u);
 // Wakes all that wait, so that they see that the run stops.
 void ob_free_stop(ob_universe *u);
 
 // ---- all
 
 ob_free_kind ob_free_kind_of(const ob_universe *u, uint32_t id, uint32_t *generation); // generation may be NULL
-double ob_free_time(const ob_universe *u, uint32_t id); // own time, s; while its simulator sleeps, that of `until`
+double ob_free_time(const ob_universe *u, uint32_t id); // own time, s
+// Own time, s, until which an object's flight holds; 0: it is in none.
+double ob_free_holds(const ob_universe *u, uint32_t id);
+// Lowerings of flights so far.
+uint64_t ob_free_lowerings(const ob_universe *u);
+// Changes of objects so far.
+uint32_t ob_free_entered(const ob_universe *u);
 uint64_t ob_free_version(const ob_universe *u, uint32_t id);
 double ob_free_rate(const ob_universe *u, uint32_t id); // Hz, of its simulator's steps
 // Copies the newest version that is not after t (s), or the oldest kept, and returns its number; 0: none. next, if not
@@ -167,6 +194,7 @@ uint32_t ob_free_until(const ob_universe *u);
 uint32_t ob_free_looks(const ob_universe *u);
 // Clock (ob_clock_ns) from which on a simulator at own time t (s) may step; UINT64_MAX: the clock stands before.
 uint64_t ob_free_due_ns(const ob_universe *u, double t);
+// Updates include those that a flight has saved.
 void ob_free_get_counts(const ob_universe *u, uint32_t id, ob_free_counts *out);
 // Object that the simulator of an object waits for. False: none.
 bool ob_free_blocker(const ob_universe *u, uint32_t id, uint32_t *blocker);
@@ -175,27 +203,40 @@ bool ob_free_blocker(const ob_universe *u, uint32_t id, uint32_t *blocker);
 
 // Publishes a version; ledger: NULL without a ledger. Wakes those who wait for it.
 void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_ledger *ledger);
-// Moves an object's own time on to t (s), where its newest version still holds. Wakes those who wait for it.
-void ob_free_advance(ob_universe *u, uint32_t id, double t);
+// Begins a flight of the newest version, which holds until own time `holds` (s). The simulator then looks once more whether
+// anything near has changed. Wakes those who wait for that time.
+void ob_free_take_off(ob_universe *u, uint32_t id, double holds);
+// Ends a flight at the object's own time, which it returns (s), or at `until` if that is less than `within` (s) away; in no
+// flight, returns the own time. Updates that the flight has saved are added to counts; NULL: nobody counts.
+double ob_free_land(ob_universe *u, uint32_t id, double within, ob_free_counts *counts);
+// Has an object's flight, if it is in one, hold until t (s) at most, and its worker look at it.
+void ob_free_lower(ob_universe *u, uint32_t id, double t);
+// Takes the objects of a group whose flights were lowered, out of those of a mask: a bit each.
+uint64_t ob_free_take_lowered(ob_universe *u, uint32_t group, uint64_t mask);
 void ob_free_put_counts(ob_universe *u, uint32_t id, const ob_free_counts *c);
 void ob_free_publish_bounds(ob_universe *u, uint32_t id, const float box[6]);
 // Counter of changes in a group of OB_FREE_GROUP objects.
 uint32_t ob_free_moved(const ob_universe *u, uint32_t group);
+// Copies the object's box.
+void ob_free_get_bounds(const ob_universe *u, uint32_t id, float box[6]);
 // True if the object's box overlaps another.
 bool ob_free_overlaps(const ob_universe *u, uint32_t id, const float box[6]);
 // Object of a change, by its number (from 0: what the counter was before). OB_NO_OBJECT: it is not kept.
 uint32_t ob_free_changed(const ob_universe *u, uint32_t group, uint32_t number);
-// Begins to sleep in flight until own time `holds` (s). The simulator then looks once more whether it may.
-void ob_free_fall_asleep(ob_universe *u, uint32_t id, double holds);
-// Sleeps until the host ends the sleep, the run stops, or some time has passed. false: the simulator does not sleep.
-bool ob_free_sleep(const ob_universe *u, uint32_t id);
-// Has the simulator of an object woken before anybody passes `until`, if it sleeps in flight.
-void ob_free_call(ob_universe *u, uint32_t id);
-// Sleeps until the neighbour has reached `time`, or some time has passed. id: the object whose simulator waits: it counts as
-// waiting until ob_free_end_wait. Returns the time slept, ns.
-uint64_t ob_free_wait_for(ob_universe *u, uint32_t id, uint32_t neighbour, double time);
+
+// ---- a worker
+
+// Moves on whenever a worker has a reason to look again.
+uint32_t ob_free_word(const ob_universe *u, uint32_t worker);
+// Sleeps until the neighbour has reached `time`, the worker's word is not `seen` any more, or some time has passed. id: the object
+// whose simulator waits: it counts as waiting until ob_free_end_wait. Returns the time slept, ns.
+uint64_t ob_free_wait_for(ob_universe *u, uint32_t worker, uint32_t seen, uint32_t id, uint32_t neighbour, double time);
 void ob_free_end_wait(ob_universe *u, uint32_t id);
-// Sleeps until the host moves `until` away from this step, or some time has passed.
-void ob_free_wait_for_host(const ob_universe *u, uint32_t step);
+// Sleeps until the worker's word is not `seen` any more, the host has moved `until` from this step to beyond the time `next`
+// (s), or so many ns have passed.
+void ob_free_idle(ob_universe *u, uint32_t worker, uint32_t seen, uint32_t step, double next, uint64_t ns);
+
+// Worker of an object's simulator: blocks of ids, so that neighbours in a scene are often one worker's.
+uint32_t ob_free_worker_of(const ob_universe *u, uint32_t id);
 
 #endif

@@ -15,10 +15,15 @@ static inline void ob_futex_wait(const uint32_t *word, uint32_t seen, uint32_t b
 	syscall(SYS_futex, word, FUTEX_WAIT_BITSET, seen, until, NULL, bits);
 }
 
+static inline void ob_futex_wait_for(const uint32_t *word, uint32_t seen, const struct timespec *t)
+{
+	syscall(SYS_futex, word, FUTEX_WAIT, seen, t, NULL, 0);
+}
+
 static inline void ob_futex_wait_ms(const uint32_t *word, uint32_t seen, int ms)
 {
 	const struct timespec t = { .tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000L };
-	syscall(SYS_futex, word, FUTEX_WAIT, seen, &t, NULL, 0);
+	ob_futex_wait_for(word, seen, &t);
 }
 
 static inline void ob_futex_wake(const uint32_t *word, uint32_t bits)

@@ -79,9 +79,10 @@ enum { OB_LAYOUT_VERSION = 49, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 
 	X(TASK_NS, step_data.task_ns, s->capacity) \
 	X(SCRIPT_TEXT, step_data.script_text, s->script_bytes) \
 	X(OUTBOX, outbox_area, (uint64_t)s->workers * s->outbox_bytes) /* per worker; empty unless simulators are contained */ \
-	X(FREE_CONTROL, free.control, free) /* these five empty unless the run is free (free.h) */ \
+	X(FREE_CONTROL, free.control, free) /* these six empty unless the run is free (free.h) */ \
 	X(FREE_CELL, free.cell, free ? s->capacity : 0) \
 	X(FREE_GROUP, free.group, free ? groups(s->capacity, OB_FREE_GROUP) : 0) \
+	X(FREE_BED, free.bed, free ? s->workers : 0) \
 	X(FREE_RING, free.ring, (uint64_t)s->capacity * s->history) \
 	X(FREE_LEDGER, free.ledger, (uint64_t)s->capacity * s->ledgers) \
 	X(TRACE_RING, trace_ring, traced ? s->workers + OB_TRACE_HOST_RINGS : 0) /* from here on empty unless traced */ \
@@ -213,6 +214,7 @@ struct ob_universe {
 		ob_free_control *control;
 		ob_free_cell *cell;
 		ob_free_group *group;
+		ob_free_bed *bed;
 		ob_motion *ring;
 		ob_ledger *ledger;
 	} free; // only if the run is free

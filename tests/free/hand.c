@@ -8,6 +8,9 @@
 #include "ode/ode_body.h"
 #include "step/sim.h"
 
+// Every second universe has a grid of boxes.
+static bool grid;
+
 hand *hand_create(ob_free_settings f, ob_vec3 gravity)
 {
 	return hand_create_for(HAND_OBJECTS, f, gravity);
@@ -17,6 +20,7 @@ hand *hand_create_for(uint32_t objects, ob_free_settings f, ob_vec3 gravity)
 {
 	ob_error e;
 	hand *h = calloc(1, sizeof *h);
+	grid = !grid;
 	f.objects = objects;
 	f.pace = INFINITY;
 	ob_universe_setup setup = { .capacity = objects, .workers = 1, .isolation = "thread", .free = &f };
@@ -27,8 +31,13 @@ hand *hand_create_for(uint32_t objects, ob_free_settings f, ob_vec3 gravity)
 	f.rate_most = ob_max(f.rate_most, f.update_rate);
 	ob_free_plan_depths(&f, setup.run.step_length, objects, &setup.history, &setup.ledgers);
 	ob_ode_init();
+	for (uint32_t i = 0; i < HAND_MOST; i++)
+		h->sim[i].id = i;
+	h->scratch.all = h->sim;
+	h->scratch.sims = HAND_MOST;
 	h->u = ob_universe_create(&setup, &e);
-	if (!h->u || !ob_universe_reserve(h->u, objects, &e) || !ob_free_scratch_begin(&h->scratch, h->u)) {
+	if (!h->u || !ob_universe_reserve(h->u, objects, &e) || !ob_free_scratch_begin(&h->scratch, h->u) ||
+	    !ob_free_boxes_begin(&h->scratch.boxes, h->u, grid)) {
 		fprintf(stderr, "%s\n", e.text);
 		exit(1);
 	}
@@ -39,6 +48,7 @@ void hand_destroy(hand *h)
 {
 	for (uint32_t i = 0; i < h->objects; i++)
 		ob_free_sim_finish(&h->sim[i]);
+	ob_free_boxes_finish(&h->scratch.boxes);
 	ob_free_scratch_finish(&h->scratch);
 	ob_universe_destroy(h->u, true);
 	free(h);
@@ -87,12 +97,13 @@ void hand_until(hand *h, uint64_t step)
 	ob_free_run_until(h->u, step);
 }
 
-static bool at_boundary(const hand *h, uint32_t id)
+static bool at_boundary(hand *h, uint32_t id)
 {
+	ob_free_sim_look(&h->sim[id], h->u);
 	return !h->sim[id].present || h->sim[id].failed || h->sim[id].time >= ob_free_until(h->u) * h->scratch.boundary;
 }
 
-bool hand_is_there(const hand *h)
+bool hand_is_there(hand *h)
 {
 	for (uint32_t id = 0; id < h->objects; id++)
 		if (!at_boundary(h, id))

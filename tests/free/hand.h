@@ -36,6 +36,6 @@ bool hand_run(hand *h, uint64_t *random, double kills);
 bool hand_run_with_stops(hand *h, uint64_t *random, double kills, double stops);
 // Steps all without a lag, the earliest first, until all are at the boundary. false: it is blocked.
 bool hand_run_in_order(hand *h);
-bool hand_is_there(const hand *h);
+bool hand_is_there(hand *h);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "../check.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/random.h"
@@ -20,6 +21,14 @@ static ob_motion motion_of(const hand *h, uint32_t id)
 	ob_motion m;
 	ob_universe_get_motion(h->u, id, &m);
 	return m;
+}
+
+// Steps of a simulator, and those that flights have saved it.
+static uint64_t updates_of(const hand *h, uint32_t id)
+{
+	ob_free_counts counts;
+	ob_free_get_counts(h->u, id, &counts);
+	return counts.updates;
 }
 
 // A lone body flies as it must, whatever lengths its steps have; the common time is exact between two of its versions.
@@ -50,11 +59,10 @@ static void test_common_time(void)
 	const uint32_t a = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(0, 0, 0), ob_v3(1, 0, 0), 0),
 		       b = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(0, 9, 0), ob_v3(1, 0, 0), 0);
 	hand_until(h, 20);
-	for (int i = 0; i < 10; i++)
-		CHECK(hand_step(h, a));
+	CHECK(hand_step(h, a));
 	CHECK(ob_free_complete(h->u, 20) == 0);
-	for (int i = 0; i < 4; i++)
-		CHECK(hand_step(h, b));
+	CHECK(hand_step(h, b));
+	ob_free_lower(h->u, b, 4. / 60); // or both would fly to the end
 	CHECK(ob_free_complete(h->u, 20) == 4);
 	CHECK_NEAR(motion_of(h, a).p.x, 4. / 60, 1e-12);
 	CHECK_NEAR(motion_of(h, b).p.x, 4. / 60, 1e-12);
@@ -134,9 +142,9 @@ static void test_flight_costs_nothing(void)
 	hand_until(h, 30);
 	uint64_t random = 1;
 	CHECK(hand_run(h, &random, .01));
-	CHECK(h->sim[ball].counts.updates >= 500);
+	CHECK(updates_of(h, ball) >= 495);
 	CHECK(ob_free_version(h->u, ball) < 50);
-	CHECK_NEAR(h->sim[ball].time, .5, 1e-12);
+	CHECK_NEAR(ob_free_time(h->u, ball), .5, 1e-12);
 	CHECK(ob_free_complete(h->u, 30) == 30);
 	CHECK_NEAR(motion_of(h, ball).p.z, 3 - .5 * 9.81 * .25, 1e-9);
 	hand_until(h, 90);
@@ -146,31 +154,74 @@ static void test_flight_costs_nothing(void)
 	hand_destroy(h);
 }
 
-// A simulator that sleeps is where all may be; one that was called, or holds no longer, is woken there, and not beyond.
-static void test_sleep(void)
+// A flight is where all may be; one that is lowered, or holds no longer, stays there, and its updates are counted.
+static void test_flights_in_the_table(void)
 {
 	hand *h = hand_create(settings(60, INFINITY), down);
 	const uint32_t a = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(0, 0, 9), none, 0),
 		       b = hand_add(h, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(5, 0, 9), none, 0);
-	uint64_t random = 1;
-	hand_until(h, 2);
-	CHECK(hand_run(h, &random, 0));
-	ob_free_fall_asleep(h->u, a, 9. / 60);
-	ob_free_fall_asleep(h->u, b, 5. / 60);
-	ob_free_run_until(h->u, 4);
+	ob_free_counts counts = { 0 };
+	hand_until(h, 4);
+	ob_free_take_off(h->u, a, 9. / 60);
+	ob_free_take_off(h->u, b, 5. / 60);
 	CHECK_NEAR(ob_free_time(h->u, a), 4. / 60, 1e-12);
 	CHECK_NEAR(ob_free_time(h->u, b), 4. / 60, 1e-12);
 	CHECK(ob_free_complete(h->u, 4) == 4);
 	CHECK_NEAR(motion_of(h, a).p.z, 9 - .5 * 9.81 * 16 / 3600, 1e-12);
-	ob_free_call(h->u, a);
+	const uint64_t lowerings = ob_free_lowerings(h->u);
+	const uint32_t word = ob_free_word(h->u, 0);
+	ob_free_lower(h->u, a, 10. / 60); // it holds no longer than before
+	CHECK(ob_free_lowerings(h->u) == lowerings && ob_free_word(h->u, 0) == word);
+	ob_free_lower(h->u, a, 4. / 60);
+	CHECK(ob_free_lowerings(h->u) == lowerings + 1 && ob_free_word(h->u, 0) != word);
+	CHECK(ob_free_take_lowered(h->u, 0, 1 << b) == 0 && ob_free_take_lowered(h->u, 0, 1 << a | 1 << b) == 1u << a);
 	ob_free_run_until(h->u, 6);
-	CHECK_NEAR(ob_free_time(h->u, a), 4. / 60, 1e-12); // it was called
-	CHECK_NEAR(ob_free_time(h->u, b), 4. / 60, 1e-12); // it does not hold until 6
-	CHECK(!ob_free_sleep(h->u, a) && !ob_free_sleep(h->u, b));
-	ob_free_fall_asleep(h->u, b, 5. / 60); // while the host moved on
-	ob_free_run_until(h->u, 6);
-	CHECK(!ob_free_sleep(h->u, b));
+	CHECK_NEAR(ob_free_time(h->u, a), 4. / 60, 1e-12);
 	CHECK_NEAR(ob_free_time(h->u, b), 5. / 60, 1e-12);
+	CHECK_NEAR(ob_free_land(h->u, b, 0, &counts), 5. / 60, 1e-12);
+	CHECK(counts.updates == 5 && ob_free_holds(h->u, b) == 0);
+	ob_free_lower(h->u, b, 0);
+	CHECK_NEAR(ob_free_land(h->u, b, 0, &counts), 5. / 60, 1e-12);
+	ob_free_lower(h->u, a, 5.9 / 60);
+	CHECK_NEAR(ob_free_land(h->u, a, .2 / 60, &counts), 4. / 60, 1e-12);
+	hand_destroy(h);
+}
+
+// The grid of boxes finds those that a test of all finds: small, large, moved, infinite, and gone.
+static void test_boxes(void)
+{
+	enum { ROUNDS = 200 };
+	hand *h = hand_create(settings(60, INFINITY), none);
+	ob_free_boxes grid = { 0 };
+	uint32_t changed[OB_FREE_GROUP];
+	uint64_t random = 1;
+	while (h->objects < HAND_OBJECTS - 1)
+		hand_add(h, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 1, ob_v3(9. * h->objects, 0, 0), none, 0);
+	hand_until(h, 1);
+	CHECK(ob_free_boxes_begin(&grid, h->u, true));
+	for (int round = 0; round < ROUNDS; round++) {
+		const uint32_t id = (uint32_t)(ob_splitmix(&random) % h->objects);
+		const double size = round % 50 ? exp(8 * ob_splitmix_real(&random) - 4) : INFINITY;
+		float box[6];
+		for (int c = 0; c < 3; c++) {
+			const double at = 20 * ob_splitmix_real(&random) - 10;
+			box[c] = (float)(at - size), box[3 + c] = (float)(at + size);
+		}
+		ob_free_publish_bounds(h->u, id, box);
+		if (round == ROUNDS / 2)
+			ob_free_enter(h->u, 7, OB_FREE_ABSENT, 1, NULL);
+		CHECK(!ob_free_boxes_are_current(&grid, h->u));
+		CHECK(ob_free_boxes_look(&grid, h->u, 0, changed) > 0 && ob_free_boxes_are_current(&grid, h->u));
+		const uint32_t n = ob_free_boxes_query(&grid, box);
+		uint64_t found = 0, expected = 0;
+		for (uint32_t i = 0; i < n; i++)
+			found |= UINT64_C(1) << grid.found[i];
+		for (uint32_t i = 0; i < h->objects; i++)
+			if (ob_free_kind_of(h->u, i, NULL) != OB_FREE_ABSENT && ob_free_overlaps(h->u, i, box))
+				expected |= UINT64_C(1) << i;
+		CHECK(found == expected && n == (uint32_t)__builtin_popcountll(found));
+	}
+	ob_free_boxes_finish(&grid);
 	hand_destroy(h);
 }
 
@@ -201,7 +252,7 @@ static void test_one_stopped(ob_coupling coupling)
 		else if (id <= 3)
 			CHECK(s->blocker == STOPPED && s->time > 0 && s->time <= lag + 1. / RATE + 1e-9);
 		else
-			CHECK(s->counts.updates >= .99 * RATE && s->blocker == OB_NO_OBJECT);
+			CHECK(updates_of(h, id) >= .99 * RATE && s->blocker == OB_NO_OBJECT);
 	}
 	uint64_t random = 1;
 	CHECK(hand_run(h, &random, 0));
@@ -230,7 +281,7 @@ static void test_light_between_heavy(void)
 		least = ob_min(least, ob_min(z[0] + .5, ob_min(z[1] - z[0], z[2] - z[1])));
 	}
 	CHECK(least > 1 - .045);
-	CHECK(h->sim[light].counts.updates > 205); // of 200 at the usual length
+	CHECK(updates_of(h, light) > 205); // of 200 at the usual length
 	hand_destroy(h);
 }
 
@@ -295,7 +346,8 @@ int main(int argc, char **argv)
 	test_no_deadlock(argc > 1 ? strtoull(argv[1], NULL, 10) : 100);
 	test_ground();
 	test_flight_costs_nothing();
-	test_sleep();
+	test_flights_in_the_table();
+	test_boxes();
 	test_one_stopped(OB_COUPLING_LEDGER);
 	test_one_stopped(OB_COUPLING_OWN);
 	test_light_between_heavy();

@@ -263,9 +263,12 @@ static void test_column_lands(void)
 		for (uint64_t step = 1; step <= 20; step++) {
 			hand_until(h, step);
 			CHECK(hand_run(h, &order, 0));
+			CHECK(ob_free_complete(h->u, step) == step);
 			for (uint32_t id = 1; id <= BOXES; id++) {
-				const double below = id > 1 ? h->sim[id - 1].motion.p.z : -edge / 2;
-				worst_overlap = ob_max(worst_overlap, below + edge - h->sim[id].motion.p.z);
+				ob_motion m, below = { .p.z = -edge / 2 };
+				CHECK(ob_universe_get_motion(h->u, id, &m) &&
+				      (id == 1 || ob_universe_get_motion(h->u, id - 1, &below)));
+				worst_overlap = ob_max(worst_overlap, below.p.z + edge - m.p.z);
 			}
 		}
 		hand_destroy(h);
