@@ -100,12 +100,15 @@ static double flies_until(const ob_free_sim *s, const ob_free_scratch *x)
 	return until;
 }
 
-// Lets the object fly until something may happen to it, if that is beyond its next step. A
-// neighbour that changes lowers that time.
+static const double least_flight =
+	4; // steps: a shorter one, as of a box that hops on another, costs more than it saves
+
+// Lets the object fly until something may happen to it, if that is some steps ahead. A neighbour
+// that changes lowers that time.
 static bool take_off(ob_free_sim *s, ob_free_scratch *x)
 {
 	const double holds = s->flies && !x->schedule ? flies_until(s, x) : 0;
-	if (!(holds > ob_free_sim_next(s, x)) || !flies_on(s, x, holds))
+	if (!(holds > s->time + least_flight / s->rate) || !flies_on(s, x, holds))
 		return false;
 	ob_free_take_off(x->u, s->id, holds);
 	s->aloft = true;
