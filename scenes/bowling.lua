@@ -12,7 +12,7 @@ material "gutter" { friction = .3, restitution = .1, colour = "#55585f", roughne
 material "curtain" { friction = .8, restitution = 0, colour = "#8d8296", roughness = .9 }
 material "panel" { colour = "#b8463f", roughness = .5, pattern = "planks" }
 material "wall" { friction = .8, restitution = 0, colour = "#8d8296", roughness = .9, pattern = "bricks" }
-camera "main" { from = { -.9, -.55, .5 }, fov = 30 }
+camera "main" { eye = { -6.8, -3, 4.1 }, target = { .1, 0, .2 }, fov = 46 }
 camera "pins" { eye = { -.75, -1.25, .75 }, target = { 1.5, .02, .13 }, fov = 30 }
 camera "behind" { eye = { -4.4, 0, .9 }, target = { 1, 0, .1 }, fov = 26 }
 camera "hall" { eye = { -5.6, -1.1, 1.5 }, target = { 1.2, .05, .35 }, fov = 36 }

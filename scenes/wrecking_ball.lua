@@ -7,7 +7,7 @@ sun { towards = { -.5, -.8, .9 } }
 ground { colour = "#b7ae9c" }
 material "brick" { friction = .6, density = 1800, colour = "#b5533c" }
 material "steel" { friction = .4, density = 7800, colour = "#4a5058" }
-camera "main" { eye = { 5.7, -6.5, 6.9 }, target = { 0, .2, 2.5 }, fov = 44 }
+camera "main" { eye = { 5.2, -7.2, 7.4 }, target = { -.6, .2, 2.7 }, fov = 50 }
 
 for row = 0, rows - 1 do
 	local odd = row % 2
