@@ -522,7 +522,7 @@ static void compare_before(ob_committer *c)
 	}
 }
 
-// Of a phase that has failed, commits which islands were given up, and no results.
+// Commits which islands were given up, and no results, where a phase has failed.
 static void commit_given_up(ob_committer *c, ob_universe *u, ob_phase phase)
 {
 	ob_mail_record r;

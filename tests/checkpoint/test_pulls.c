@@ -1,5 +1,6 @@
 // Changes by requests that last are part of a checkpoint: a run that is dragged, turned and pushed, and in which requests have
 // ended a path and given another, ends in the same bits whether it goes on by itself or from the file, in any configuration.
+#include "asking.h"
 #include "check.h"
 
 #include <stdlib.h>
@@ -28,16 +29,6 @@ static void go(ob_host *h, uint64_t step)
 	ob_error e = { "" };
 	ob_host_go(h, step);
 	CHECK(ob_host_wait(h, &e));
-}
-
-static void ask(ob_host *h, ob_request r)
-{
-	ob_error e = { "" };
-	r.generation = 1;
-	const bool fine = ob_host_ask(h, &r, &e);
-	if (!fine)
-		fprintf(stderr, "%s\n", e.text);
-	CHECK(fine);
 }
 
 static uint64_t end_of(ob_host *h)

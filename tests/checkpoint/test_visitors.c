@@ -1,5 +1,6 @@
 // An object belongs to the connection that has created it, whether the run goes on, is resumed from a file, or is put back. An
 // object of a program's command belongs to none in a file. Viewers hold what they hold, also when the run is put back.
+#include "asking.h"
 #include "check.h"
 
 #include "checkpoint/saved_run.h"
@@ -29,16 +30,6 @@ static void go(ob_host *h, uint64_t steps)
 	ob_error e = { "" };
 	ob_host_go(h, ob_step_count(h->u) + steps);
 	CHECK(ob_host_wait(h, &e));
-}
-
-static void ask(ob_host *h, ob_request r)
-{
-	ob_error e = { "" };
-	r.generation = 1;
-	const bool fine = ob_host_ask(h, &r, &e);
-	if (!fine)
-		fprintf(stderr, "%s\n", e.text);
-	CHECK(fine);
 }
 
 static ob_request ball_of(uint32_t who, double x)

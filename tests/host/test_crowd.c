@@ -1,4 +1,4 @@
-// What a step cannot take is frozen at once, wherever it is: the step is tried again once. Objects that are asked for meanwhile
+// Freezes all that a step cannot take at once, wherever it is: the step is tried again once. Objects that are asked for meanwhile
 // come when that step is complete, or each attempt would find more of them.
 #include <pthread.h>
 

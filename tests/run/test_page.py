@@ -38,7 +38,7 @@ const shown = (e) => {
 	}
 	return { left, top, right, bottom };
 };
-// What covers the end of a column that scrolls, and says so.
+// The sign that covers the end of a column that scrolls.
 const sign = (p) => { const s = getComputedStyle(p, '::after'); return s.content !== 'none' && s.position === 'sticky' && Number(s.opacity) > .9 ? parseFloat(s.height) : 0; };
 const parts = new Map([...document.querySelectorAll('#page *')].filter((e) => e.checkVisibility()).map((e) => [e, shown(e)]));
 const visible = (e) => (({ left, top, right, bottom }) => right - left > 1 && bottom - top > 1)(parts.get(e));
