@@ -18,6 +18,13 @@
 #ifndef OB_CONTACT_FRICTION_H
 #define OB_CONTACT_FRICTION_H
 
+// Returns the lanes where an impulse of load counts. Below, a slip over its square would be beyond all numbers.
+static inline mask is_load(real x)
+{
+	const double least = 1e-75; // N s
+	return x > least;
+}
+
 // A load pushes, and never pulls: change of a normal's impulse x where its row alone would change it by "step".
 static inline real push_change(real x, real step)
 {
@@ -91,7 +98,7 @@ static inline real point_slide(mask slides, real bound, const real *a, const rea
 	const double close = 1e-13; // relative to the bound
 	const real m = a[1];
 	real t = real_of(0);
-	mask goes = both_of(slides, bound > 0);
+	mask goes = both_of(slides, is_load(bound));
 	for (int k = 0; k < MOST && is_any(goes); k++) {
 		const real p = a[0] + t, q = a[2] + t, inverse = 1 / (p * q - m * m);
 		const real y[2] = { (q * load[0] - m * load[1]) * inverse, (p * load[1] - m * load[0]) * inverse };
@@ -103,7 +110,7 @@ static inline real point_slide(mask slides, real bound, const real *a, const rea
 		goes = both_of(goes, size_of(off) > close);
 	}
 	for (int i = 0; i < 2; i++)
-		x[i] = chosen(both_of(slides, not_of(bound > 0)), real_of(0), x[i]);
+		x[i] = chosen(both_of(slides, not_of(is_load(bound))), real_of(0), x[i]);
 	return t;
 }
 

@@ -300,7 +300,7 @@ static __attribute__((noinline)) void lone_leap(lone *p)
 {
 	const double proximity = 1e-7; // relative to a row's own coefficient
 	const double sum = lone_sum(p->x);
-	if (!(sum > 0))
+	if (!is_load(sum))
 		return;
 	const lane_mask push = (p->x > 0) & (p->inv_diag > 0);
 	const unsigned pushing = lanes_bits(push);

@@ -484,7 +484,7 @@ static __attribute__((noinline)) void patch_let_slip(const friction_pair *b, mas
 	const double same_pressure = 1e-9; // half edges: a smaller shift of the centre of pressure counts as none
 	const real bound = b->mu * sum;
 	patch_model *m = f->model;
-	const mask none = both_of(outside, not_of(bound > 0));
+	const mask none = both_of(outside, not_of(is_load(bound)));
 	f->slides |= bits_of(none);
 	for (int c = 0; c < 3; c++)
 		hold[c] = chosen(none, real_of(0), hold[c]);

@@ -374,8 +374,38 @@ static void test_tangents(void)
 	}
 }
 
+// Speeds down to the smallest numbers: their squares are none, and impulses stay numbers within their bounds.
+static void test_small_numbers(void)
+{
+	enum { SCENES = 1000 };
+	uint64_t seed = 12;
+	for (int i = 0; i < SCENES; i++) {
+		scene s;
+		random_scene_of(&s, &seed, within(&seed, 0, 2), (ob_batch_kind)(i % OB_KINDS));
+		const double share = pow(10, within(&seed, -324, -100));
+		for (int k = 0; k < 2 * OB_LANES + 1; k++)
+			for (int c = 0; c < 6; c++)
+				s.u[k][c] = s.v[k][c] *= share;
+		for (int l = 0; l < OB_LANES; l++) {
+			memset(s.p[l].gap, 0, sizeof s.p[l].gap);
+			put(&s, l);
+		}
+		ob_batch_prepare(&s.batch);
+		s.batch.isolated = s.batch.hit = (unsigned)(16 * uniform(&seed));
+		solve(&s, 4);
+		ob_batch_project(&s.batch, 1e-4, .3, false, s.d, s.delta);
+		for (int l = 0; l < OB_LANES; l++)
+			for (int k = 0; k < OB_ROWS; k++)
+				CHECK(fabs(s.batch.impulse[k][l]) <= 1e3);
+		for (int k = 0; k < 2 * OB_LANES + 1; k++)
+			for (int c = 0; c < 6; c++)
+				CHECK(fabs(s.u[k][c]) <= 1e3 && fabs(s.d[k][c]) <= 1e3);
+	}
+}
+
 int main(void)
 {
+	test_small_numbers();
 	test_both_sides();
 	test_solution();
 	test_friction();

@@ -144,8 +144,33 @@ static void test_force_at_its_limit(void)
 	check_law(&s, 0);
 }
 
+// As test_batch.c's: speeds whose squares are no numbers.
+static void test_small_numbers(void)
+{
+	enum { SCENES = 2000 };
+	uint64_t seed = 2;
+	for (int i = 0; i < SCENES; i++) {
+		scene s;
+		const int l = random_lone(&s, &seed);
+		const double share = pow(10, within(&seed, -324, -100));
+		for (int c = 0; c < 6; c++) {
+			s.v[row_a(l)][c] *= share, s.u[row_a(l)][c] *= share, s.dv[row_a(l)][c] *= share;
+		}
+		memset(s.p[l].gap, 0, sizeof s.p[l].gap);
+		put(&s, l);
+		ob_batch_prepare(&s.batch);
+		const ob_solver_iteration iteration = iteration_on(&s, true);
+		ob_kernel_portable.solve_lone(&s.batch, l, &iteration, s.u, s.v, s.d);
+		for (int k = 0; k < OB_ROWS; k++)
+			CHECK(fabs(s.batch.impulse[k][l]) <= 1e3);
+		for (int c = 0; c < 6; c++)
+			CHECK(fabs(s.u[row_a(l)][c]) <= 1e3);
+	}
+}
+
 int main(void)
 {
+	test_small_numbers();
 	test_force_at_its_limit();
 	enum { SCENES = 20000 };
 	uint64_t seed = 1;
