@@ -164,7 +164,7 @@ static inline void lone_friction(lone *p, double sum, double *next)
 	const double a[3] = { p->diag_f[0], p->af[4][1], p->diag_f[1] };
 	const double load[2] = { a[0] * y[0] + a[1] * y[1] + missing[0], a[1] * y[0] + a[2] * y[1] + missing[1] };
 	const double t = point_slide(true, bound, a, load, next);
-	p->model.stretch = bound > 0 ? t : p->model.stretch;
+	p->model.stretch = is_load(bound) ? t : p->model.stretch;
 }
 
 // ---- sweeps, and steps of Newton's method

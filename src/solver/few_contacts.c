@@ -115,12 +115,12 @@ static void add_contact(const ob_island_work *w, few *f, uint32_t lane)
 	memset(brought, 0, sizeof *f->brought);
 	for (int i = 0; i < OB_POINTS; i++)
 		sum += b->impulse[i][l];
-	if (!(sum > 0))
+	if (!is_load(sum))
 		return;
 	const double bound = b->mu[l] * sum, twist = bound * b->radius[l];
 	const bool slides = disc_slides(bound, friction[0] * friction[0] + friction[1] * friction[1]),
 		   spins = disc_slides(twist, x6 * x6);
-	if (slides && bound > 0) {
+	if (slides && is_load(bound)) {
 		slip_of(w, b, l, slip);
 		tangent = disc_follow(friction, sum, slip);
 		memcpy(brought + OB_ROW_FRICTION, tangent.brought, sizeof tangent.brought);
@@ -133,7 +133,7 @@ static void add_contact(const ob_island_work *w, few *f, uint32_t lane)
 	if (!slides) {
 		add_unknown(w, f, contact, OB_POINTS, (double[2]){ 1, 0 });
 		add_unknown(w, f, contact, OB_POINTS, (double[2]){ 0, 1 });
-	} else if (bound > 0) {
+	} else if (is_load(bound)) {
 		add_unknown(w, f, contact, OB_POINTS, tangent.across)->extra = tangent.t;
 	}
 	if (!spins)
