@@ -650,7 +650,7 @@ static void begin_flights(ob_solver *s)
 	find_axes(w, w->joints.step_begin);
 	if (largest_error(w, &none) > misplaced) {
 		ob_joints_project(s);
-		ob_joints_find(w, w->joints.step_begin);
+		find_axes(w, w->joints.step_begin);
 	}
 	change_rows(w);
 }

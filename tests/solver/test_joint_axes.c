@@ -350,8 +350,25 @@ static void test_weakest(void)
 	mechanism_destroy(m);
 }
 
+// A ball that friction holds on an upright slide stays there, also in steps that begin beside the slide.
+static void test_put_aside(void)
+{
+	mechanism *m = mechanism_create(gravity);
+	mechanism_add(m, OB_SHAPE_SPHERE, ob_v3(.1, 0, 0), 2, ob_v3(0, 0, 0));
+	mechanism_join(m, OB_JOINT_SLIDER, 0, OB_JOINT_WORLD, ob_v3(0, 0, 0), ob_quat_identity());
+	mechanism_drive(m)->friction = 30;
+	for (int i = 0; i < 60; i++) {
+		m->motion[0].p.y = i % 2 ? .01 : 0;
+		mechanism_step(m);
+		CHECK_NEAR(m->motion[0].p.z, 0, 1e-9);
+		CHECK_NEAR(m->motion[0].p.y, 0, 1e-9);
+	}
+	mechanism_destroy(m);
+}
+
 int main(void)
 {
+	test_put_aside();
 	test_armature();
 	test_armature_of_hinge();
 	test_dampers();
