@@ -15,13 +15,13 @@
 #include "cli/command.h"
 #include "host/ask.h"
 #include "host/joining.h"
-#include "host/pull.h"
-#include "shape/shape.h"
+#include "host/request_table.h"
 #include "table/table.h"
 
 typedef struct sending {
 	const char *universe;
 	ob_universe *u;
+	const ob_request_row *row;
 	const char *const *word; // after the verb; NULL ends
 	ob_request request;
 } sending;
@@ -53,163 +53,60 @@ static bool find_object(sending *s, const char *text, ob_error *e)
 			 : ob_fail(e, "universe \"%s\" has no object \"%s\"", s->universe, text);
 }
 
-// Creates objects with the syntax of scenes: one call, or several.
-static bool create(sending *s, ob_error *e)
+static bool find_target(sending *s, ob_error *e)
 {
-	const char *text = s->word[0];
-	const ob_scene_options options = { .joining = true, .find = ob_joined_find, .with = s->u };
-	ob_scene *scene = ob_scene_load_text("obsim send", text, strlen(text), &options, e);
-	bool fine = scene;
-	for (uint32_t i = 0; fine && i < scene->objects; i++) {
-		const ob_object_def *def = &scene->object[i];
-		s->request = (ob_request){ .kind = OB_REQUEST_ADD, .def = *def };
-		if (ob_shape_is(def->passport.shape, OB_HULLED))
-			s->request.corners = scene->hull_corners[def->passport.hull];
-		if (def->script || def->born > 0 || def->dies < INFINITY)
-			fine = ob_fail(e, "create: expected an object without script, born and dies");
-		else if (def->path || def->force)
-			fine = ob_fail(e,
-				       "create: expected neither path nor varying_force: a scene's objects have them");
-		fine = fine && ob_ask(s->u, &s->request, e);
+	return s->row->to == OB_TO_RUN     ? true
+	       : s->row->to == OB_TO_JOINT ? ob_joint_request_find(s->u, s->word[0], &s->request, e)
+					   : find_object(s, s->word[0], e);
+}
+
+// ---- fields: each takes some words, and returns the next; NULL and e: they are wrong
+
+typedef const char *const *words;
+
+static words read_numbers(sending *s, const ob_request_field *f, words word, ob_error *e)
+{
+	static const char *const some[] = { "", "a number", "", "three numbers after the object",
+					    "four numbers after the object" };
+	for (uint32_t i = 0; i < f->count; i++, word++) {
+		char *end;
+		const char *text = *word ? *word : "";
+		ob_request_put(&s->request, f, i, strtod(text, &end));
+		if (!*text || *end) {
+			ob_fail(e, "%s: expected %s, got \"%s\"", s->row->verb, some[f->count], text);
+			return NULL;
+		}
 	}
-	for (uint32_t i = 0; fine && i < scene->joints; i++) {
-		ob_joint_request_make(&s->request, &scene->joint[i]);
-		fine = ob_ask(s->u, &s->request, e);
-	}
-	ob_scene_free(scene);
-	return fine;
+	return word;
 }
 
-static bool find_joint(sending *s, const char *name, ob_error *e)
-{
-	return ob_joint_request_find(s->u, name, &s->request, e);
-}
-
-static bool read_colour(sending *s, ob_error *e)
-{
-	return ob_scene_read_colour(s->word[1], s->request.colour) ||
-	       ob_fail(e, "colour: expected \"#rrggbb\", got \"%s\"", s->word[1]);
-}
-
-static bool read_values(sending *s, ob_error *e)
-{
-	for (int i = 1; s->word[i]; i++)
-		if (!ob_scene_put_value(s->word[i], s->request.values, &s->request.bytes, sizeof s->request.values))
-			return ob_fail(e, "message: at most %zu bytes can be sent", sizeof s->request.values);
-	return true;
-}
-
-static bool read_number(const char *verb, const char *word, double *out, ob_error *e)
+static bool read_whole(const sending *s, const ob_request_field *f, const char *word, uint64_t most, uint64_t *out,
+		       ob_error *e)
 {
 	char *end;
-	*out = strtod(word, &end);
-	return (*word && !*end) || ob_fail(e, "%s: expected a number, got \"%s\"", verb, word);
+	errno = 0;
+	*out = strtoull(word, &end, 10);
+	return (strspn(word, "0123456789") > 0 && !*end && !errno && *out <= most) ||
+	       ob_fail(e, "%s: expected %s, got \"%s\"", s->row->verb, f->unit, word);
 }
 
-static bool read_motor(sending *s, ob_error *e)
+// Appends text to a member of so many bytes, with the 0 that ends it.
+static bool append(const sending *s, char *to, size_t room, const char *text, ob_error *e)
 {
-	return read_number("motor", s->word[1], &s->request.motor, e);
+	const size_t have = strlen(to);
+	return snprintf(to + have, room - have, "%s", text) < (int)(room - have) ||
+	       ob_fail(e, "%s: expected at most %zu bytes in all", s->row->verb, room - 1);
 }
 
-static bool read_friction(sending *s, ob_error *e)
+static words read_values(sending *s, words word, ob_error *e)
 {
-	return read_number("friction", s->word[1], &s->request.friction, e);
-}
-
-static bool read_steps(sending *s, ob_error *e)
-{
-	double steps = 1;
-	if (s->word[0] && !read_number("step", s->word[0], &steps, e))
-		return false;
-	s->request.steps = steps >= 0 && steps == floor(steps) && steps < 1e18 ? (uint64_t)steps : 0;
-	return true;
-}
-
-static bool read_until(sending *s, ob_error *e)
-{
-	return read_number("until", s->word[0], &s->request.until, e);
-}
-
-static bool read_rate(sending *s, ob_error *e)
-{
-	return read_number("rate", s->word[0], &s->request.rate, e);
-}
-
-// Reads three numbers from word i on.
-static bool read_vector(const sending *s, int i, ob_vec3 *out, ob_error *e)
-{
-	double v[3];
-	for (int k = 0; k < 3; k++) {
-		char *end;
-		const char *word = s->word[i + k] ? s->word[i + k] : "";
-		v[k] = strtod(word, &end);
-		if (!*word || *end)
-			return ob_fail(e, "expected three numbers after the object, got \"%s\"", word);
-	}
-	*out = ob_v3(v[0], v[1], v[2]);
-	return true;
-}
-
-// Reads a vector and, if there are more words, a point of the object's body.
-static bool read_pull(sending *s, ob_vec3 *value, ob_error *e)
-{
-	return read_vector(s, 1, value, e) && (!s->word[4] || read_vector(s, 4, &s->request.point, e));
-}
-
-static bool read_force(sending *s, ob_error *e)
-{
-	return read_pull(s, &s->request.force, e);
-}
-
-static bool read_twist(sending *s, ob_error *e)
-{
-	return read_pull(s, &s->request.twist, e);
-}
-
-static bool read_target(sending *s, ob_error *e)
-{
-	s->request.frequency = OB_PULL_FREQUENCY;
-	return read_pull(s, &s->request.target, e);
-}
-
-// A state that stays as it is, but for a part.
-static ob_state same_state(void)
-{
-	return (ob_state){ { { NAN, 0, 0 }, { NAN, 0, 0, 0 } }, { NAN, 0, 0 }, { NAN, 0, 0 } };
-}
-
-static bool read_place(sending *s, ob_error *e)
-{
-	s->request.state = same_state();
-	return read_pull(s, &s->request.state.pose.p, e);
-}
-
-static bool read_velocity(sending *s, ob_error *e)
-{
-	s->request.state = same_state();
-	return read_pull(s, &s->request.state.v, e);
-}
-
-static bool read_spin(sending *s, ob_error *e)
-{
-	s->request.state = same_state();
-	return read_pull(s, &s->request.state.w, e);
-}
-
-static bool read_attitude(sending *s, ob_error *e)
-{
-	ob_quat *q = &s->request.state.pose.q;
-	ob_vec3 v = { 0 };
-	s->request.state = same_state();
-	if (!read_number("attitude", s->word[1], &q->w, e) || !read_vector(s, 2, &v, e))
-		return false;
-	q->x = v.x, q->y = v.y, q->z = v.z;
-	return true;
-}
-
-static bool read_surface(sending *s, ob_error *e)
-{
-	return read_pull(s, &s->request.surface_velocity, e);
+	ob_request *r = &s->request;
+	for (; *word; word++)
+		if (!ob_scene_put_value(*word, r->values, &r->bytes, sizeof r->values)) {
+			ob_fail(e, "message: at most %zu bytes can be sent", sizeof r->values);
+			return NULL;
+		}
+	return word;
 }
 
 // Reads a point of a path from one word: "T X Y Z", or "T X Y Z QW QX QY QZ", as the first one has it.
@@ -236,36 +133,81 @@ static bool read_point(const char *word, ob_request_path *path, ob_error *e)
 	return true;
 }
 
-static bool read_path(sending *s, ob_error *e)
+// Reads points up to the last word, or to the one before it that says "loop".
+static words read_points(sending *s, words word, ob_error *e)
 {
-	for (int i = 1; s->word[i]; i++) {
-		s->request.path.loop = !s->word[i + 1] && strcmp(s->word[i], "loop") == 0;
-		if (!s->request.path.loop && !read_point(s->word[i], &s->request.path, e))
-			return false;
+	for (; *word && (word[1] || strcmp(*word, "loop") != 0); word++)
+		if (!read_point(*word, &s->request.path, e))
+			return NULL;
+	return word;
+}
+
+// Reads "NUMBER" as "=NUMBER" behind the name.
+static bool read_assigned(sending *s, const char *word, ob_error *e)
+{
+	char *end, *const to = (char *)s->request.values;
+	(void)strtod(word, &end);
+	if (!*word || *end)
+		return ob_fail(e, "%s: expected a number, got \"%s\"", s->row->verb, word);
+	return append(s, to, sizeof s->request.values, "=", e) && append(s, to, sizeof s->request.values, word, e);
+}
+
+static words read_field(sending *s, const ob_request_field *f, words word, ob_error *e)
+{
+	char *const to = (char *)&s->request + f->at;
+	uint64_t whole = 0;
+	bool fine = true;
+	switch (f->type) {
+	case OB_AS_WORDS:
+		return read_values(s, word, e);
+	case OB_AS_PATH:
+		return read_points(s, word, e);
+	case OB_AS_COLOUR:
+		fine = ob_scene_read_colour(*word, s->request.colour) ||
+		       ob_fail(e, "%s: expected \"#rrggbb\", got \"%s\"", f->name, *word);
+		break;
+	case OB_AS_ID:
+		fine = read_whole(s, f, *word, UINT32_MAX - 1, &whole, e);
+		ob_request_put(&s->request, f, 0, (double)whole);
+		break;
+	case OB_AS_WHOLE:
+		fine = read_whole(s, f, *word, UINT64_MAX, &whole, e);
+		memcpy(to, &whole, sizeof whole);
+		break;
+	case OB_AS_FLAG:
+		ob_request_put(&s->request, f, 0, 1);
+		break;
+	case OB_AS_TEXT: // one without a length is read where it is used
+		fine = f->count == 0 || append(s, to, f->count, *word, e);
+		break;
+	case OB_AS_ASSIGNED:
+		fine = read_assigned(s, *word, e);
+		break;
+	default:
+		return read_numbers(s, f, word, e);
 	}
-	return true;
+	return fine ? word + 1 : NULL;
 }
 
-static bool read_parameter(sending *s, ob_error *e)
+static bool read_fields(sending *s, ob_error *e)
 {
-	double value;
-	const int n = snprintf((char *)s->request.values, sizeof s->request.values, "%s=%s", s->word[0], s->word[1]);
-	return read_number("set", s->word[1], &value, e) &&
-	       (n < (int)sizeof s->request.values || ob_fail(e, "set: expected a parameter's name"));
+	words word = s->word + (s->row->to != OB_TO_RUN);
+	for (const ob_request_field *f = s->row->field; f->name && word; f++)
+		if (*word || !f->optional)
+			word = read_field(s, f, word, e);
+	return word;
 }
 
-static bool read_whole(const char *verb, const char *word, uint64_t *out, ob_error *e)
+// ---- requests of several parts, and looks
+
+static bool ask_for(void *universe, ob_request *r, ob_error *e)
 {
-	char *end;
-	errno = 0;
-	*out = strtoull(word, &end, 10);
-	return (strspn(word, "0123456789") > 0 && !*end && !errno) ||
-	       ob_fail(e, "%s: expected a whole number, got \"%s\"", verb, word);
+	return ob_ask(universe, r, e);
 }
 
-static bool read_seed(sending *s, ob_error *e)
+static bool create(sending *s, ob_error *e)
 {
-	return read_whole("seed", s->word[0], &s->request.seed, e);
+	return ob_create_as_scene(s->u, s->word[0], strlen(s->word[0]), 0, ask_for, s->u, e);
 }
 
 static bool read_path_of_file(sending *s, ob_error *e)
@@ -299,18 +241,15 @@ static bool save(sending *s, ob_error *e)
 	if (!read_path_of_file(s, e))
 		return false;
 	stat(path, &before);
-	s->request.kind = OB_REQUEST_SAVE;
 	return ob_ask(s->u, &s->request, e) && await_file(path, &before, e);
 }
 
 // Waits until so many steps are complete.
 static bool await_step(sending *s, ob_error *e)
 {
-	uint64_t step = 0;
-	return read_whole("wait", s->word[0], &step, e) &&
-	       (ob_universe_wait(s->u, step, INFINITY) ||
-		ob_fail(e, "universe \"%s\" ended after step %llu", s->universe,
-			(unsigned long long)ob_step_count(s->u)));
+	return ob_universe_wait(s->u, s->request.steps, INFINITY) ||
+	       ob_fail(e, "universe \"%s\" ended after step %llu", s->universe,
+		       (unsigned long long)ob_step_count(s->u));
 }
 
 static const char *name_in(const ob_universe *u, uint32_t id, ob_passport *p)
@@ -345,101 +284,50 @@ static bool print_contacts(sending *s, ob_error *e)
 	return fflush(stdout) == 0 || ob_fail(e, "contacts: %s", strerror(errno));
 }
 
-static bool read_worker(sending *s, ob_error *e)
-{
-	char *end;
-	const unsigned long worker = strtoul(s->word[1], &end, 10);
-	if (strspn(s->word[1], "0123456789") == 0 || *end || worker >= UINT32_MAX)
-		return ob_fail(e, "move: expected the number of a worker, got \"%s\"", s->word[1]);
-	s->request.worker = (uint32_t)worker;
-	return true;
-}
-
-static const struct verb {
-	const char *name, *usage, *what;
-	int words; // at least
-	int more; // than these, at most
-	ob_request_kind kind; // OB_REQUEST_KINDS: none
-	bool (*find)(sending *s, const char *word, ob_error *e); // whom the first word names; NULL: nobody
-	bool (*read)(sending *s, ob_error *e); // the other words; NULL: there are none. Without a kind it does all
-} verbs[] = {
-	{ "create", "create 'sphere { radius = .3, at = { 0, 0, 5 } }'", "as a scene says it", 1, 0, OB_REQUEST_KINDS,
-	  NULL, create },
-	{ "remove", "remove OBJECT", "by its name or number", 1, 0, OB_REQUEST_REMOVE, find_object, NULL },
-	{ "colour", "colour OBJECT '#rrggbb'", "", 2, 0, OB_REQUEST_COLOUR, find_object, read_colour },
-	{ "message", "message OBJECT VALUE ...", "for its on_message", 1, INT_MAX - 1, OB_REQUEST_MESSAGE, find_object,
-	  read_values },
-	{ "force", "force OBJECT X Y Z", "N, from now on", 4, 0, OB_REQUEST_FORCE, find_object, read_force },
-	{ "kick", "kick OBJECT X Y Z", "N s", 4, 0, OB_REQUEST_KICK, find_object, read_force },
-	{ "torque", "torque OBJECT X Y Z", "N m, from now on", 4, 0, OB_REQUEST_TORQUE, find_object, read_twist },
-	{ "push", "push OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", "N, at a point of it (m)", 4, 3, OB_REQUEST_PUSH,
-	  find_object, read_force },
-	{ "drag", "drag OBJECT X Y Z [POINT-X POINT-Y POINT-Z]", "to a place (m), by a point of it", 4, 3,
-	  OB_REQUEST_DRAG, find_object, read_target },
-	{ "release", "release OBJECT", "ends torque, push and drag", 1, 0, OB_REQUEST_RELEASE, find_object, NULL },
-	{ "place", "place OBJECT X Y Z", "m", 4, 0, OB_REQUEST_STATE, find_object, read_place },
-	{ "velocity", "velocity OBJECT X Y Z", "m/s", 4, 0, OB_REQUEST_STATE, find_object, read_velocity },
-	{ "attitude", "attitude OBJECT W X Y Z", "a unit quaternion", 5, 0, OB_REQUEST_STATE, find_object,
-	  read_attitude },
-	{ "spin", "spin OBJECT X Y Z", "rad/s", 4, 0, OB_REQUEST_STATE, find_object, read_spin },
-	{ "surface", "surface OBJECT X Y Z", "m/s, of a belt", 4, 0, OB_REQUEST_SURFACE, find_object, read_surface },
-	{ "path", "path OBJECT 'T X Y Z [QW QX QY QZ]' ... [loop]", "of a kinematic object: s from now on, m", 2,
-	  INT_MAX - 2, OB_REQUEST_PATH, find_object, read_path },
-	{ "friction", "friction OBJECT NUMBER", "", 2, 0, OB_REQUEST_FRICTION, find_object, read_friction },
-	{ "motor", "motor JOINT TARGET", "of a joint, by its name", 2, 0, OB_REQUEST_MOTOR, find_joint, read_motor },
-	{ "unjoin", "unjoin JOINT", "removes a joint", 1, 0, OB_REQUEST_UNJOIN, find_joint, NULL },
-	{ "move", "move OBJECT WORKER", "its simulator, to another worker", 2, 0, OB_REQUEST_MOVE, find_object,
-	  read_worker },
-	{ "kill", "kill OBJECT", "its simulator", 1, 0, OB_REQUEST_KILL, find_object, NULL },
-	{ "keep", "keep", "a snapshot of a served universe", 0, 0, OB_REQUEST_KEEP, NULL, NULL },
-	{ "return", "return", "to that snapshot, or to the start", 0, 0, OB_REQUEST_RETURN, NULL, NULL },
-	{ "restart", "restart", "to the start", 0, 0, OB_REQUEST_RESTART, NULL, NULL },
-	{ "set", "set PARAMETER NUMBER", "starts anew with another parameter", 2, 0, OB_REQUEST_SET, NULL,
-	  read_parameter },
-	{ "seed", "seed NUMBER", "starts anew with another seed", 1, 0, OB_REQUEST_SEED, NULL, read_seed },
-	{ "save", "save FILE", "a served universe, as a checkpoint", 1, 0, OB_REQUEST_KINDS, NULL, save },
-	{ "wait", "wait STEP", "until so many steps are complete", 1, 0, OB_REQUEST_KINDS, NULL, await_step },
-	{ "contacts", "contacts [OBJECT]", "prints those of the last step", 0, 1, OB_REQUEST_KINDS, NULL,
-	  print_contacts },
-	{ "pause", "pause", "a served universe", 0, 0, OB_REQUEST_PAUSE, NULL, NULL },
-	{ "resume", "resume", "", 0, 0, OB_REQUEST_RESUME, NULL, NULL },
-	{ "step", "step [STEPS]", "while time stands (1)", 0, 1, OB_REQUEST_STEP, NULL, read_steps },
-	{ "until", "until SECONDS", "this simulated time, and stands", 1, 0, OB_REQUEST_UNTIL, NULL, read_until },
-	{ "rate", "rate NUMBER", "simulated seconds a second; 0: as fast as it can", 1, 0, OB_REQUEST_RATE, NULL,
-	  read_rate },
-};
-enum { VERBS = sizeof verbs / sizeof *verbs };
+// ---- rows
 
 void ob_send_help(FILE *f)
 {
 	fputs("\nRequests:\n", f);
-	for (int i = 0; i < VERBS; i++)
-		fprintf(f, *verbs[i].what ? "  obsim send NAME %-50s %s\n" : "  obsim send NAME %s%s\n", verbs[i].usage,
-			verbs[i].what);
+	for (const ob_request_row *row = ob_request_rows; row->kind != OB_REQUEST_ROWS_END; row++) {
+		char usage[128];
+		if (!row->verb)
+			continue;
+		ob_request_usage(row, usage, sizeof usage);
+		fprintf(f, *row->what ? "  obsim send NAME %-50s %s\n" : "  obsim send NAME %s%s\n", usage, row->what);
+	}
 }
 
-// Lists all requests.
-static void refuse_all(ob_error *e)
-{
-	char text[sizeof e->text] = "";
-	for (int i = 0; i < VERBS; i++)
-		snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s", i ? ", " : "", verbs[i].name);
-	ob_fail(e, "expected a request: obsim send NAME with one of %s", text);
-}
-
-static const struct verb *find_verb(const char *name, ob_error *e)
+static const ob_request_row *find_row(const char *name, ob_error *e)
 {
 	ob_spelling near = ob_spelling_start(name ? name : "");
-	for (int i = 0; name && i < VERBS; i++) {
-		if (strcmp(verbs[i].name, name) == 0)
-			return &verbs[i];
-		ob_spelling_offer(&near, verbs[i].name);
+	char all[sizeof e->text] = "";
+	for (const ob_request_row *row = ob_request_rows; row->kind != OB_REQUEST_ROWS_END; row++) {
+		if (!row->verb)
+			continue;
+		if (name && strcmp(row->verb, name) == 0)
+			return row;
+		ob_spelling_offer(&near, row->verb);
+		snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s", *all ? ", " : "", row->verb);
 	}
 	if (name && near.best)
 		ob_fail(e, "unknown request '%s': did you mean %s?", name, near.best);
 	else
-		refuse_all(e);
+		ob_fail(e, "expected a request: obsim send NAME with one of %s", all);
 	return NULL;
+}
+
+// True if the row takes so many words.
+static bool takes(const ob_request_row *row, int count)
+{
+	int least = row->to != OB_TO_RUN, most = least;
+	for (const ob_request_field *f = row->field; f->name; f++) {
+		const bool numbers = f->type == OB_AS_REALS || f->type == OB_AS_ATTITUDE;
+		const int some = numbers ? f->count : f->type != OB_AS_WORDS;
+		least += f->optional ? 0 : some;
+		most = f->type == OB_AS_WORDS || f->type == OB_AS_PATH ? INT_MAX / 2 : most + some;
+	}
+	return count >= least && count <= most;
 }
 
 // A universe that starts has neither objects nor an address yet: waits until it runs, but not for ever.
@@ -454,32 +342,46 @@ static void wait_for_start(const ob_universe *u)
 }
 
 // Reads and finds what the words mean, and asks for it.
-static bool send(sending *s, const struct verb *v, ob_error *e)
+static bool send(sending *s, ob_error *e)
 {
-	if (v->kind == OB_REQUEST_KINDS)
-		return v->read(s, e);
-	s->request.kind = v->kind;
-	return (!v->read || v->read(s, e)) && (!v->find || v->find(s, s->word[0], e)) && ob_ask(s->u, &s->request, e);
+	ob_request_begin(&s->request, s->row);
+	if (!read_fields(s, e))
+		return false;
+	switch (s->row->kind) {
+	case OB_REQUEST_ADD:
+		return create(s, e);
+	case OB_REQUEST_SAVE:
+		return save(s, e);
+	case OB_LOOK_WAIT:
+		return await_step(s, e);
+	case OB_LOOK_POINTS:
+		return print_contacts(s, e);
+	default:
+		return find_target(s, e) && ob_ask(s->u, &s->request, e);
+	}
 }
 
 int ob_command_send(const ob_arguments *a)
 {
 	ob_error e;
+	char usage[128];
 	if (!a->operand)
 		return ob_command_fail(OB_EXIT_USAGE, "no universe given: obsim send NAME remove OBJECT");
-	const struct verb *v = find_verb(a->operands[1], &e);
-	int words = 0;
-	while (v && a->operands[2 + words])
-		words++;
-	if (v && (words < v->words || words - v->words > v->more))
-		ob_fail(&e, "%s: expected obsim send %s %s", v->name, a->operand, v->usage);
-	if (!v || words < v->words || words - v->words > v->more)
+	sending s = { .universe = a->operand, .row = find_row(a->operands[1], &e) };
+	if (!s.row)
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
-	sending s = { .universe = a->operand, .word = a->operands + 2 };
+	int count = 0;
+	for (s.word = a->operands + 2; s.word[count];)
+		count++;
+	if (!takes(s.row, count)) {
+		ob_request_usage(s.row, usage, sizeof usage);
+		ob_fail(&e, "%s: expected obsim send %s %s", s.row->verb, a->operand, usage);
+		return ob_command_fail(OB_EXIT_USAGE, e.text);
+	}
 	s.u = ob_universe_attach(s.universe, &e);
 	if (s.u)
 		wait_for_start(s.u);
-	const bool fine = s.u && send(&s, v, &e);
+	const bool fine = s.u && send(&s, &e);
 	ob_universe_detach(s.u);
 	return fine ? OB_EXIT_OK : ob_command_fail(OB_EXIT_FAILED, e.text);
 }

@@ -189,75 +189,25 @@ static bool change_all(ob_controller *c, ob_control_command which, const ob_chan
 	return fine;
 }
 
-bool ob_controller_set_forces(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_FORCE, change, n, e);
-}
-
-bool ob_controller_kick(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_KICK, change, n, e);
-}
-
-bool ob_controller_set_states(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_STATE, change, n, e);
-}
-
-bool ob_controller_set_colours(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_COLOUR, change, n, e);
-}
-
-bool ob_controller_remove(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_REMOVE, change, n, e);
-}
-
-bool ob_controller_set_torques(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_TORQUE, change, n, e);
-}
-
-bool ob_controller_push(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_PUSH, change, n, e);
-}
-
-bool ob_controller_drag(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_DRAG, change, n, e);
-}
-
-bool ob_controller_release(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_RELEASE, change, n, e);
-}
-
-bool ob_controller_set_frictions(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_FRICTION, change, n, e);
-}
-
-bool ob_controller_set_surface_velocities(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_SURFACE, change, n, e);
-}
-
-bool ob_controller_set_motors(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_MOTOR, change, n, e);
-}
-
-bool ob_controller_unjoin(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_UNJOIN, change, n, e);
-}
-
-bool ob_controller_kill(ob_controller *c, const ob_change *change, size_t n, ob_error *e)
-{
-	return change_all(c, OB_CONTROL_KILL, change, n, e);
-}
+#define CHANGE(name, command) \
+	bool ob_controller_##name(ob_controller *c, const ob_change *change, size_t n, ob_error *e) \
+	{ \
+		return change_all(c, OB_CONTROL_##command, change, n, e); \
+	}
+CHANGE(set_forces, FORCE)
+CHANGE(kick, KICK)
+CHANGE(set_states, STATE)
+CHANGE(set_colours, COLOUR)
+CHANGE(remove, REMOVE)
+CHANGE(set_torques, TORQUE)
+CHANGE(push, PUSH)
+CHANGE(drag, DRAG)
+CHANGE(release, RELEASE)
+CHANGE(set_frictions, FRICTION)
+CHANGE(set_surface_velocities, SURFACE)
+CHANGE(set_motors, MOTOR)
+CHANGE(unjoin, UNJOIN)
+CHANGE(kill, KILL)
 
 bool ob_controller_create(ob_controller *c, const char *text, uint32_t *ids, size_t max, size_t *n, ob_error *e)
 {

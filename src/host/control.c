@@ -17,6 +17,7 @@
 #include "host/host_state.h"
 #include "host/joining.h"
 #include "host/pace.h"
+#include "host/request_table.h"
 #include "shape/shape.h"
 
 enum { IDLE_MS = 50 };
@@ -121,41 +122,30 @@ static bool find_object(const ob_host *h, const ob_change *change, ob_request *r
 	return true;
 }
 
-// Kinds of requests by commands that change objects.
-static const ob_request_kind changes[OB_CONTROL_COMMANDS] = {
-	[OB_CONTROL_FORCE] = OB_REQUEST_FORCE,     [OB_CONTROL_KICK] = OB_REQUEST_KICK,
-	[OB_CONTROL_STATE] = OB_REQUEST_STATE,     [OB_CONTROL_COLOUR] = OB_REQUEST_COLOUR,
-	[OB_CONTROL_REMOVE] = OB_REQUEST_REMOVE,   [OB_CONTROL_TORQUE] = OB_REQUEST_TORQUE,
-	[OB_CONTROL_PUSH] = OB_REQUEST_PUSH,       [OB_CONTROL_DRAG] = OB_REQUEST_DRAG,
-	[OB_CONTROL_RELEASE] = OB_REQUEST_RELEASE, [OB_CONTROL_FRICTION] = OB_REQUEST_FRICTION,
-	[OB_CONTROL_KILL] = OB_REQUEST_KILL,       [OB_CONTROL_SURFACE] = OB_REQUEST_SURFACE,
-	[OB_CONTROL_MOTOR] = OB_REQUEST_MOTOR,     [OB_CONTROL_UNJOIN] = OB_REQUEST_UNJOIN,
-};
-
-static void read_change(const ob_change *change, ob_request *r)
+// Fills in the fields of all rows of a command, in the order of the table. A zero leaves an optional one as it is.
+static void read_change(const ob_change *change, const ob_request_row *row, ob_request *r)
 {
+	const uint32_t command = row->control;
 	const double *v = change->value;
-	const ob_vec3 first = ob_v3(v[0], v[1], v[2]), second = ob_v3(v[3], v[4], v[5]);
+	ob_request_begin(r, row);
 	r->origin = OB_ORIGIN_PROGRAM;
-	r->force = r->target = first;
-	r->twist = r->kind == OB_REQUEST_TORQUE ? first : second;
-	r->point = second;
-	r->frequency = v[6] == 0 ? OB_PULL_FREQUENCY : v[6];
-	r->friction = v[0];
-	r->surface_velocity = first;
-	r->joint = v[0] >= 0 && v[0] < UINT32_MAX ? (uint32_t)v[0] : UINT32_MAX;
-	r->motor = v[1];
-	r->state = (ob_state){ { { v[0], v[1], v[2] }, { v[3], v[4], v[5], v[6] } },
-			       { v[7], v[8], v[9] },
-			       { v[10], v[11], v[12] } };
-	for (int i = 0; i < 4; i++)
-		r->colour[i] = (float)v[i];
+	if (row->to == OB_TO_JOINT)
+		r->joint = *v >= 0 && *v < UINT32_MAX ? (uint32_t)*v : UINT32_MAX, v++;
+	for (; row->control == command; row++)
+		for (const ob_request_field *f = row->field; f->name; f++)
+			for (uint32_t i = 0; i < f->count; i++, v++)
+				if (*v != 0 || !f->optional)
+					ob_request_put(r, f, i, *v);
 }
 
-// All changes of the packet, or none: those of a kind, and behind them `forces` changes of forces.
-static bool change_objects(ob_control *c, ob_host *h, ob_request_kind kind, uint32_t forces, ob_error *e)
+// All changes of the packet, or none: those of a command, and behind them `forces` changes of forces.
+static bool change_objects(ob_control *c, ob_host *h, ob_control_command command, uint32_t forces, ob_error *e)
 {
+	const ob_request_row *const row = ob_request_row_of_control(command), *const force = ob_request_row_of_control(
+										      OB_CONTROL_FORCE);
 	const ob_control_packet *p = &c->packet;
+	if (!row)
+		return ob_fail(e, "this version of obsim has no command %u", command);
 	bool fine = p->count <= OB_CONTROL_BATCH && forces <= OB_CONTROL_BATCH - p->count &&
 		    p->bytes == (p->count + forces) * sizeof(ob_change);
 	if (!fine)
@@ -169,8 +159,7 @@ static bool change_objects(ob_control *c, ob_host *h, ob_request_kind kind, uint
 	for (uint32_t i = 0; i < n && fine; i++) {
 		ob_change change;
 		memcpy(&change, p->payload + i * sizeof change, sizeof change);
-		all[i].kind = i < p->count ? kind : OB_REQUEST_FORCE;
-		read_change(&change, &all[i]);
+		read_change(&change, i < p->count ? row : force, &all[i]);
 		fine = find_object(h, &change, &all[i], e) && ob_request_check(h, &all[i], e);
 	}
 	for (uint32_t i = 0; i < n && fine; i++)
@@ -192,30 +181,15 @@ static void list_created(ob_control *c, const ob_host *h)
 	free(all);
 }
 
+static bool ask_for(void *host, ob_request *r, ob_error *e)
+{
+	return ob_host_ask(host, r, e);
+}
+
 static bool create(ob_control *c, ob_host *h, ob_error *e)
 {
 	const ob_control_packet *p = &c->packet;
-	const ob_scene_options options = { .joining = true, .find = ob_joined_find, .with = h->u };
-	ob_scene *scene = ob_scene_load_text("create", (const char *)p->payload, p->bytes, &options, e);
-	bool fine = scene;
-	c->origin++;
-	for (uint32_t i = 0; fine && i < scene->objects; i++) {
-		const ob_object_def *def = &scene->object[i];
-		ob_request r = { .kind = OB_REQUEST_ADD, .origin = c->origin, .def = *def };
-		if (ob_shape_is(def->passport.shape, OB_HULLED))
-			r.corners = scene->hull_corners[def->passport.hull];
-		if (def->born > 0 || def->dies < INFINITY || def->path || def->force)
-			fine = ob_fail(e,
-				       "create: expected neither born, dies, path nor varying_force: a scene's objects "
-				       "have them");
-		fine = fine && ob_host_ask(h, &r, e);
-	}
-	for (uint32_t i = 0; fine && i < scene->joints; i++) {
-		ob_request r;
-		ob_joint_request_make(&r, &scene->joint[i]);
-		fine = ob_host_ask(h, &r, e);
-	}
-	ob_scene_free(scene);
+	const bool fine = ob_create_as_scene(h->u, (const char *)p->payload, p->bytes, ++c->origin, ask_for, h, e);
 	flush(h);
 	list_created(c, h);
 	return fine;
@@ -347,7 +321,7 @@ static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
 		return true;
 	case OB_CONTROL_STEP:
 		c->running = false;
-		return change_objects(c, h, OB_REQUEST_MOTOR, c->packet.forces, e) && begin_steps(c, h, last, e);
+		return change_objects(c, h, OB_CONTROL_MOTOR, c->packet.forces, e) && begin_steps(c, h, last, e);
 	case OB_CONTROL_RUN:
 		return begin_run(c, e);
 	case OB_CONTROL_PAUSE:
@@ -374,9 +348,7 @@ static bool carry_out(ob_control *c, ob_host *h, uint64_t last, ob_error *e)
 	case OB_CONTROL_EVENTS:
 		return take_events(c, e);
 	default:
-		if (c->packet.command >= OB_CONTROL_COMMANDS)
-			return ob_fail(e, "this version of obsim has no command %u", c->packet.command);
-		return change_objects(c, h, changes[c->packet.command], 0, e);
+		return change_objects(c, h, c->packet.command, 0, e);
 	}
 }
 

@@ -8,12 +8,14 @@
 #include "base/utf8.h"
 #include "free/free.h"
 #include "scene/object_limits.h"
+#include "shape/shape.h"
 #include "step/now.h"
 #include "step/sim.h"
 
 // ---- requests
 
-bool ob_joined_find(void *universe, const char *name, ob_joined *out)
+// Finds an object of the universe by its name, as it is now (ob_scene_options.find).
+static bool find_joined(void *universe, const char *name, ob_joined *out)
 {
 	const ob_universe *u = universe;
 	ob_universe_info info;
@@ -52,12 +54,33 @@ bool ob_joint_request_find(const ob_universe *u, const char *name, ob_request *r
 			 : ob_fail(e, "universe \"%s\" has no joint \"%s\"", ob_universe_name(u), name);
 }
 
-void ob_joint_request_make(ob_request *r, const ob_joint_passport *j)
+bool ob_create_as_scene(ob_universe *u, const char *text, size_t bytes, uint32_t origin,
+			bool (*ask)(void *with, ob_request *r, ob_error *e), void *with, ob_error *e)
 {
-	*r = (ob_request){
-		.kind = OB_REQUEST_JOIN, .id = j->object[0], .generation = j->generation[0], .bytes = sizeof *j
-	};
-	memcpy(r->values, j, sizeof *j);
+	const ob_scene_options options = { .joining = true, .find = find_joined, .with = u };
+	ob_scene *scene = ob_scene_load_text("create", text, bytes, &options, e);
+	bool fine = scene;
+	for (uint32_t i = 0; fine && i < scene->objects; i++) {
+		const ob_object_def *def = &scene->object[i];
+		ob_request r = { .kind = OB_REQUEST_ADD, .origin = origin, .def = *def };
+		if (ob_shape_is(def->passport.shape, OB_HULLED))
+			r.corners = scene->hull_corners[def->passport.hull];
+		if (def->script || def->born > 0 || def->dies < INFINITY || def->path || def->force)
+			fine = ob_fail(e,
+				       "create: expected neither script, born, dies, path nor varying_force: a scene's "
+				       "objects have them");
+		fine = fine && ask(with, &r, e);
+	}
+	for (uint32_t i = 0; fine && i < scene->joints; i++) {
+		const ob_joint_passport *j = &scene->joint[i];
+		ob_request r = {
+			.kind = OB_REQUEST_JOIN, .id = j->object[0], .generation = j->generation[0], .bytes = sizeof *j
+		};
+		memcpy(r.values, j, sizeof *j);
+		fine = ask(with, &r, e);
+	}
+	ob_scene_free(scene);
+	return fine;
 }
 
 // ---- checks

@@ -1,4 +1,4 @@
-// Joints that come, go and are driven while a universe runs: requests, and posts of scripts.
+// Objects and joints that come while a universe runs, joints that go and are driven: requests, and posts of scripts.
 //
 // Thread-safety: the host's, while the universe is paused; checks by any thread of the host.
 #ifndef OB_HOST_JOINING_H
@@ -12,13 +12,12 @@ static inline bool ob_is_joint_request(const ob_request *r)
 	return r->kind == OB_REQUEST_MOTOR || r->kind == OB_REQUEST_JOIN || r->kind == OB_REQUEST_UNJOIN;
 }
 
-// Finds an object of the universe by its name, as it is now (ob_scene_options.find); any thread, any program.
-bool ob_joined_find(void *universe, const char *name, ob_joined *out);
-// Completes a request to a joint that holds by its name: its number, and its first object. false and e: there is none.
-// Likewise.
+// Completes a request to a joint that holds by its name: its number, and its first object. false and e: there is none. Any
+// thread, any program.
 bool ob_joint_request_find(const ob_universe *u, const char *name, ob_request *r, ob_error *e);
-// Request for a joint that was read so.
-void ob_joint_request_make(ob_request *r, const ob_joint_passport *j);
+// Asks for each object and each joint of a text, which is written as a scene is, until one is refused. Likewise.
+bool ob_create_as_scene(ob_universe *u, const char *text, size_t bytes, uint32_t origin,
+			bool (*ask)(void *with, ob_request *r, ob_error *e), void *with, ob_error *e);
 bool ob_joint_request_check(const ob_universe *u, const ob_request *r, ob_error *e);
 // Carries out a request that was valid when it came; warns if it is not any more.
 void ob_joint_request_carry_out(ob_universe *u, const ob_request *r);

@@ -7,6 +7,7 @@
 #include "free/free.h"
 #include "host/host_state.h"
 #include "host/pace.h"
+#include "host/request_table.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"
 #include "table/home.h"
@@ -125,20 +126,14 @@ static bool check_time(const ob_host *h, const ob_request *r, ob_error *e)
 	const double now = (double)ob_step_count(h->u) * ob_universe_settings(h->u)->step_length;
 	if (!h->pace)
 		return ob_fail(e, "the clock of this run is not to be led: obsim serve takes such requests");
-	if (r->kind == OB_REQUEST_RATE && !(r->rate >= 0 && r->rate <= OB_REQUEST_RATE_MOST))
-		return ob_fail(e, "rate: expected a number from 0 to %d, got %s", OB_REQUEST_RATE_MOST,
-			       ob_number_text(r->rate).text);
 	if (r->kind == OB_REQUEST_UNTIL && !(r->until > now && isfinite(r->until)))
 		return ob_fail(e, "until: expected a time after %s s, got %s", ob_number_text(now).text,
 			       ob_number_text(r->until).text);
 	if (r->kind == OB_REQUEST_UNTIL && ob_free_settings_of(h->u))
 		return ob_fail(e, "until: only simulators in lockstep stand at a time");
-	if (r->kind != OB_REQUEST_STEP)
-		return true;
-	if (!ob_pace_get(h->pace).paused)
+	if (r->kind == OB_REQUEST_STEP && !ob_pace_get(h->pace).paused)
 		return ob_fail(e, "step: time goes on by itself: pause it first");
-	return (r->steps >= 1 && r->steps <= OB_REQUEST_STEPS) ||
-	       ob_fail(e, "step: expected 1 to %d steps, got %llu", OB_REQUEST_STEPS, (unsigned long long)r->steps);
+	return ob_request_check_bounds(r, ob_request_row_of(r->kind), e);
 }
 
 static bool check_kill(const ob_host *h, const ob_request *r, const ob_passport *p, ob_error *e)
@@ -267,8 +262,10 @@ bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e)
 bool ob_host_ask_as(ob_host *h, ob_role role, ob_request *r, ob_error *e)
 {
 	ob_roster_entry entry;
-	ob_role needed = ob_role_for(r->kind);
+	const ob_request_row *row = ob_request_row_of(r->kind);
+	ob_role needed = row ? (ob_role)row->role : OB_ROLE_OPERATE;
 	const bool found = ob_roster_find(h->roster, r->id, &entry), own = found && entry.origin == r->origin;
+	// a visitor who takes part may remove an object that it has created
 	if (r->kind == OB_REQUEST_REMOVE && own && entry.generation == r->generation)
 		needed = OB_ROLE_TAKE_PART;
 	else if (r->kind != OB_REQUEST_ADD && r->kind != OB_REQUEST_RELEASE && found && ob_is_avatar(&entry) && !own)

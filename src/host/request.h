@@ -42,6 +42,19 @@ typedef enum ob_request_kind {
 	OB_REQUEST_KINDS
 } ob_request_kind;
 
+// Requests that change nothing, which the host does not take: obsim send reads the universe, the server changes what it sends to
+// a viewer.
+typedef enum ob_look_kind {
+	OB_LOOK_WAIT = OB_REQUEST_KINDS, // until so many steps are complete
+	OB_LOOK_POINTS, // contact points of the last step
+	OB_LOOK_CONTACTS, // those of each step: on or off; likewise the next
+	OB_LOOK_JOINTS,
+	OB_LOOK_SIMULATORS,
+	OB_LOOK_ENERGY,
+	OB_LOOK_ANEW, // the whole state once more, as at the start of a connection
+	OB_LOOK_INSPECT, // details of an object; id UINT32_MAX: none
+} ob_look_kind;
+
 // Origins of requests: connections of viewers count from 1; from this number on they are of the program that leads the run.
 #define OB_ORIGIN_PROGRAM (UINT32_C(1) << 31)
 
@@ -66,6 +79,7 @@ typedef struct ob_request {
 	};
 	float colour[4]; // linear
 	uint32_t worker; // target of the move
+	uint32_t on; // 0 or 1, of a look
 	ob_state state; // to go on from; a part whose first number is NaN stays as it is
 	ob_vec3 force, twist; // N, or N s; N m, or N m s; world frame
 	ob_vec3 point, target; // m: from the centre of mass, body frame; world frame

@@ -14,8 +14,6 @@
 
 #include <ob/error.h>
 
-#include "host/request.h"
-
 typedef enum ob_role {
 	OB_ROLE_WATCH,
 	OB_ROLE_TAKE_PART,
@@ -24,8 +22,6 @@ typedef enum ob_role {
 } ob_role; // each includes those before
 
 const char *ob_role_name(ob_role role); // "watch", "take part", "operate"
-// Role that a request needs. A visitor who takes part may remove an object that it has created, too.
-ob_role ob_role_for(ob_request_kind kind);
 // False and e, for the visitor, if its role does not include the one needed.
 bool ob_role_check(ob_role role, ob_role needed, ob_error *e);
 

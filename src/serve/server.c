@@ -295,13 +295,45 @@ static bool may_create(const ob_host *h, ob_client *c)
 	return false;
 }
 
-// Requests about objects and the universe.
-static void carry_out_requests(ob_host *h, ob_client *c, ob_command *asked)
+// Carries out a request to see more, or less.
+static void look_as_asked(ob_server *s, ob_client *c, const ob_request *r)
 {
+	switch (r->kind) {
+	case OB_LOOK_CONTACTS:
+		c->contacts = r->on;
+		return;
+	case OB_LOOK_JOINTS:
+		c->joints = r->on;
+		return;
+	case OB_LOOK_SIMULATORS:
+		c->simulators = r->on;
+		return;
+	case OB_LOOK_ENERGY:
+		c->energy = r->on;
+		return;
+	case OB_LOOK_ANEW:
+		c->behind = true;
+		lws_callback_on_writable(c->wsi);
+		return;
+	default:
+		c->inspected = r->id;
+		if (r->id != UINT32_MAX)
+			send_one(c, ob_facts_details(s->config.scene, world_of(s, c)->host, r->id));
+	}
+}
+
+static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
+{
+	ob_host *h = world_of(s, c)->host;
 	for (uint32_t i = 0; i < asked->requests; i++) {
 		ob_request *r = &asked->request[i];
 		ob_error e;
-		if (ob_is_joint_request(r) && !ob_joint_request_find(ob_host_universe(h), asked->name, r, &e)) {
+		if (r->kind >= OB_REQUEST_KINDS) {
+			look_as_asked(s, c, r);
+			return;
+		}
+		if (ob_is_joint_request(r) &&
+		    !ob_joint_request_find(ob_host_universe(h), (const char *)r->values, r, &e)) {
 			send_error(c, e.text);
 			return;
 		}
@@ -312,36 +344,6 @@ static void carry_out_requests(ob_host *h, ob_client *c, ob_command *asked)
 		if (!ob_host_ask_as(h, c->role, r, &e))
 			send_error(c, e.text);
 	}
-}
-
-static void carry_out(ob_server *s, ob_client *c, ob_command *asked)
-{
-	switch (asked->kind) {
-	case OB_DO_CONTACTS:
-		c->contacts = asked->on;
-		return;
-	case OB_DO_JOINTS:
-		c->joints = asked->on;
-		return;
-	case OB_DO_SIMULATORS:
-		c->simulators = asked->on;
-		return;
-	case OB_DO_ENERGY:
-		c->energy = asked->on;
-		return;
-	case OB_DO_ANEW:
-		c->behind = true;
-		lws_callback_on_writable(c->wsi);
-		return;
-	case OB_DO_INSPECT:
-		c->inspected = asked->id;
-		if (asked->id != UINT32_MAX)
-			send_one(c, ob_facts_details(s->config.scene, world_of(s, c)->host, asked->id));
-		return;
-	default:
-		break;
-	}
-	carry_out_requests(world_of(s, c)->host, c, asked);
 }
 
 static int refuse_client(ob_client *c, enum lws_close_status status, const char *why)

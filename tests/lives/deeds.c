@@ -133,7 +133,7 @@ static bool visit(run *r, uint64_t seed, uint32_t visitor)
 		return fail(r, refused.text, text);
 	for (uint32_t i = 0; i < c.requests; i++) {
 		ob_request *q = &c.request[i];
-		if (ob_is_joint_request(q) && !ob_joint_request_find(universe(r), c.name, q, &refused))
+		if (ob_is_joint_request(q) && !ob_joint_request_find(universe(r), (const char *)q->values, q, &refused))
 			continue;
 		q->origin = visitor;
 		if (ob_host_ask_as(r->h, role_of(visitor), q, &refused) && role_of(visitor) == OB_ROLE_WATCH)
@@ -142,12 +142,16 @@ static bool visit(run *r, uint64_t seed, uint32_t visitor)
 	return true;
 }
 
+static bool ask_for(void *host, ob_request *q, ob_error *e)
+{
+	return ob_host_ask(host, q, e);
+}
+
 // Creates a body, or joins two, as obsim send and programs do.
 static void create_any(run *r, uint64_t seed)
 {
 	char text[4096];
 	writer w = { .to = text, .size = sizeof text, .seed = seed };
-	const ob_scene_options options = { .joining = true, .find = ob_joined_find, .with = r->h->u };
 	ob_passport a = { .name = "" }, b = { .name = "" };
 	ob_error refused;
 	draw_object(r, &w.seed, &a), draw_object(r, &w.seed, &b);
@@ -156,19 +160,7 @@ static void create_any(run *r, uint64_t seed)
 	else
 		put_joint(&w, a.name, a.id == b.id ? "" : b.name,
 			  ob_v3(within(&w, 0, 2), within(&w, 0, 2), within(&w, 0, 2)), "made");
-	ob_scene *s = ob_scene_load_text("deed", text, strlen(text), &options, &refused);
-	for (uint32_t i = 0; s && i < s->objects; i++) {
-		ob_request q = { .kind = OB_REQUEST_ADD, .def = s->object[i] };
-		if (ob_shape_is((ob_shape)q.def.passport.shape, OB_HULLED))
-			q.corners = s->hull_corners[q.def.passport.hull];
-		ob_host_ask(r->h, &q, &refused);
-	}
-	for (uint32_t i = 0; s && i < s->joints; i++) {
-		ob_request q;
-		ob_joint_request_make(&q, &s->joint[i]);
-		ob_host_ask(r->h, &q, &refused);
-	}
-	ob_scene_free(s);
+	ob_create_as_scene(r->h->u, text, strlen(text), 0, ask_for, r->h, &refused);
 }
 
 static void leave(run *r, uint32_t visitor)

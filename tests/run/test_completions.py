@@ -44,6 +44,9 @@ class Completions(program.Case):
 	def test_bash(self):
 		self.assertEqual(self.bash("com"), ["compare"])
 		self.assertEqual(self.bash("sen"), ["send"])
+		requests = re.findall("^  obsim send NAME ([a-z]+)", program.call("send", "--help").stdout, re.M)
+		self.assertEqual([w for w in self.bash("send", "mine", "") if w in requests], requests)
+		self.assertEqual(self.bash("send", "mine", "wai"), ["wait"])
 		for command in COMMANDS:
 			self.assertEqual(self.bash(command, "--"), options(command))
 		self.assertEqual(self.bash("run", "--arch", "m"), ["monolith"])

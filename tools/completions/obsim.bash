@@ -6,6 +6,11 @@ _obsim_options()
 	"$1" help "$2" 2>/dev/null | sed -n 's/^  .*\(--[a-z][a-z-]*\).*/\1/p' | sed 's/ .*//'
 }
 
+_obsim_requests()
+{
+	"$1" help send 2>/dev/null | sed -n 's/^  obsim send NAME \([a-z]*\).*/\1/p'
+}
+
 _obsim()
 {
 	local program=${COMP_WORDS[0]} command=${COMP_WORDS[1]} word=${COMP_WORDS[COMP_CWORD]}
@@ -55,7 +60,7 @@ _obsim()
 		*:-*) mapfile -t COMPREPLY < <(compgen -W "$(_obsim_options "$program" "$command")" -- "$word") ;;
 		paper:*) ;;
 		inspect:* | export:* | import:*) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-		send:*) mapfile -t COMPREPLY < <(compgen -W "create remove colour message force kick torque push drag release place velocity attitude spin surface path friction motor unjoin move kill keep return restart pause resume step until rate $(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
+		send:*) mapfile -t COMPREPLY < <(compgen -W "$(_obsim_requests "$program") $(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
 			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;
 		top:*) mapfile -t COMPREPLY < <(compgen -W "$(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
 			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;

@@ -148,4 +148,4 @@ complete -c obsim -n $inspect -F
 complete -c obsim -n $inspect -l json -d 'print it as JSON'
 
 set -l send '__fish_seen_subcommand_from send'
-complete -c obsim -n $send -a 'create remove colour message force kick torque push drag release place velocity attitude spin surface path friction motor unjoin move kill keep return restart pause resume step until rate'
+complete -c obsim -n $send -a '(obsim help send 2>/dev/null | sed -n "s/^  obsim send NAME \([a-z]*\).*/\1/p")'
