@@ -79,7 +79,7 @@ def growth():
             if n > 1000 and name == 'a process per object':
                 continue
             words_of_n = [scene('falling_boxes'), '-D', f'n={n}', *LANDING, *words]
-            r = run(*words_of_n, '--measure', 'end')
+            r = run(*words_of_n, '--set', 'measure=end')
             scale = 1e6 / (n * r['simulated_s'])
             depth = 1e3 * run(*words_of_n, runs=1)['worst_penetration_m']  # to measure it takes time
             curves[name].append({'n': n, 'cpu_us': r['cpu_s'] * scale, 'low': r['cpu_spread'][0] * scale,
@@ -100,7 +100,7 @@ def price():
         for seed in range(1, SEEDS + 1):
             words_of_seed = [scene('falling_boxes'), *LANDING, *words, '--seed', str(seed)]
             measured = run(*words_of_seed, runs=1)
-            undisturbed = run(*words_of_seed, '--measure', 'end', runs=1)
+            undisturbed = run(*words_of_seed, '--set', 'measure=end', runs=1)
             cpu.append(1e6 * undisturbed['cpu_s'] / (100 * undisturbed['simulated_s']))
             depth.append(1e3 * measured['worst_penetration_m'])
             rest.append(1e3 * measured['penetration_mean_m'])
@@ -126,7 +126,7 @@ def varied():
 
 def error_of(name, title):
     rows = []
-    configurations = [(f'object simulators, {n} substep{"s" if n > 1 else ""}', ['--substeps', str(n)]) for n in (1, 2, 4, 8, 16, 32)]
+    configurations = [(f'object simulators, {n} substep{"s" if n > 1 else ""}', ['--set', f'substeps={n}']) for n in (1, 2, 4, 8, 16, 32)]
     configurations += [('object simulators, default (1 mm)', [])]
     configurations += [(f'object simulators, tolerance {t}', ['--tolerance', t]) for t in ('10mm', '.1mm')]
     configurations += [(f'one ODE world, steps of 1/{n} s', ['--arch', 'monolith', '--step', f'1/{n}'])
@@ -134,7 +134,7 @@ def error_of(name, title):
     for what, words in configurations:
         seeds = [['--seed', str(seed)] for seed in range(1, SEEDS + 1)]
         reports = [run(scene(name), *words, *seed, runs=1) for seed in seeds]
-        undisturbed = [run(scene(name), *words, *seed, '--measure', 'end', runs=1) for seed in seeds]
+        undisturbed = [run(scene(name), *words, *seed, '--set', 'measure=end', runs=1) for seed in seeds]
         cpu = statistics.median(1e3 * r['cpu_s'] / r['simulated_s'] for r in undisturbed)
         rows.append([what, f'{cpu:.1f}', spread([1e3 * r['worst_penetration_m'] for r in reports], 3),
                      spread([1e3 * r['penetration_mean_m'] for r in reports], 2)])
@@ -156,7 +156,7 @@ def bits():
     configurations = [[isolation, workers] for isolation in ('thread', 'process') for workers in ('1', '2', '3', '8', 'objects')]
     rows = []
     for name in ('falling_boxes', 'stack', 'pile', 'cradle', 'sparse'):
-        reports = [run(scene(name), '--isolation', isolation, '--workers', workers, '--measure', 'end', runs=1)
+        reports = [run(scene(name), '--isolation', isolation, '--workers', workers, '--set', 'measure=end', runs=1)
                    for isolation, workers in configurations]
         hashes = sorted({r['state_hash'] for r in reports})
         rows.append([name, f"{reports[0]['simulated_s']:g}", str(len(configurations)), ' '.join(hashes), 'no' if hashes[1:] else 'yes'])
@@ -171,7 +171,7 @@ def counts():
                         ('1000, one per thread', ['-D', 'n=1000', '--workers', 'objects']),
                         ('4000, one per thread', ['-D', 'n=4000', '--workers', 'objects']),
                         ('10000, a pool of 2', ['-D', 'n=10000'])):
-        r = run(scene('falling_boxes'), '--duration', '1', '--measure', 'end', *words)
+        r = run(scene('falling_boxes'), '--duration', '1', '--set', 'measure=end', *words)
         rows.append([what, f"{r['startup_s']:.2f}", f"{1e3 * r['wall_s'] / r['steps']:.1f}",
                      f"{r['body_step_cpu_us']:.2f}", f"{r['memory_bytes'] / 1e6:.0f}"])
     return {'head': ['1 s of falling boxes', 'start-up, s', 'wall per step, ms', 'CPU per body and step, µs', 'memory, MB'], 'rows': rows}
@@ -196,7 +196,7 @@ def capture():
     rows = []
     for size in ('640x480', '1280x720', '1920x1080'):
         with tempfile.TemporaryDirectory() as folder:
-            r = run(scene('falling_boxes'), '--duration', '1', '--frames', folder, '--size', size, '--measure', 'end')
+            r = run(scene('falling_boxes'), '--duration', '1', '--out', folder, '--size', size, '--set', 'measure=end')
         rows.append([size, f"{r['frames'] / r['total_s']:.1f}"])
     return {'head': ['60 frames of 100 falling boxes to PNG', 'frames per second'], 'rows': rows}
 

@@ -38,7 +38,7 @@ LAUNCHER_PATIENCE = 30  # s, once all processes that it started have ended
 
 
 def words_of(scenes, name):
-	return [os.path.join(FOLDER, name + ".lua"), *scenes[name], "--measure", "end", "--sleeping", "off"]
+	return [os.path.join(FOLDER, name + ".lua"), *scenes[name], "--set", "measure=end", "--set", "sleeping=off"]
 
 
 def start(obsim, ranks, words):
@@ -155,7 +155,7 @@ def kill_one(obsim, chance, name, took, folder):
 	"""True if the launcher had to be killed; then the victim, the seconds until the end of the run, an error, and the
 	checkpoint of a rank that was not hit. None: the run had ended before, or had not begun to step."""
 	ranks, workers = chance.randint(2, 4), chance.randint(1, 2)
-	run = start(obsim, ranks, [*words_of(KILLED, name), "--workers", workers, "--checkpoint", file_of(folder, 0), "--every", ".1"])
+	run = start(obsim, ranks, [*words_of(KILLED, name), "--workers", workers, "--checkpoint", file_of(folder, 0), "--set", "every=.1"])
 	time.sleep(chance.uniform(0, took[name]))
 	processes = ranks_of(run.pid)
 	if len(processes) < ranks or run.poll() is not None:

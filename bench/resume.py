@@ -22,7 +22,7 @@ FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'scenes'
 
 
 def report(obsim, *words):
-    done = subprocess.run([obsim, 'run', *map(str, words), '--measure', 'end', '--json', '-'], capture_output=True, text=True, check=False)
+    done = subprocess.run([obsim, 'run', *map(str, words), '--set', 'measure=end', '--json', '-'], capture_output=True, text=True, check=False)
     if done.returncode:
         sys.exit(f"{' '.join(map(str, words))}: {done.stderr}")
     return json.loads(done.stdout)
@@ -50,7 +50,7 @@ def moments(obsim, count, seed, file):
 def cost(obsim, file):
     for n in 1000, 100000:
         words = [os.path.join(FOLDER, 'falling_boxes.lua'), '-D', f'n={n}', '--duration', .1]
-        done = report(obsim, *words, '--checkpoint', file, '--every', 1 / 60)
+        done = report(obsim, *words, '--checkpoint', file, '--set', f'every={1 / 60}')
         held = done['checkpoint_s'] / done['checkpoints']
         print(f"{n} boxes: {done['checkpoint_bytes']} bytes, {1e3 * held:.3g} ms held up each ({done['checkpoints']} written)")
 

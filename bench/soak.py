@@ -101,12 +101,12 @@ def path(scene):
 
 
 def run(obsim, *words):
-	return subprocess.Popen([obsim, "run", *words, "--measure", "end", "--json", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+	return subprocess.Popen([obsim, "run", *words, "--set", "measure=end", "--json", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 def scene_words(scene, part=1):
 	define, seconds = SCENES[scene]
-	return [path(scene), *define, "--duration", str(part * seconds), "--sleeping", "off"]
+	return [path(scene), *define, "--duration", str(part * seconds), "--set", "sleeping=off"]
 
 
 def children(pid):
@@ -179,7 +179,7 @@ def blows(obsim, wanted):
 			scene, workers = list(SCENES)[turn % len(SCENES)], WORKERS[turn // len(SCENES) % 2]
 			turn += 1
 			faults = [] if number else ["--fault", f"exit:p={.0005 if workers == 'objects' else .004},seed={turn}"]
-			host = run(obsim, *scene_words(scene), "--isolation", "process", "--workers", workers, "--patience", "1", "--name", name, *faults)
+			host = run(obsim, *scene_words(scene), "--isolation", "process", "--workers", workers, "--set", "patience=1", "--name", name, *faults)
 			for _ in range(BLOWS_PER_RUN[kind]):
 				dealt += strike(host, number, random.uniform(.1, 2) * undisturbed.took[scene, workers] / BLOWS_PER_RUN[kind])
 			out, said = host.communicate()
@@ -197,7 +197,7 @@ def blows(obsim, wanted):
 
 def killed_run(obsim, scene, way, victims, pause, file, name):
 	"""Runs with host, fork server, or both killed; returns the errors found afterwards."""
-	host = run(obsim, *scene_words(scene), *way, "--checkpoint", file, "--every", ".033", "--name", name)
+	host = run(obsim, *scene_words(scene), *way, "--checkpoint", file, "--set", "every=.033", "--name", name)
 	time.sleep(pause)
 	servers = children(host.pid)
 	below = servers + simulators(host.pid)
@@ -257,7 +257,7 @@ def scribble(obsim, wanted):
 		stores = deaths = other = gave_up = 0
 		for turn in range(wanted[0]):
 			scene, workers, words = scenes[turn % 4], WORKERS[turn // 4 % 2], (1, 10, 500)[turn % 3]
-			host = run(obsim, *scene_words(scene, part), "--isolation", "process", "--workers", workers, "--patience", "1", "--name", name, *more,
+			host = run(obsim, *scene_words(scene, part), "--isolation", "process", "--workers", workers, "--set", "patience=1", "--name", name, *more,
 				"--fault", f"scribble:p={.0003 if workers == 'objects' else .003},words={words},seed={turn + 1}")
 			out, said = host.communicate()
 			report = json.loads(out) if host.returncode == 0 else {"state_hash": None, "deaths": 0, "faults": 0}
@@ -288,7 +288,7 @@ def holdings(pid):
 def hour(obsim, hours):
 	with tempfile.TemporaryFile("w") as said:
 		scene = path("balls")
-		host = run(obsim, scene, "--isolation", "process", "--workers", "2", "--patience", "20", "--pace", "realtime", "--fault",
+		host = run(obsim, scene, "--isolation", "process", "--workers", "2", "--set", "patience=20", "--pace", "realtime", "--fault",
 			"kill+segv+exit:p=.00005,seed=1", "--name", f"soak-{os.getpid()}")
 		began, looks = time.monotonic(), []
 		pump = subprocess.Popen(["cat"], stdin=host.stderr, stdout=said)  # one line for each death

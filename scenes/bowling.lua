@@ -1,6 +1,6 @@
 -- A strike, perhaps. The pins look like pins and collide as their convex hulls, the lane is a box, the ball a sphere;
 -- bowling/make.py writes their meshes, bowling/*.glb.
---   obsim run bowling.lua --quality fine --video bowling.mp4
+--   obsim run bowling.lua --quality fine --out bowling.mp4
 local speed = param("speed", 7.5, { min = .1, max = 30, unit = "m/s" })
 local inch = .0254
 

@@ -1,5 +1,5 @@
 -- Four hundred dominoes in a spiral, and a ball that rolls into the first: the wave runs inwards for forty seconds.
--- Islands come and go with it: obsim run dominoes --colour-by island --video dominoes.mp4
+-- Islands come and go with it: obsim run dominoes --colour-by island --out dominoes.mp4
 --   -D n=400          how many
 --   -D gap=.105       m, from one to the next
 local n = param("n", 400, { whole = true, min = 2, max = 5000, label = "dominoes" })

@@ -1,5 +1,5 @@
 -- A round tower of loose stones that three shots knock down, while its simulators are killed: the tower falls the same way,
--- to the bit. obsim run tower --isolation process --fault kill:p=.002 --colour-by worker --video tower.mp4
+-- to the bit. obsim run tower --isolation process --fault kill:p=.002 --colour-by worker --out tower.mp4
 -- With obsim serve tower, pick a stone and kill its worker.
 --   -D rows=16        of stones
 --   -D speed=24       m/s, of a shot

@@ -46,7 +46,7 @@ def run_obsim(obsim, n, tolerance):
     def report(*more):
         words = [obsim, 'run', SCENE, '-D', f'n={n}', '--duration', str(SECONDS), '--tolerance', tolerance, '--workers', '1', '--json', '-', *more]
         return json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
-    return report('--measure', 'end')['cpu_s'], report()['worst_penetration_m']
+    return report('--set', 'measure=end')['cpu_s'], report()['worst_penetration_m']
 
 
 def main():

@@ -38,6 +38,7 @@ _PRESENT, _STATIC, _FROZEN, _KINEMATIC, _SENSOR = 1, 2, 4, 8, 64
 _WORLD = 0xffffffff
 _SAME = object()
 _numbers = itertools.count()
+_OPTIONS = {'step', 'seed', 'duration', 'arch', 'isolation', 'workers', 'harden', 'tolerance', 'on_death', 'name', 'room', 'check', 'resume'}  # all others are settings
 
 
 def names():
@@ -446,7 +447,10 @@ class Run(Universe):
         words = [word for name, value in self._parameters.items() for word in ('-D', f'{name}={_text(value)}')]
         for name, value in self._options.items():
             option = '--' + name.replace('_', '-')
-            words += [option] if value is True else [] if value is False else [f'{option}={value}']
+            if name.replace('-', '_') not in _OPTIONS:
+                words += ['--set', f"{name.replace('-', '_')}={'on' if value is True else 'off' if value is False else value}"]
+            else:
+                words += [option] if value is True else [] if value is False else [f'{option}={value}']
         return words
 
     def _begin_inside(self, words):
@@ -573,7 +577,7 @@ class Run(Universe):
             self.save(path)
             h, now = self.step_length, self.steps
             words = [self._program or _native.find_program(), 'run', '--resume', path, '--duration', repr((now + 1.5) * h), '--fps', repr(1 / h),
-                     '--raw', '-', '--workers', '1', '--size', f'{width}x{height}', '--quality', quality, *(['--camera', camera] if camera else [])]
+                     '--out', '-', '--workers', '1', '--size', f'{width}x{height}', '--quality', quality, *(['--camera', camera] if camera else [])]
             done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, check=False)
         if done.returncode != 0 or len(done.stdout) < 3 * width * height:
             raise Error(done.stderr.decode('utf-8', 'replace').strip().splitlines()[-1] if done.stderr else 'no picture')
@@ -734,7 +738,7 @@ def _stop(process, messages):
 
 def run(scene=None, options=None, program=None, resume=None, inside=False, **parameters):
     """Starts a scene, a path or the name of one that comes with obsim, and takes control of it. Keyword arguments are the
-    scene's parameters; options are those of obsim control, as {'workers': 2, 'isolation': 'process', 'harden': True}. resume: a checkpoint
-    file to go on from, in place of a scene. inside: the universe is in this program, whose thread is its only worker: steps are
+    scene's parameters; options are those of obsim control and its settings (--set), as {'workers': 2, 'harden': True,
+    'solver': 'jacobi'}. resume: a checkpoint file to go on from, in place of a scene. inside: the universe is in this program, whose thread is its only worker: steps are
     function calls; it has no processes, so nothing can be killed, and goes on by its steps alone."""
     return Run(scene, options, program, parameters, resume, inside)

@@ -104,8 +104,8 @@ static bool open_sinks(ob_capture *c, const ob_frames_request *f, ob_error *e)
 	else
 		c->raw_fd = open(f->raw, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 	if (c->raw_fd < 0)
-		return ob_fail(e, "--raw %s: %s", f->raw, strerror(errno));
-	snprintf(c->raw_name, sizeof c->raw_name, "--raw %s", f->raw);
+		return ob_fail(e, "--out %s: %s", f->raw, strerror(errno));
+	snprintf(c->raw_name, sizeof c->raw_name, "--out %s", f->raw);
 	return add(c, ob_sink_raw(c->raw_fd, c->raw_name, f->width, f->height, e));
 }
 

@@ -16,53 +16,40 @@
 
 enum { USUAL_REPEATS = 3, WIDTH_LEAST = 80, WIDTH_MOST = 100 };
 
-// Options of obsim run that each run of the comparison gets unchanged
-static bool is_passed_on(ob_option_id id)
+// Adds an option that each run gets unchanged, if it is passed, and shows it in either case.
+static bool pass_one(ob_comparison *c, const char *option, const char *value, bool passed, bool objects_only,
+		     ob_error *e)
 {
-	switch (id) {
-	case OB_OPTION_DEFINE:
-	case OB_OPTION_WORKERS:
-	case OB_OPTION_NARROW:
-	case OB_OPTION_SEED:
-	case OB_OPTION_HARDEN:
-		return false; // set by compare itself
-	default:
-		return (ob_option_table[id].commands & OB_COMMAND_RUN) &&
-		       (ob_option_table[id].commands & OB_COMMAND_COMPARE) && id != OB_OPTION_JSON &&
-		       ob_option_table[id].argument;
-	}
+	const size_t used = strlen(c->options), room = sizeof c->options - used;
+	ob_compare_option *o = &c->pass[c->passed];
+	if (passed && c->passed == OB_COMPARE_OPTIONS)
+		return ob_fail(e, "more than %d options", OB_COMPARE_OPTIONS);
+	if (passed && asprintf(&o->text, "%s%s%s", option, option[1] == '-' ? "=" : "", value) < 0)
+		return ob_fail(e, "out of memory");
+	if (passed)
+		c->pass[c->passed++].objects_only = objects_only;
+	return (size_t)snprintf(c->options + used, room, " %s %s", option, value) < room ||
+	       ob_fail(e, "the options are too long");
 }
 
-static bool means_nothing_to_a_monolith(ob_option_id id)
-{
-	return id == OB_OPTION_TOLERANCE || id == OB_OPTION_SOLVER || id == OB_OPTION_LAG || id == OB_OPTION_INTEGRATOR;
-}
-
+// Passes on parameters of the scene, the duration and settings; compare itself sets workers, seed and narrow phase.
 static bool pass_on(ob_comparison *c, const ob_arguments *a, ob_error *e)
 {
-	size_t used = 0;
-	bool fine = a->defines + OB_OPTIONS <= OB_COMPARE_OPTIONS ||
-		    ob_fail(e, "more than %d parameters of the scene", OB_COMPARE_OPTIONS - OB_OPTIONS);
-	for (uint32_t i = 0; fine && i < a->defines; i++) {
-		fine = asprintf(&c->pass[c->passed].text, "-D%s", a->define[i]) >= 0 || ob_fail(e, "out of memory");
-		c->passed += fine;
-		used += (size_t)snprintf(c->options + used, sizeof c->options - used, " -D %s", a->define[i]);
-		fine = fine && (used < sizeof c->options || ob_fail(e, "the options are too long"));
-	}
-	for (int i = 0; fine && i < OB_OPTIONS; i++) {
-		bool passed = is_passed_on(i);
-		if (!a->value[i] || (!passed && i != OB_OPTION_WORKERS && i != OB_OPTION_NARROW))
+	const char *duration = a->value[OB_OPTION_DURATION], *workers = a->value[OB_OPTION_WORKERS];
+	bool fine = true;
+	for (uint32_t i = 0; fine && i < a->defines; i++)
+		fine = pass_one(c, "-D", a->define[i], true, false, e);
+	fine = fine && (!duration || pass_one(c, "--duration", duration, true, false, e)) &&
+	       (!workers || pass_one(c, "--workers", workers, false, false, e));
+	for (int i = 0; fine && i < OB_SETTINGS; i++) {
+		const ob_setting *s = &ob_setting_table[i];
+		const bool own = s->flags & OB_SETTING_OPTION;
+		char option[32], value[64];
+		if (!a->setting[i])
 			continue;
-		if (passed) {
-			ob_compare_option *o = &c->pass[c->passed];
-			fine = asprintf(&o->text, "--%s=%s", ob_option_table[i].name, a->value[i]) >= 0 ||
-			       ob_fail(e, "out of memory");
-			o->objects_only = means_nothing_to_a_monolith(i);
-			c->passed += fine;
-		}
-		used += (size_t)snprintf(c->options + used, sizeof c->options - used, " --%s %s",
-					 ob_option_table[i].name, a->value[i]);
-		fine = fine && (used < sizeof c->options || ob_fail(e, "the options are too long"));
+		snprintf(option, sizeof option, "--%s", own ? s->name : "set");
+		snprintf(value, sizeof value, "%s%s%s", own ? "" : s->name, own ? "" : "=", a->setting[i]);
+		fine = pass_one(c, option, value, i != OB_SETTING_NARROW_PHASE, s->flags & OB_SETTING_OBJECTS, e);
 	}
 	return fine;
 }
@@ -177,7 +164,7 @@ int ob_command_compare(const ob_arguments *a)
 		return ob_command_compare_live(a);
 	if (a->value[OB_OPTION_LISTEN])
 		return ob_command_fail(OB_EXIT_USAGE, "--listen is for a page: add --live");
-	if (a->value[OB_OPTION_SYNC])
+	if (a->setting[OB_SETTING_SYNC])
 		return ob_command_compare_sync(a);
 	ob_error e;
 	ob_comparison *c = calloc(1, sizeof *c);

@@ -61,15 +61,15 @@ typedef struct comparison {
 
 static bool check(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id refused[] = { OB_OPTION_VARY,  OB_OPTION_HARDEN, OB_OPTION_JSON, OB_OPTION_REPEATS,
-						OB_OPTION_SEEDS, OB_OPTION_OUT,    OB_OPTION_FRESH };
-	const char *sync = a->value[OB_OPTION_SYNC];
+	const uint64_t refused = OB_BIT(OB_OPTION_VARY) | OB_BIT(OB_OPTION_HARDEN) | OB_BIT(OB_OPTION_JSON) |
+				 OB_BIT(OB_OPTION_REPEATS) | OB_BIT(OB_OPTION_SEEDS) | OB_BIT(OB_OPTION_OUT) |
+				 OB_BIT(OB_OPTION_FRESH);
+	const char *sync = a->setting[OB_SETTING_SYNC];
 	if (!a->operand)
 		return ob_fail(e, "no scene given: obsim compare --live falling_boxes");
-	for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
-		if (a->value[refused[i]])
-			return ob_fail(e, "--%s does not go with --live, which shows one run of each: leave it away",
-				       ob_option_table[refused[i]].name);
+	if (!ob_options_refuse(a, refused, 0, " does not go with --live, which shows one run of each: leave it away",
+			       e))
+		return false;
 	return !sync || strchr(sync, ',') ||
 	       ob_fail(e, "--sync %s: compare runs both ways: expected --sync lockstep,free", sync);
 }
@@ -77,15 +77,16 @@ static bool check(const ob_arguments *a, ob_error *e)
 // Reads the request for a world: the options of the command line, without those that a monolith has not.
 static bool read_world(world *w, const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id of_objects[] = { OB_OPTION_WORKERS, OB_OPTION_TOLERANCE, OB_OPTION_SOLVER,
-						   OB_OPTION_LAG, OB_OPTION_INTEGRATOR };
 	ob_arguments own = *a;
 	own.command = OB_COMMAND_SERVE;
-	own.value[OB_OPTION_ARCH] = w->kind->arch;
+	own.setting[OB_SETTING_ARCHITECTURE] = w->kind->arch;
 	own.value[OB_OPTION_ISOLATION] = w->kind->isolation;
-	own.value[OB_OPTION_SYNC] = w->kind->sync;
-	for (size_t i = 0; w->kind == usual && i < sizeof of_objects / sizeof *of_objects; i++)
-		own.value[of_objects[i]] = NULL;
+	own.setting[OB_SETTING_SYNC] = w->kind->sync;
+	for (int i = 0; w->kind == usual && i < OB_SETTINGS; i++)
+		if (ob_setting_table[i].flags & OB_SETTING_OBJECTS)
+			own.setting[i] = NULL;
+	if (w->kind == usual)
+		own.value[OB_OPTION_WORKERS] = NULL;
 	return ob_request_read(&w->q, &own, e);
 }
 
@@ -106,7 +107,7 @@ static bool start_world(comparison *c, uint32_t i, ob_error *e)
 // Starts all, processes first: they are forked before there are threads. A scene that ODE cannot hold is compared without it.
 static bool start(comparison *c, const ob_arguments *a, ob_error *e)
 {
-	const bool sync = a->value[OB_OPTION_SYNC];
+	const bool sync = a->setting[OB_SETTING_SYNC];
 	const kind *const kinds = sync ? syncs : usual;
 	c->worlds = sync ? sizeof syncs / sizeof *syncs : sizeof usual / sizeof *usual;
 	for (uint32_t i = 0; i < c->worlds; i++) {

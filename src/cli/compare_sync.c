@@ -23,19 +23,15 @@ static const double budget = 480; // s: with fewer seeds than usual where they t
 
 static bool check(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id known[] = { OB_OPTION_DEFINE, OB_OPTION_DURATION, OB_OPTION_SYNC, OB_OPTION_VARY,
-					      OB_OPTION_SEED,   OB_OPTION_SEEDS,    OB_OPTION_OUT,  OB_OPTION_FRESH };
-	if (!strchr(a->value[OB_OPTION_SYNC], ','))
-		return ob_fail(e, "--sync %s: compare runs both ways: expected --sync lockstep,free",
-			       a->value[OB_OPTION_SYNC]);
-	for (int i = 0; i < OB_OPTIONS; i++) {
-		bool is_known = !a->value[i];
-		for (size_t k = 0; k < sizeof known / sizeof *known; k++)
-			is_known |= (int)known[k] == i;
-		if (!is_known)
-			return ob_fail(e, "--%s does not go with --sync lockstep,free: leave it away",
-				       ob_option_table[i].name);
-	}
+	const uint64_t known = OB_BIT(OB_OPTION_DEFINE) | OB_BIT(OB_OPTION_DURATION) | OB_BIT(OB_OPTION_VARY) |
+			       OB_BIT(OB_OPTION_SEED) | OB_BIT(OB_OPTION_SEEDS) | OB_BIT(OB_OPTION_OUT) |
+			       OB_BIT(OB_OPTION_FRESH);
+	const char *sync = a->setting[OB_SETTING_SYNC];
+	if (!strchr(sync, ','))
+		return ob_fail(e, "--sync %s: compare runs both ways: expected --sync lockstep,free", sync);
+	if (!ob_options_refuse(a, ~known, ~OB_BIT(OB_SETTING_SYNC),
+			       " does not go with --sync lockstep,free: leave it away", e))
+		return false;
 	return !a->value[OB_OPTION_FRESH] || a->value[OB_OPTION_OUT] ||
 	       ob_fail(e, "--fresh runs again what a folder has: it needs --out");
 }
@@ -72,7 +68,7 @@ static bool load_point(ob_sync_comparison *c, ob_sync_point *p, const ob_argumen
 	ob_run_request r;
 	if (!ob_options_define(&own, a, p->define, e))
 		return false;
-	own.value[OB_OPTION_SYNC] = NULL;
+	own.setting[OB_SETTING_SYNC] = NULL;
 	ob_scene *s = ob_request_read(&r, &own, e) ? ob_scene_load(r.scene, &r.scene_options, e) : NULL;
 	bool fine = s && measure(p, s, e);
 	if (fine) {

@@ -118,8 +118,8 @@ static void explain_rest(const ob_run_request *q, const ob_scene *scene, FILE *f
 	line(f, "renderer", q->frames.wanted ? "frames were asked for" : "none: no frames were asked for");
 	line(f, "recorder", q->record ? "--record" : "none: nothing was to be recorded");
 	line(f, "measuring",
-	     q->measure == OB_MEASURE_STEPS ? "energy, momentum and penetration of each step (--measure step)"
-					    : "only of the start and the end (--measure)");
+	     q->asked.measure == OB_MEASURE_STEPS ? "energy, momentum and penetration of each step (--set measure=step)"
+						  : "only of the start and the end (--set measure)");
 	line(f, "Lua",
 	     scene->scripts ? "objects' scripts, when they are due" : "none: it ended when the scene had been read");
 	line(f, "one world", "none: each object is a simulator of its own");

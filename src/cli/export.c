@@ -7,7 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/output.h"
-#include "cli/request.h"
+#include "cli/quantity.h"
 #include "record/mcap.h"
 #include "serve/film.h"
 #include "serve/film_page.h"
@@ -28,7 +28,9 @@ static ob_message *make_page(const ob_arguments *a, ob_error *e)
 {
 	const char *path = a->operand;
 	double seconds = OB_FILM_SECONDS;
-	ob_recording *r = ob_request_read_patience(a, &seconds, e) ? ob_recording_open(path, e) : NULL;
+	ob_recording *r = ob_number_real("patience", a->value[OB_OPTION_PATIENCE], 0, 1e9, &seconds, e)
+				  ? ob_recording_open(path, e)
+				  : NULL;
 	ob_message *film = r ? ob_film_make(r, path, seconds, e) : NULL;
 	ob_message *page = film ? ob_film_page_whole(film) : NULL;
 	if (film && !page)
@@ -58,7 +60,9 @@ static bool is_mcap(const char *path)
 static int export_mcap(const ob_arguments *a, ob_error *e)
 {
 	double seconds = OB_FILM_SECONDS;
-	ob_recording *r = ob_request_read_patience(a, &seconds, e) ? ob_recording_open(a->operand, e) : NULL;
+	ob_recording *r = ob_number_real("patience", a->value[OB_OPTION_PATIENCE], 0, 1e9, &seconds, e)
+				  ? ob_recording_open(a->operand, e)
+				  : NULL;
 	if (!r)
 		return ob_command_fail(OB_EXIT_USAGE, e->text);
 	const bool written = ob_mcap_write(r, a->operand, a->operands[1], seconds, e);

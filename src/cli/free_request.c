@@ -1,4 +1,5 @@
-#include "cli/free_request.h"
+// Options of a free run (obsim run --sync free).
+#include "cli/request.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,72 +11,37 @@
 
 static const double steps_of_lag = 2; // bound of the lag where the clock gives none, in steps of a simulator
 
-static bool read_max_lag(ob_run_request *r, const char *text, ob_error *e)
-{
-	if (text && strcmp(text, "none") == 0)
-		r->free.max_lag = INFINITY;
-	else
-		return ob_number_real("max-lag", text, 0, 1e3, &r->free.max_lag, e);
-	return true;
-}
-
-// Refuses options that a replayed schedule has settled.
-static bool check_replay(const ob_arguments *a, ob_error *e)
-{
-	static const ob_option_id settled[] = { OB_OPTION_UPDATE_RATE,    OB_OPTION_COUPLING, OB_OPTION_MAX_LAG,
-						OB_OPTION_JITTER,         OB_OPTION_DELAY,    OB_OPTION_PACE,
-						OB_OPTION_ISOLATION,      OB_OPTION_WORKERS,  OB_OPTION_FAULT,
-						OB_OPTION_RECORD_SCHEDULE };
-	for (size_t i = 0; a->value[OB_OPTION_REPLAY_SCHEDULE] && i < sizeof settled / sizeof *settled; i++)
-		if (a->value[settled[i]])
-			return ob_fail(
-				e,
-				"--%s does not go with --replay-schedule, which repeats a run as it was: leave it away",
-				ob_option_table[settled[i]].name);
-	return true;
-}
+// Settings that a run in lockstep has not.
+static const uint64_t of_free = OB_BIT(OB_SETTING_UPDATE_RATE) | OB_BIT(OB_SETTING_COUPLING) |
+				OB_BIT(OB_SETTING_MAX_LAG) | OB_BIT(OB_SETTING_JITTER) | OB_BIT(OB_SETTING_DELAY) |
+				OB_BIT(OB_SETTING_RECORD_SCHEDULE);
 
 bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id of_free[] = { OB_OPTION_UPDATE_RATE,    OB_OPTION_COUPLING, OB_OPTION_MAX_LAG,
-						OB_OPTION_JITTER,         OB_OPTION_DELAY,    OB_OPTION_RECORD_SCHEDULE,
-						OB_OPTION_REPLAY_SCHEDULE };
+	const uint64_t settled = OB_BIT(OB_OPTION_PACE) | OB_BIT(OB_OPTION_ISOLATION) | OB_BIT(OB_OPTION_WORKERS) |
+				 OB_BIT(OB_OPTION_FAULT);
 	// what a free run has not
-	static const ob_option_id of_lockstep[] = {
-		OB_OPTION_ARCH,    OB_OPTION_HARDEN, OB_OPTION_TOLERANCE,  OB_OPTION_STRICT, OB_OPTION_LAG,
-		OB_OPTION_EXPLAIN, OB_OPTION_CHECK,  OB_OPTION_CHECKPOINT, OB_OPTION_RESUME, OB_OPTION_ON_DEATH,
-	};
-	const char *sync = a->value[OB_OPTION_SYNC], *coupling = a->value[OB_OPTION_COUPLING];
-	r->free = (ob_free_settings){ .update_rate = NAN, .max_lag = NAN, .coupling = UINT32_MAX };
-	r->sync_asked = sync != NULL;
-	r->record_schedule = a->value[OB_OPTION_RECORD_SCHEDULE];
-	r->replay_schedule = a->value[OB_OPTION_REPLAY_SCHEDULE];
-	if (sync && strchr(sync, ','))
-		return ob_fail(e, "--sync %s: a run has one of them; obsim compare runs both ways", sync);
-	r->is_free = sync ? strcmp(sync, "free") == 0 : r->replay_schedule != NULL;
+	const uint64_t settings =
+		OB_BIT(OB_SETTING_ARCHITECTURE) | OB_BIT(OB_SETTING_TOLERANCE) | OB_BIT(OB_SETTING_LAG);
+	const uint64_t options = OB_BIT(OB_OPTION_HARDEN) | OB_BIT(OB_OPTION_STRICT) | OB_BIT(OB_OPTION_EXPLAIN) |
+				 OB_BIT(OB_OPTION_CHECK) | OB_BIT(OB_OPTION_CHECKPOINT) | OB_BIT(OB_OPTION_RESUME) |
+				 OB_BIT(OB_OPTION_ON_DEATH);
+	const char *value = NULL;
 	r->free_command = a->command == OB_COMMAND_RUN || a->command == OB_COMMAND_SERVE;
-	for (size_t i = 0; i < sizeof of_free / sizeof *of_free; i++)
-		if (a->value[of_free[i]])
-			r->of_free = ob_option_table[of_free[i]].name;
-	for (size_t i = 0; i < sizeof of_lockstep / sizeof *of_lockstep; i++)
-		if (a->value[of_lockstep[i]])
-			r->of_lockstep = ob_option_table[of_lockstep[i]].name;
-	if (a->value[OB_OPTION_SLEEPING] && strcmp(a->value[OB_OPTION_SLEEPING], "on") == 0)
-		r->of_lockstep = "sleeping on";
+	r->of_free = ob_options_given(a, 0, of_free | OB_BIT(OB_SETTING_REPLAY_SCHEDULE));
+	r->of_lockstep = ob_options_given(a, options, settings);
 	if (a->value[OB_OPTION_OVERLAY] && strstr(a->value[OB_OPTION_OVERLAY], "contacts"))
-		r->of_lockstep = "overlay contacts";
-	if (r->measure == OB_MEASURE_PROFILE)
-		r->of_lockstep = "measure profile";
-	if (coupling && !ob_setting_find(OB_COUPLING_NAMES, coupling, &r->free.coupling))
-		return ob_fail(e, "--coupling %s: expected one of %s", coupling, OB_COUPLING_NAMES);
-	return check_replay(a, e) &&
-	       ob_number_real("update-rate", a->value[OB_OPTION_UPDATE_RATE], 0, OB_UPDATE_RATE_MOST,
-			      &r->free.update_rate, e) &&
-	       read_max_lag(r, a->value[OB_OPTION_MAX_LAG], e) &&
-	       (!a->value[OB_OPTION_JITTER] || strcmp(a->value[OB_OPTION_JITTER], "0") == 0 ||
-		ob_number_real("jitter", a->value[OB_OPTION_JITTER], 0, OB_JITTER_MOST, &r->free.jitter, e)) &&
-	       (!a->value[OB_OPTION_DELAY] || strcmp(a->value[OB_OPTION_DELAY], "0") == 0 ||
-		ob_number_real("delay", a->value[OB_OPTION_DELAY], 0, OB_DELAY_MOST, &r->free.delay, e));
+		value = "overlay contacts";
+	if (ob_setting_is_set(&r->asked, OB_SETTING_SLEEPING) && r->asked.run.sleeping)
+		value = "set sleeping=on";
+	if (r->asked.measure == OB_MEASURE_PROFILE)
+		value = "set measure=profile";
+	if (value)
+		snprintf(r->of_lockstep.text, sizeof r->of_lockstep.text, "%s", value);
+	return !r->asked.replay_schedule ||
+	       ob_options_refuse(
+		       a, settled, of_free,
+		       " does not go with --set replay_schedule, which repeats a run as it was: leave it away", e);
 }
 
 static bool has_compounds(const ob_scene *s)
@@ -93,8 +59,8 @@ static bool check(const ob_run_request *r, const ob_scene *s, ob_error *e)
 		return ob_fail(
 			e,
 			"the scene runs free (scene.sync), which obsim run and serve can do: set sync = \"lockstep\"");
-	if (r->of_lockstep)
-		return ob_fail(e, "--%s does not go with --sync free: leave one of them away", r->of_lockstep);
+	if (*r->of_lockstep.text)
+		return ob_fail(e, "--%s does not go with --sync free: leave one of them away", r->of_lockstep.text);
 	if (r->run.monolith || r->run.solver == OB_SOLVER_JACOBI)
 		return ob_fail(e, "--sync free: expected object simulators with the solver coloured, ghost or lagged");
 	if (s->scripts > 0)
@@ -107,7 +73,9 @@ static bool check(const ob_run_request *r, const ob_scene *s, ob_error *e)
 		return ob_fail(e, "--sync free: the scene has heightfields or meshes, which collide in lockstep alone");
 	if (r->free.coupling == OB_COUPLING_LEDGER &&
 	    (r->run.solver != OB_SOLVER_COLOURED || r->run.integrator != OB_INTEGRATOR_EXACT))
-		return ob_fail(e, "--coupling ledger: a pair has one impulse, so leave --solver and --integrator away");
+		return ob_fail(
+			e, "--set coupling=ledger: a pair has one impulse, so leave the settings solver and integrator "
+			   "away");
 	return true;
 }
 
@@ -130,10 +98,11 @@ static uint64_t digest_of(const ob_run_request *r, const ob_scene *s)
 static bool resolve_schedule(ob_run_request *r, ob_error *e)
 {
 	ob_free_settings *f = &r->free;
-	const char *path = r->replay_schedule ? r->replay_schedule : r->record_schedule;
+	const ob_settings *asked = &r->asked;
+	const char *path = asked->replay_schedule ? asked->replay_schedule : asked->record_schedule;
 	if (!path)
 		return true;
-	if (r->replay_schedule) {
+	if (asked->replay_schedule) {
 		if (!ob_free_schedule_check(path, r->schedule_digest, f, e))
 			return false;
 		f->replays = 1;
@@ -149,22 +118,22 @@ static bool resolve_schedule(ob_run_request *r, ob_error *e)
 bool ob_free_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
 	ob_free_settings *f = &r->free;
-	r->is_free |= !r->sync_asked && s->free.update_rate != 0;
+	ob_settings all = s->asked;
+	ob_settings_overlay(&all, &r->asked);
+	r->is_free = ob_setting_is_set(&r->asked, OB_SETTING_SYNC) ? r->asked.sync : all.sync || all.replay_schedule;
 	if (!r->is_free)
-		return !r->of_free || ob_fail(e, "--%s is for --sync free", r->of_free);
+		return !*r->of_free.text || ob_fail(e, "--%s is for --sync free", r->of_free.text);
 	r->schedule_digest = digest_of(r, s);
+	*f = all.free;
+	const bool replays = all.replay_schedule;
 	if (!resolve_schedule(r, e))
 		return false;
-	if (isnan(f->update_rate))
-		f->update_rate = s->free.update_rate > 0 ? s->free.update_rate : 1 / r->run.step_length;
+	if (!replays && !ob_setting_is_set(&all, OB_SETTING_UPDATE_RATE))
+		f->update_rate = 1 / r->run.step_length;
 	f->rate_most = f->update_rate;
 	for (uint32_t i = 0; i < s->objects; i++)
 		f->rate_most = fmax(f->rate_most, s->object[i].update_rate);
-	if (f->coupling == UINT32_MAX)
-		f->coupling = s->free.coupling;
-	if (isnan(f->max_lag) && s->free.max_lag > 0)
-		f->max_lag = s->free.max_lag;
-	if (isnan(f->max_lag))
+	if (!replays && !ob_setting_is_set(&all, OB_SETTING_MAX_LAG))
 		f->max_lag = isinf(r->pace) ? steps_of_lag / f->update_rate : INFINITY;
 	f->pace = f->replays ? f->pace : r->pace;
 	f->end = r->duration;

@@ -80,7 +80,7 @@ static void print(const char *path, const ob_saved_run *r, const ob_checkpoint_f
 
 static void print_json_settings(const ob_run_settings *s, ob_json *j)
 {
-	for (int i = 0; i < OB_SETTINGS; i++) {
+	for (int i = 0; i < OB_RUN_SETTINGS; i++) {
 		const ob_setting *t = &ob_setting_table[i];
 		const void *at = (const char *)s + t->offset;
 		if (t->kind == OB_SETTING_REAL)

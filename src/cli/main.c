@@ -115,6 +115,8 @@ static int carry_out(int argc, char **argv)
 		code = ob_command_fail(OB_EXIT_USAGE, e.text);
 	else if (a.value[OB_OPTION_HELP])
 		print_help(commands[command].bit);
+	else if (a.value[OB_OPTION_SET])
+		ob_options_help_set(stdout, commands[command].bit);
 	else if (ob_ranks_started().ranks > 1 &&
 		 (commands[command].bit & (OB_COMMAND_SERVE | OB_COMMAND_CONTROL) || a.value[OB_OPTION_LIVE]))
 		code = refuse_ranks(word);

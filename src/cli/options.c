@@ -8,8 +8,6 @@
 #include "cli/output.h"
 #include "host/death.h"
 #include "measure/colouring.h"
-#include "settings/free.h"
-#include "settings/settings.h"
 
 enum {
 	RUN = OB_COMMAND_RUN,
@@ -28,161 +26,49 @@ enum {
 };
 
 const ob_option ob_option_table[OB_OPTIONS] = {
-	[OB_OPTION_DEFINE] = { "The scene", "define", "NAME=VALUE", "set a parameter of the scene", STEPPED | COMPARE,
-			       'D' },
-	[OB_OPTION_VARY] = { NULL, "vary", "NAME=VALUE,..", "compare at each of these values of a parameter", COMPARE,
-			     0 },
-	[OB_OPTION_DURATION] = { NULL, "duration", "S", "simulated seconds (the scene says how many)",
-				 STEPPED | COMPARE, 0 },
-	[OB_OPTION_STEP] = { NULL, "step", "H", "seconds a step, as .01 or 1/60 (the scene's)", STEPPED | COMPARE, 0 },
-	[OB_OPTION_SEED] = { NULL, "seed", "N", "seed of the scene's random numbers (the scene's)", STEPPED | COMPARE,
-			     0 },
-
-	[OB_OPTION_ARCH] = { "How it runs", "arch", OB_ARCHITECTURE_NAMES,
-			     "one simulator per object, or one ODE world that holds all (obs)", STEPPED, 0 },
-	[OB_OPTION_ISOLATION] = { NULL, "isolation", "thread|process", "what a worker is (thread)", STEPPED, 0 },
-	[OB_OPTION_WORKERS] = { NULL, "workers", "N|objects",
-				"workers in the pool, or one for each object (one per core)", STEPPED | COMPARE, 0 },
-	[OB_OPTION_HARDEN] = { NULL, "harden", "[=LIST]",
-			       "processes that can write their own results alone, and do little else",
-			       STEPPED | COMPARE, 0 },
-	[OB_OPTION_TOLERANCE] = { NULL, "tolerance", "LENGTH|P%",
-				  "error that objects that touch may reach, as .5mm or .1% of the thinnest",
-				  STEPPED | COMPARE, 0 },
-	[OB_OPTION_STRICT] = { NULL, "strict", NULL, "exit with 1 where the tolerance is missed, or a script fails",
-			       RUN, 0 },
-	[OB_OPTION_VERIFY] = { NULL, "verify", NULL,
-			       "solve a sample of steps again with 512 substeps, and print the errors", RUN, 0 },
-	[OB_OPTION_SUBSTEPS] = { NULL, "substeps", "N", "substeps a step (the scene's; monolith: 1)", STEPPED | COMPARE,
-				 0 },
-	[OB_OPTION_ITERATIONS] = { NULL, "iterations", "N",
-				   "of the contact solver a substep (the scene's; monolith: 20, 0 = exact)",
-				   STEPPED | COMPARE, 0 },
-	[OB_OPTION_SOLVER] = { NULL, "solver", OB_SOLVER_NAMES, "how contacts are solved (the scene's)",
-			       STEPPED | COMPARE, 0 },
-	[OB_OPTION_LAG] = { NULL, "lag", "K", "lagged: iterations that a partner's state is late (1)",
-			    STEPPED | COMPARE, 0 },
-	[OB_OPTION_INTEGRATOR] = { NULL, "integrator", OB_INTEGRATOR_NAMES,
-				   "free motion in closed form, or by ODE's stepper (the scene's)", STEPPED | COMPARE,
-				   0 },
-	[OB_OPTION_SLEEPING] = { NULL, "sleeping", OB_SWITCH_NAMES, "whether what rests may sleep (the scene's)",
-				 STEPPED | COMPARE, 0 },
-	[OB_OPTION_NARROW] = { NULL, "narrow", OB_NARROW_PHASE_NAMES,
-			       "objects touch as they are, or as boxes along the axes (obb)", STEPPED | COMPARE, 0 },
-	[OB_OPTION_LOAD] = { NULL, "load", "N", "add up 1 to N in each test of two boxes (0)", STEPPED | COMPARE, 0 },
-	[OB_OPTION_PATIENCE] = { NULL, "patience", "S", "seconds that a step may take until it counts as stalled (60)",
-				 STEPPED | EXPORT, 0 },
-	[OB_OPTION_ON_DEATH] = { NULL, "on-death", OB_ON_DEATH_NAMES,
-				 "what a death or failure does: restart, freeze, end, or keep what can be "
-				 "(restart)",
-				 STEPPED, 0 },
-	[OB_OPTION_RESTARTS] = { NULL, "restarts", "N/S",
-				 "end the run at more than N deaths within S seconds (no limit)", STEPPED, 0 },
-	[OB_OPTION_NAME] = { NULL, "name", "NAME", "name of the universe, for obsim top (obsim-PID)", STEPPED, 0 },
-
-	[OB_OPTION_PACE] = { NULL, "pace", "realtime|RATE|max", "simulated seconds a second of the clock (max)",
-			     RUN | SERVE, 0 },
-
-	[OB_OPTION_SYNC] = { NULL, "sync", OB_SYNC_NAMES "|lockstep,free",
-			     "all step together, or each at its own times (the scene's)", RUN | SERVE | COMPARE, 0 },
-	[OB_OPTION_UPDATE_RATE] = { NULL, "update-rate", "HZ", "free: steps of a simulator a second (the scene's)",
-				    RUN | SERVE, 0 },
-	[OB_OPTION_COUPLING] = { NULL, "coupling", OB_COUPLING_NAMES,
-				 "free: who computes an impulse: each its own, or one that mails it (own)", RUN | SERVE,
-				 0 },
-	[OB_OPTION_MAX_LAG] = { NULL, "max-lag", "S|none",
-				"free: seconds ahead of a neighbour (pace max: two steps; else none)", RUN | SERVE, 0 },
-	[OB_OPTION_JITTER] = { NULL, "jitter", "P", "free: share by which lengths of steps vary (0)", RUN | SERVE, 0 },
-	[OB_OPTION_DELAY] = { NULL, "delay", "S", "free: seconds until a publication is seen (0)", RUN | SERVE, 0 },
-	[OB_OPTION_RECORD_SCHEDULE] = { NULL, "record-schedule", "FILE",
-					"free: record who stepped when, and read what, to repeat the run", RUN, 0 },
-	[OB_OPTION_REPLAY_SCHEDULE] = { NULL, "replay-schedule", "FILE", "repeat a free run to the bit, in one thread",
-					RUN, 0 },
-
-	[OB_OPTION_LIVE] = { "The server", "live", NULL,
-			     "one world, threads and processes, or both ways, side by side on one page", COMPARE, 0 },
-	[OB_OPTION_LISTEN] = { "The server", "listen", "ADDR:PORT",
-			       "where viewers come to; port 0 is a free one (127.0.0.1:8080)", SERVE | COMPARE, 0 },
-	[OB_OPTION_PAUSED] = { NULL, "paused", NULL, "stand still until a viewer lets it run", SERVE, 0 },
-	[OB_OPTION_READONLY] = { NULL, "readonly", NULL, "viewers may look, and change nothing", SERVE, 0 },
-	[OB_OPTION_VIEWERS] = { NULL, "viewers", "N", "viewers at a time (64)", SERVE, 0 },
-	[OB_OPTION_ROOM] = { NULL, "room", "N", "objects that viewers may add (1000)", SERVE | CONTROL, 0 },
-
-	[OB_OPTION_FRAMES] = { "Frames", "frames", "DIR", "write DIR/frame-000000.png and so on", RUN, 0 },
-	[OB_OPTION_VIDEO] = { NULL, "video", "FILE", "write a video through ffmpeg", RUN, 0 },
-	[OB_OPTION_RAW] = { NULL, "raw", "FILE", "write raw rgb24 frames; - = standard output", RUN, 0 },
-	[OB_OPTION_FPS] = { NULL, "fps", "F", "frames per simulated second (60)", RUN, 0 },
-	[OB_OPTION_STILL] = { NULL, "still", "S,..", "write frames of these times (s) alone", RUN, 0 },
-	[OB_OPTION_SIZE] = { NULL, "size", "WxH", "pixels (1280x720)", RUN, 0 },
-	[OB_OPTION_QUALITY] = { NULL, "quality", "draft|fine",
-				"fine: soft shadows, light of the sky; takes some 20 times as long (draft)", RUN, 0 },
-	[OB_OPTION_SAMPLES] = { NULL, "samples", "N", "samples a pixel (draft: 4 on a GPU; fine: 16)", RUN, 0 },
-	[OB_OPTION_CAMERA] = { NULL, "camera", "NAME", "which of the scene's cameras (the first)", RUN, 0 },
-	[OB_OPTION_OVERLAY] = { NULL, "overlay", "LIST",
-				"draw over it: aabb, contacts, joints, reads, simulators, caption; several with commas",
-				RUN, 0 },
-	[OB_OPTION_COLOUR_BY] = { NULL, "colour-by", OB_COLOUR_KEY_NAMES,
-				  "colour objects by who simulates them, and how (own)", RUN, 0 },
-	[OB_OPTION_GPU] = { NULL, "gpu", "WHICH", "surfaceless, or the number of a GPU (the first that works)", RUN,
-			    0 },
-
-	[OB_OPTION_RECORD] = { "What is kept", "record", "FILE",
-			       "trajectories, and all that it takes to draw them again, as HDF5", RUN | SERVE, 0 },
-	[OB_OPTION_SERIES] = { NULL, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN, 0 },
-	[OB_OPTION_REPORT] = { NULL, "report", "short|full", "five lines, or all that was measured (short)", RUN, 0 },
-	[OB_OPTION_JSON] = { NULL, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE, 0 },
-	[OB_OPTION_MEASURE] = { NULL, "measure", "step|profile|end",
-				"each step, where the time goes, or neither (step)", RUN, 0 },
-	[OB_OPTION_EXPLAIN] = { NULL, "explain", NULL,
-				"what was modelled, what was left out and why, and what each part cost", RUN, 0 },
-	[OB_OPTION_TRACE] = { NULL, "trace", "FILE", "what each worker did when, for ui.perfetto.dev", RUN, 0 },
-
-	[OB_OPTION_CHECKPOINT] = { NULL, "checkpoint", "FILE",
-				   "what the run needs to go on, replaced as it goes, and at its end", RUN | SERVE, 0 },
-	[OB_OPTION_EVERY] = { NULL, "every", "S", "simulated seconds from one checkpoint to the next (1)", RUN, 0 },
-	[OB_OPTION_RESUME] = { NULL, "resume", "FILE", "go on from a checkpoint, instead of a scene", RUN | CONTROL,
-			       0 },
-	[OB_OPTION_REPLAY] = { NULL, "replay", "FILE", "show what was recorded, instead of a scene", RUN | SERVE, 0 },
-
-	[OB_OPTION_LOG_REQUESTS] = { NULL, "log-requests", "FILE",
-				     "what viewers and programs ask for, and the state every second", SERVE, 0 },
-	[OB_OPTION_REPLAY_REQUESTS] = { NULL, "replay-requests", "FILE",
-					"carry out what serve has logged, and compare states", RUN, 0 },
-
-	[OB_OPTION_FAULT] = { "To test with", "fault", "KINDS:p=P,..",
-			      "simulators that kill, stop, exit ..., as kill+exit:p=.001,seed=7", RUN, 0 },
-	[OB_OPTION_CHECK] = { NULL, "check", NULL,
-			      "check what simulators share after each step; exit with 4 where it is wrong", STEPPED,
-			      0 },
-
-	[OB_OPTION_LIST] = { "What is run", "list", NULL, "print the cases and end", LAB, 0 },
-	[OB_OPTION_QUICK] = { NULL, "quick", NULL, "only a quick subset", LAB | PAPER, 0 },
-	[OB_OPTION_OBJECTS] = { NULL, "objects", "N", "boxes in each experiment (64)", PAPER, 0 },
-	[OB_OPTION_ENGINES] = { NULL, "engines", "LIST", "engines by name, with commas (all)", LAB, 0 },
-	[OB_OPTION_SWEEP] = { NULL, "sweep", "LISTS|none",
-			      "as substeps=1,2,4,tolerance=5mm,.5mm (what suits each engine)", LAB, 0 },
-	[OB_OPTION_AUDIT] = { NULL, "audit", NULL, "whether obsim's errors fall with its tolerance and its substeps",
-			      LAB, 0 },
-	[OB_OPTION_REPEATS] = { NULL, "repeats", "N", "runs of each; times are their medians (1)",
-				LAB | COMPARE | PAPER, 0 },
-	[OB_OPTION_SEEDS] = { NULL, "seeds", "N", "seeds, from the scene's on; repeats of each (1)", COMPARE, 0 },
-	[OB_OPTION_LIMIT] = { NULL, "limit", "S", "seconds of CPU that a run may take (150)", LAB, 0 },
-	[OB_OPTION_OUT] = { "What comes of it", "out", "DIR", "folder for results, diagrams, report (none)",
-			    LAB | PAPER | COMPARE | IMPORT, 0 },
-	[OB_OPTION_FRESH] = { NULL, "fresh", NULL, "run again what DIR has already", LAB | PAPER | COMPARE, 0 },
-	[OB_OPTION_JSON_OUT] = { NULL, "json", NULL, "print it as JSON", LAB | PAPER | INSPECT, 0 },
-	[OB_OPTION_CHECK_TARGETS] = { NULL, "check", NULL, "exit with 3 when obsim misses a target", LAB, 0 },
-
-	[OB_OPTION_ONCE] = { "The view", "once", NULL, "print once, for pipes, and end", TOP, 0 },
-	[OB_OPTION_INTERVAL] = { NULL, "interval", "S", "seconds between looks (1)", TOP, 0 },
-
-	[OB_OPTION_HELP] = { "Other", "help", NULL, "print this and end",
-			     STEPPED | COMPARE | TOP | LAB | PAPER | INSPECT | SEND | EXPORT | SCENES | IMPORT, 'h' },
+#define X(id, group, letter, ...) { group, letter, __VA_ARGS__ },
+	OB_OPTION_LIST(X)
+#undef X
 };
+
+// The setting whose option this is; NULL: it is none's.
+static const ob_setting *setting_of(const ob_option *o)
+{
+	return o->help ? NULL : &ob_setting_table[ob_setting_by_name(o->name)];
+}
+
+static const char *argument_of(const ob_option *o)
+{
+	return o->help || o->argument ? o->argument : setting_of(o)->form;
+}
+
+// True if the command takes the setting by --set.
+static bool takes(ob_command_bit command, const ob_setting *s)
+{
+	static const unsigned commands[] = { [OB_SETTING_SOLVED] = STEPPED | COMPARE,
+					     [OB_SETTING_FREE] = RUN | SERVE,
+					     [OB_SETTING_WATCHED] = STEPPED,
+					     [OB_SETTING_RUN] = RUN };
+	return !(s->flags & OB_SETTING_OPTION) && commands[s->group] & command;
+}
 
 static int unknown(const ob_arguments *a, const char *name, ob_error *e)
 {
+	static const struct {
+		const char *former, *now;
+	} outs[] = { { "frames", "DIR" }, { "video", "FILE.mp4" }, { "raw", "FILE.rgb, or -" } };
 	ob_spelling s = ob_spelling_start(name);
+	char word[64];
+	snprintf(word, sizeof word, "%s", name);
+	for (char *dash; (dash = strchr(word, '-'));)
+		*dash = '_';
+	const int id = ob_setting_by_name(word);
+	const ob_setting *moved = id < 0 ? NULL : &ob_setting_table[id];
+	if (moved && takes(a->command, moved))
+		return ob_fail(e, "--%s is now --set %s=%s", name, moved->name, moved->form);
+	for (size_t i = 0; a->command == OB_COMMAND_RUN && i < sizeof outs / sizeof *outs; i++)
+		if (strcmp(outs[i].former, name) == 0)
+			return ob_fail(e, "--%s is now --out %s", name, outs[i].now);
 	for (int i = 0; i < OB_OPTIONS; i++) {
 		if (ob_option_table[i].commands & a->command)
 			ob_spelling_offer(&s, ob_option_table[i].name);
@@ -192,30 +78,63 @@ static int unknown(const ob_arguments *a, const char *name, ob_error *e)
 	return ob_fail(e, "unknown option --%s: --help lists the options", name);
 }
 
-// Checks a value against an argument like "obs|monolith"; upper case in that allows anything. Replaces a word of
-// earlier versions by the current one.
-static bool check_choice(const ob_option *o, const char **value, ob_error *e)
+// Checks a value against names like "obs|monolith"; upper case in them allows anything. Replaces a word of earlier
+// versions by the current one. what: the option with its mark before a value, without dashes.
+static bool check_choice(const char *what, const char *names, const char **value, ob_error *e)
 {
-	if (!o->argument || !strchr(o->argument, '|') || strpbrk(o->argument, "ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
+	if (!names || !strchr(names, '|') || strpbrk(names, "ABCDEFGHIJKLMNOPQRSTUVWXYZ"))
 		return true;
 	const char *now = ob_setting_renamed(*value);
 	char words[64];
-	snprintf(words, sizeof words, "%s", o->argument);
+	snprintf(words, sizeof words, "%s", names);
 	ob_spelling s = ob_spelling_start(*value);
 	char *rest = words;
 	for (char *word; (word = strsep(&rest, "|"));) {
 		if (strcmp(word, *value) == 0)
 			return true;
 		if (now && strcmp(word, now) == 0) {
-			ob_log_note("--%s %s is now called --%s %s", o->name, *value, o->name, now);
+			ob_log_note("--%s%s is now called --%s%s", what, *value, what, now);
 			*value = now;
 			return true;
 		}
 		ob_spelling_offer(&s, word);
 	}
 	if (s.best)
-		return ob_fail(e, "--%s %s: did you mean %s? (%s)", o->name, *value, s.best, o->argument);
-	return ob_fail(e, "--%s %s: expected one of %s", o->name, *value, o->argument);
+		return ob_fail(e, "--%s%s: did you mean %s? (%s)", what, *value, s.best, names);
+	return ob_fail(e, "--%s%s: expected one of %s", what, *value, names);
+}
+
+// Takes --set NAME=VALUE.
+static bool set_setting(ob_arguments *a, const char *text, ob_error *e)
+{
+	const size_t n = strcspn(text, "=");
+	char name[32], what[40];
+	snprintf(name, sizeof name, "%.*s", (int)n, text);
+	if (strcmp(text, "help") == 0) {
+		a->value[OB_OPTION_SET] = text;
+		return true;
+	}
+	const int id = ob_setting_by_name(name);
+	const ob_setting *s = id < 0 ? NULL : &ob_setting_table[id];
+	if (s && s->flags & OB_SETTING_OPTION)
+		return ob_fail(e, "--set %s: it has an option of its own: --%s", text, s->name);
+	if (!s || !takes(a->command, s)) {
+		ob_spelling near = ob_spelling_start(name);
+		for (int i = 0; i < OB_SETTINGS; i++)
+			if (takes(a->command, &ob_setting_table[i]))
+				ob_spelling_offer(&near, ob_setting_table[i].name);
+		return near.best ? ob_fail(e, "--set %s: did you mean %s?", text, near.best)
+				 : ob_fail(e, "--set %s: there is no such setting here; --set help lists them", text);
+	}
+	if (strcmp(name, s->name) != 0)
+		ob_log_note("--set %s is now called --set %s", name, s->name);
+	if (a->setting[id])
+		return ob_fail(e, "--set %s is given twice", s->name);
+	if (!text[n] || !text[n + 1])
+		return ob_fail(e, "--set %s needs a value: --set %s=%s", s->name, s->name, s->form);
+	a->setting[id] = text + n + 1;
+	snprintf(what, sizeof what, "set %s=", s->name);
+	return check_choice(what, s->form, &a->setting[id], e);
 }
 
 static bool add_define(ob_arguments *a, const char *text, ob_error *e)
@@ -231,23 +150,44 @@ static bool add_define(ob_arguments *a, const char *text, ob_error *e)
 	return true;
 }
 
-static bool is_optional(const ob_option *o)
+// Takes --out of obsim run, once for each kind.
+static bool set_out(ob_arguments *a, const char *path, ob_error *e)
 {
-	return o->argument && o->argument[0] == '[';
+	ob_out kind;
+	if (!ob_output_kind(path, &kind, e))
+		return false;
+	if (a->out[kind])
+		return ob_fail(e, "--out %s and --out %s are of one kind: leave one away", a->out[kind], path);
+	a->out[kind] = a->value[OB_OPTION_PICTURES] = path;
+	return true;
+}
+
+static bool is_optional(const char *argument)
+{
+	return argument && argument[0] == '[';
 }
 
 static bool set(ob_arguments *a, ob_option_id id, const char *value, ob_error *e)
 {
 	const ob_option *o = &ob_option_table[id];
+	const char *argument = argument_of(o);
+	const ob_setting *setting = setting_of(o);
+	const char **to = setting ? &a->setting[setting - ob_setting_table] : &a->value[id];
+	char what[40];
 	if (id == OB_OPTION_DEFINE)
 		return add_define(a, value, e);
-	if (a->value[id])
+	if (id == OB_OPTION_SET)
+		return set_setting(a, value, e);
+	if (id == OB_OPTION_PICTURES)
+		return set_out(a, value, e);
+	if (*to)
 		return ob_fail(e, "--%s is given twice", o->name);
-	if (o->argument && !*value && !is_optional(o))
-		return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, o->argument);
-	if (!check_choice(o, &value, e) || !ob_output_check(id, o->name, value, e))
+	if (argument && !*value && !is_optional(argument))
+		return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, argument);
+	snprintf(what, sizeof what, "%s ", o->name);
+	if (!check_choice(what, argument, &value, e) || !ob_output_check(id, o->name, value, e))
 		return false;
-	a->value[id] = value;
+	*to = value;
 	return true;
 }
 
@@ -280,9 +220,6 @@ static bool take_option(ob_arguments *a, int argc, char **argv, int *at, ob_erro
 		char name[64];
 		snprintf(name, sizeof name, "%.*s", (int)(length < 60 ? length : 60), text + 2);
 		id = find_long(a, text + 2, length);
-		const char *now = id < 0 ? ob_setting_renamed(name) : NULL;
-		if (now && (id = find_long(a, now, strlen(now))) >= 0)
-			ob_log_note("--%s is now called --%s", name, now);
 		if (id < 0)
 			return unknown(a, name, e);
 		value = text[2 + length] ? text + 2 + length + 1 : NULL;
@@ -295,14 +232,15 @@ static bool take_option(ob_arguments *a, int argc, char **argv, int *at, ob_erro
 		value = text[2] ? text + 2 : NULL;
 	}
 	const ob_option *o = &ob_option_table[id];
-	if (is_optional(o))
+	const char *argument = argument_of(o);
+	if (is_optional(argument))
 		return value && !*value ? ob_fail(e, "--%s=: expected a list behind it, or leave the = away", o->name)
 					: set(a, id, value ? value : "", e);
-	if (!o->argument)
+	if (!argument)
 		return value ? ob_fail(e, "--%s takes no value", o->name) : set(a, id, "", e);
 	if (!value) {
 		if (*at + 1 >= argc || strncmp(argv[*at + 1], "--", 2) == 0)
-			return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, o->argument);
+			return ob_fail(e, "--%s needs a value: --%s %s", o->name, o->name, argument);
 		value = argv[++*at];
 	}
 	return set(a, id, value, e);
@@ -365,6 +303,26 @@ bool ob_options_define(ob_arguments *own, const ob_arguments *a, const char *def
 	return true;
 }
 
+_Static_assert(OB_OPTIONS <= 64, "each has a bit of a set");
+
+ob_setting_spelling ob_options_given(const ob_arguments *a, uint64_t options, uint64_t settings)
+{
+	ob_setting_spelling found = { "" };
+	for (int i = 0; i < OB_SETTINGS; i++)
+		if (a->setting[i] && settings >> i & 1)
+			found = ob_setting_option((ob_setting_id)i);
+	for (int i = 0; i < OB_OPTIONS; i++)
+		if ((i == OB_OPTION_DEFINE ? a->defines > 0 : a->value[i] != NULL) && options >> i & 1)
+			snprintf(found.text, sizeof found.text, "%s", ob_option_table[i].name);
+	return found;
+}
+
+bool ob_options_refuse(const ob_arguments *a, uint64_t options, uint64_t settings, const char *why, ob_error *e)
+{
+	const ob_setting_spelling given = ob_options_given(a, options, settings);
+	return !*given.text || ob_fail(e, "--%s%s", given.text, why);
+}
+
 static const struct {
 	ob_command_bit command;
 	const char *usage, *what;
@@ -399,7 +357,6 @@ static const struct {
 	unsigned command;
 	const char *help;
 } own_help[] = {
-	{ OB_OPTION_PATIENCE, EXPORT, "seconds that the page may take to make (10)" },
 	{ OB_OPTION_PACE, SERVE, "simulated seconds a second of the clock (realtime)" },
 	{ OB_OPTION_ISOLATION, SERVE, "what a worker is (process)" },
 	{ OB_OPTION_ON_DEATH, SERVE, "what a death or failure does: restart, freeze, end, or keep what can be (keep)" },
@@ -417,7 +374,34 @@ static const char *help_of(ob_option_id id, ob_command_bit command)
 	for (size_t i = 0; i < sizeof own_help / sizeof *own_help; i++)
 		if (own_help[i].id == id && own_help[i].command == command)
 			return own_help[i].help;
-	return ob_option_table[id].help;
+	const ob_option *o = &ob_option_table[id];
+	return o->help ? o->help : setting_of(o)->help;
+}
+
+static void print_line(FILE *f, const char *left, const char *help)
+{
+	fprintf(f, "  %-32s%s%s\n", left, strlen(left) > 32 ? "\n                                   " : " ", help);
+}
+
+void ob_options_help_set(FILE *f, ob_command_bit command)
+{
+	static const char *const titles[] = { [OB_SETTING_SOLVED] = "How it is solved",
+					      [OB_SETTING_FREE] = "With --sync free",
+					      [OB_SETTING_WATCHED] = "How simulators are watched",
+					      [OB_SETTING_RUN] = "What comes of it" };
+	fputs("Settings: --set NAME=VALUE, any number of them. Defaults stand in brackets.\n", f);
+	int shown = -1;
+	for (int i = 0; i < OB_SETTINGS; i++) {
+		const ob_setting *s = &ob_setting_table[i];
+		char left[128];
+		if (!takes(command, s))
+			continue;
+		if ((int)s->group != shown)
+			fprintf(f, "\n%s:\n", titles[s->group]);
+		shown = (int)s->group;
+		snprintf(left, sizeof left, "%s=%s", s->name, s->form);
+		print_line(f, left, s->help);
+	}
 }
 
 void ob_options_help(FILE *f, ob_command_bit command)
@@ -436,11 +420,10 @@ void ob_options_help(FILE *f, ob_command_bit command)
 			fprintf(f, "\n%s:\n", group);
 		shown = group;
 		char left[128];
-		const int width = snprintf(left, sizeof left, "%s%c%s--%s%s%s", o->letter ? "-" : " ",
-					   o->letter ? o->letter : ' ', o->letter ? ", " : "  ", o->name,
-					   is_optional(o) ? "" : " ", o->argument ? o->argument : "");
-		fprintf(f, "  %-32s%s%s\n", left, width > 32 ? "\n                                   " : " ",
-			help_of((ob_option_id)i, command));
+		const char *argument = argument_of(o);
+		snprintf(left, sizeof left, "%s%c%s--%s%s%s", o->letter ? "-" : " ", o->letter ? o->letter : ' ',
+			 o->letter ? ", " : "  ", o->name, is_optional(argument) ? "" : " ", argument ? argument : "");
+		print_line(f, left, help_of((ob_option_id)i, command));
 	}
 	if (command == OB_COMMAND_TOP)
 		fputs("\nKeys: q quits, w shows workers or objects, s sorts by id or speed, arrows and page keys "
@@ -448,8 +431,8 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		      f);
 	if (command == OB_COMMAND_RUN)
 		fputs("\nobsim run --resume FILE [OPTION ...] goes on with the scene and the settings of the "
-		      "checkpoint.\nobsim run --replay FILE.h5 --frames DIR draws what was recorded, with the options "
-		      "under Frames.\n",
+		      "checkpoint.\nobsim run --replay FILE.h5 --out DIR draws what was recorded, with the options "
+		      "under Pictures.\n",
 		      f);
 	if (command == OB_COMMAND_SERVE)
 		fputs("\nobsim serve --replay FILE.h5 [--listen ADDR:PORT] shows what was recorded, to each viewer at "

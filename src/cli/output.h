@@ -16,7 +16,12 @@ typedef enum ob_output {
 	OB_OUTPUT_PAGE = 32,
 	OB_OUTPUT_MCAP = 64,
 	OB_OUTPUT_SCENE = 128,
+	OB_OUTPUT_RAW = 256,
 } ob_output;
+
+// Finds what --out of obsim run writes: raw frames to -, a device, a pipe or a name that ends in .rgb; frames into a folder
+// that exists, or a name without an end; else a video. false and e on the end of another kind.
+bool ob_output_kind(const char *path, ob_out *kind, ob_error *e);
 
 // True if the name fits a file of one of these kinds: it ends as theirs do, or as none does that is known. what: for the
 // message.

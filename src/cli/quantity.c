@@ -8,6 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+// The mark between an option and its value.
+static const char *mark(const char *option)
+{
+	return strncmp(option, "set ", 4) == 0 ? "=" : " ";
+}
+
 bool ob_number_count(const char *option, const char *text, uint64_t least, uint64_t most, uint64_t *out, ob_error *e)
 {
 	if (!text)
@@ -16,9 +22,10 @@ bool ob_number_count(const char *option, const char *text, uint64_t least, uint6
 	errno = 0;
 	uint64_t n = strtoull(text, &end, 10);
 	if (!isdigit((unsigned char)*text) || *end)
-		return ob_fail(e, "--%s %s: expected a whole number", option, text);
+		return ob_fail(e, "--%s%s%s: expected a whole number", option, mark(option), text);
 	if (errno || n < least || n > most)
-		return ob_fail(e, "--%s %s: expected %" PRIu64 " to %" PRIu64, option, text, least, most);
+		return ob_fail(e, "--%s%s%s: expected %" PRIu64 " to %" PRIu64, option, mark(option), text, least,
+			       most);
 	*out = n;
 	return true;
 }
@@ -50,9 +57,10 @@ bool ob_number_real(const char *option, const char *text, double above, double m
 		x /= read_decimal(&at);
 	}
 	if (isnan(x) || *at)
-		return ob_fail(e, "--%s %s: expected a number, as .5 or 1/60", option, text);
+		return ob_fail(e, "--%s%s%s: expected a number, as .5 or 1/60", option, mark(option), text);
 	if (!(x > above && x <= most))
-		return ob_fail(e, "--%s %s: expected more than %g, at most %g", option, text, above, most);
+		return ob_fail(e, "--%s%s%s: expected more than %g, at most %g", option, mark(option), text, above,
+			       most);
 	*out = x;
 	return true;
 }

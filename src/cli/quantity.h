@@ -8,7 +8,7 @@
 #include <ob/error.h>
 
 // A number of the command line: the whole text must be one, within its range; false and e otherwise. text NULL leaves
-// *out as it is. option (without dashes) is for the message.
+// *out as it is. option (without dashes; "set lag" = a setting) is for the message.
 bool ob_number_count(const char *option, const char *text, uint64_t least, uint64_t most, uint64_t *out, ob_error *e);
 // Takes fractions, too: "1/60". above < value <= most.
 bool ob_number_real(const char *option, const char *text, double above, double most, double *out, ob_error *e);

@@ -367,7 +367,7 @@ static void print_scripts(const ob_report *r, FILE *f)
 		fprintf(f, "               and %" PRIu64 " more\n", r->scripts_stopped - SHOWN);
 }
 
-// Lines of what a run should not have: deaths, injected faults, scripts that stopped, lost events; and of --verify.
+// Lines of what a run should not have: deaths, injected faults, scripts that stopped, lost events; and of --set verify=on.
 static void print_exceptions(const ob_report *r, FILE *f)
 {
 	print_verified(r, f);

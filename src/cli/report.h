@@ -30,7 +30,7 @@
 	/* substeps of island-steps, if a tolerance chose; else 0 */ \
 	COUNT(substeps_min) COUNT(substeps_median) COUNT(substeps_max) \
 	COUNT(islands_redone) COUNT(islands_over) \
-	COUNT(verified_steps) COUNT(unverified_steps) /* of bodies, in the sample of --verify; too much work */ \
+	COUNT(verified_steps) COUNT(unverified_steps) /* of bodies, in the sample of --set verify=on; too much work */ \
 	/* m: errors of those steps at surface points, in a step; and in a second if all errors add up */ \
 	REAL(verified_p50_m) REAL(verified_p90_m) REAL(verified_p99_m) REAL(verified_max_m) \
 	REAL(verified_second_p50_m) REAL(verified_second_p90_m) REAL(verified_second_p99_m) REAL(verified_second_max_m) \

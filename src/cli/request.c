@@ -10,7 +10,7 @@
 
 #include "base/cpu.h"
 #include "base/spelling.h"
-#include "cli/free_request.h"
+#include "cli/output.h"
 #include "cli/quantity.h"
 #include "cli/shipped.h"
 #include "cli/version.h"
@@ -35,11 +35,6 @@ static bool count(const ob_arguments *a, ob_option_id id, uint32_t least, uint32
 static bool real(const ob_arguments *a, ob_option_id id, double most, double *out, ob_error *e)
 {
 	return ob_number_real(name_of(id), a->value[id], 0, most, out, e);
-}
-
-bool ob_request_read_patience(const ob_arguments *a, double *seconds, ob_error *e)
-{
-	return real(a, OB_OPTION_PATIENCE, 1e9, seconds, e);
 }
 
 // dirname() writes into its argument.
@@ -101,29 +96,36 @@ static bool is_stdout(const char *path)
 
 static bool check_outputs(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id files[] = { OB_OPTION_FRAMES, OB_OPTION_VIDEO,      OB_OPTION_RAW,
-					      OB_OPTION_RECORD, OB_OPTION_SERIES,     OB_OPTION_JSON,
-					      OB_OPTION_TRACE,  OB_OPTION_CHECKPOINT, OB_OPTION_RECORD_SCHEDULE };
-	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-		const char *path = a->value[files[i]], *option = name_of(files[i]);
-		if (!path)
-			continue;
-		for (size_t j = 0; j < i; j++) {
-			const char *other = a->value[files[j]];
-			if (other && strcmp(other, path) == 0)
-				return ob_fail(e, "--%s and --%s both write %s", name_of(files[j]), option,
+	const char *folder = a->out[OB_OUT_FOLDER];
+	const struct {
+		const char *option, *path;
+		bool may_be_stdout;
+	} out[] = {
+		{ "out", folder, false },
+		{ "out", a->out[OB_OUT_VIDEO], false },
+		{ "out", a->out[OB_OUT_RAW], true },
+		{ "record", a->value[OB_OPTION_RECORD], false },
+		{ "series", a->value[OB_OPTION_SERIES], false },
+		{ "json", a->value[OB_OPTION_JSON], true },
+		{ "trace", a->value[OB_OPTION_TRACE], false },
+		{ "checkpoint", a->value[OB_OPTION_CHECKPOINT], false },
+		{ "set record_schedule", a->setting[OB_SETTING_RECORD_SCHEDULE], false },
+	};
+	for (size_t i = 0; i < sizeof out / sizeof *out; i++) {
+		const char *path = out[i].path, *option = out[i].option;
+		for (size_t j = 0; path && j < i; j++)
+			if (out[j].path && strcmp(out[j].path, path) == 0)
+				return ob_fail(e, "--%s and --%s both write %s", out[j].option, option,
 					       is_stdout(path) ? "standard output" : path);
-		}
-		if (is_stdout(path) && (files[i] == OB_OPTION_RAW || files[i] == OB_OPTION_JSON))
-			continue;
-		if (is_stdout(path))
+		if (is_stdout(path) && !out[i].may_be_stdout)
 			return ob_fail(e, "--%s: cannot write to standard output, name a file", option);
-		bool fine = files[i] == OB_OPTION_FRAMES ? check_directory(option, path, e)
-							 : check_file(option, path, a->value[OB_OPTION_FRAMES], e);
+		const bool fine = !path || is_stdout(path) ||
+				  (i == 0 ? check_directory(option, path, e) : check_file(option, path, folder, e));
 		if (!fine)
 			return false;
 	}
-	return true;
+	return !a->setting[OB_SETTING_RECORD_SCHEDULE] ||
+	       ob_output_fits("--set record_schedule", a->setting[OB_SETTING_RECORD_SCHEDULE], 0, e);
 }
 
 // Checks the file of a checkpoint, which is written beside it and then replaces it: a regular file, or none yet.
@@ -145,26 +147,19 @@ static bool check_checkpoint(const char *path, ob_error *e)
 static bool read_checkpoint(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
 	r->checkpoint = a->value[OB_OPTION_CHECKPOINT];
-	r->every = 1;
-	if (a->value[OB_OPTION_EVERY] && !r->checkpoint)
-		return ob_fail(e, "--every needs --checkpoint");
-	return real(a, OB_OPTION_EVERY, 1e9, &r->every, e) && check_checkpoint(r->checkpoint, e);
+	if (a->setting[OB_SETTING_EVERY] && !r->checkpoint)
+		return ob_fail(e, "--set every needs --checkpoint");
+	return check_checkpoint(r->checkpoint, e);
 }
 
 // Refuses options that belong to the run that is resumed.
 static bool check_resumed(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id kept[] = { OB_OPTION_STEP,      OB_OPTION_SEED,     OB_OPTION_ARCH,
-					     OB_OPTION_TOLERANCE, OB_OPTION_SUBSTEPS, OB_OPTION_ITERATIONS,
-					     OB_OPTION_SOLVER,    OB_OPTION_LAG,      OB_OPTION_INTEGRATOR,
-					     OB_OPTION_SLEEPING,  OB_OPTION_NARROW,   OB_OPTION_LOAD };
 	if (a->operand)
 		return ob_fail(e, "--resume and the scene %s: expected one of them, for a checkpoint holds its scene",
 			       a->operand);
-	const char *given = a->defines > 0 ? name_of(OB_OPTION_DEFINE) : NULL;
-	for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
-		given = a->value[kept[i]] ? name_of(kept[i]) : given;
-	return !given || ob_fail(e, "--%s: a resumed run keeps the settings that it has; leave this away", given);
+	return ob_options_refuse(a, OB_BIT(OB_OPTION_DEFINE) | OB_BIT(OB_OPTION_SEED), OB_LOCKSTEP_BITS,
+				 ": a resumed run keeps the settings that it has; leave this away", e);
 }
 
 static bool read_overlay(ob_frames_request *f, const char *list, ob_error *e)
@@ -199,7 +194,7 @@ static bool read_stills(ob_frames_request *f, const ob_arguments *a, ob_error *e
 {
 	const char *list = a->value[OB_OPTION_STILL];
 	if (list && (f->video || a->value[OB_OPTION_FPS]))
-		return ob_fail(e, "--still gives single frames: leave --%s away", f->video ? "video" : "fps");
+		return ob_fail(e, "--still gives single frames: leave %s away", f->video ? "the video" : "--fps");
 	for (; list && *list; f->stills++) {
 		char number[32];
 		const size_t n = strcspn(list, ",");
@@ -238,36 +233,37 @@ static bool read_colours(ob_frames_request *f, const char *key, ob_error *e)
 	return true;
 }
 
-static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e)
+static bool read_frames(ob_frames_request *f, const ob_arguments *a, const ob_settings *asked, ob_error *e)
 {
 	*f = (ob_frames_request){
-		.dir = a->value[OB_OPTION_FRAMES],
-		.video = a->value[OB_OPTION_VIDEO],
-		.raw = a->value[OB_OPTION_RAW],
-		.gpu = a->value[OB_OPTION_GPU],
+		.dir = a->out[OB_OUT_FOLDER],
+		.video = a->out[OB_OUT_VIDEO],
+		.raw = a->out[OB_OUT_RAW],
+		.gpu = asked->gpu,
 		.camera = a->value[OB_OPTION_CAMERA],
 		.fps = 60,
 		.width = 1280,
 		.height = 720,
 	};
 	f->wanted = f->dir || f->video || f->raw;
-	static const ob_option_id details[] = { OB_OPTION_FPS,     OB_OPTION_SIZE,   OB_OPTION_QUALITY,
-						OB_OPTION_SAMPLES, OB_OPTION_CAMERA, OB_OPTION_OVERLAY,
-						OB_OPTION_GPU,     OB_OPTION_STILL,  OB_OPTION_COLOUR_BY };
-	for (size_t i = 0; i < sizeof details / sizeof *details; i++) {
-		if (a->value[details[i]] && !f->wanted)
-			return ob_fail(e, "--%s needs --frames, --video or --raw", name_of(details[i]));
-	}
+	const uint64_t details = OB_BIT(OB_OPTION_FPS) | OB_BIT(OB_OPTION_SIZE) | OB_BIT(OB_OPTION_QUALITY) |
+				 OB_BIT(OB_OPTION_CAMERA) | OB_BIT(OB_OPTION_OVERLAY) | OB_BIT(OB_OPTION_STILL) |
+				 OB_BIT(OB_OPTION_COLOUR_BY);
+	if (!f->wanted &&
+	    !ob_options_refuse(a, details, OB_BIT(OB_SETTING_SAMPLES) | OB_BIT(OB_SETTING_GPU), " needs --out", e))
+		return false;
 	if (f->gpu && strcmp(f->gpu, "surfaceless") != 0 && strspn(f->gpu, "0123456789") != strlen(f->gpu))
-		return ob_fail(e, "--gpu %s: expected surfaceless, or the number of a GPU, from 0", f->gpu);
+		return ob_fail(e, "--set gpu=%s: expected surfaceless, or the number of a GPU, from 0", f->gpu);
 	const char *quality = a->value[OB_OPTION_QUALITY];
 	if (quality && strcmp(quality, "draft") != 0 && strcmp(quality, "fine") != 0)
 		return ob_fail(e, "--quality %s: expected draft or fine", quality);
 	f->quality = quality && strcmp(quality, "fine") == 0 ? OB_QUALITY_FINE : OB_QUALITY_DRAFT;
-	uint32_t samples = f->quality == OB_QUALITY_FINE ? 16 : 0; // 0: the renderer's choice
-	if (!count(a, OB_OPTION_SAMPLES, 1, f->quality == OB_QUALITY_FINE ? 256 : 32, &samples, e))
-		return false;
-	f->samples = (int)samples;
+	const uint32_t most = f->quality == OB_QUALITY_FINE ? 256 : 32;
+	if (asked->samples > most)
+		return ob_fail(e, "--set samples=%u: expected 1 to %u for this --quality", asked->samples, most);
+	f->samples = asked->samples                  ? (int)asked->samples
+		     : f->quality == OB_QUALITY_FINE ? 16
+						     : 0; // 0: the renderer's choice
 	if (!real(a, OB_OPTION_FPS, 1e5, &f->fps, e) || !read_stills(f, a, e) ||
 	    !read_size(f, a->value[OB_OPTION_SIZE], e))
 		return false;
@@ -281,7 +277,7 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, ob_error *e
 static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
 	const char *text = a->value[OB_OPTION_WORKERS];
-	bool objects = text && strcmp(text, "objects") == 0, monolith = r->asked.monolith == 1;
+	bool objects = text && strcmp(text, "objects") == 0, monolith = r->asked.run.monolith == 1;
 	r->workers = monolith || objects ? !objects : (uint32_t)ob_cpu_count();
 	if (text && !objects && strspn(text, "0123456789") != strlen(text))
 		return ob_fail(e, "--workers %s: expected a number, or objects", text);
@@ -299,7 +295,7 @@ static bool read_harden(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		return false;
 	if (a->command == OB_COMMAND_COMPARE) // compare sets it by configurations
 		r->harden = 0;
-	if (r->harden && r->asked.monolith == 1)
+	if (r->harden && r->asked.run.monolith == 1)
 		return ob_fail(e,
 			       "--harden: a monolith is one simulator, which writes all; leave --arch monolith away");
 	if (r->harden && !r->isolation_given)
@@ -312,14 +308,14 @@ static bool read_harden(ob_run_request *r, const ob_arguments *a, ob_error *e)
 // Reads the policy for deaths of simulators, and their limit: "5/10" is five deaths within ten seconds.
 static bool read_deaths(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
-	const char *policy = a->value[OB_OPTION_ON_DEATH], *limit = a->value[OB_OPTION_RESTARTS];
+	const char *policy = a->value[OB_OPTION_ON_DEATH], *limit = r->asked.restarts;
 	uint32_t value = OB_ON_DEATH_RESTART;
 	uint64_t deaths = 0;
 	char number[32];
 	if (policy && !ob_setting_find(OB_ON_DEATH_NAMES, policy, &value))
 		return ob_fail(e, "--on-death %s: expected one of %s", policy, OB_ON_DEATH_NAMES);
 	r->on_death = (ob_on_death)value;
-	if (ob_on_death_freezes_failed(r->on_death) && r->asked.monolith == 1)
+	if (ob_on_death_freezes_failed(r->on_death) && r->asked.run.monolith == 1)
 		return ob_fail(e,
 			       "--on-death %s: a monolith is one simulator, without which nothing goes on; leave "
 			       "--arch monolith away",
@@ -328,37 +324,17 @@ static bool read_deaths(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		return true;
 	const char *slash = strchr(limit, '/');
 	if (!slash || (size_t)(slash - limit) >= sizeof number)
-		return ob_fail(e, "--restarts %s: expected a number and seconds, as in 5/10", limit);
+		return ob_fail(e, "--set restarts=%s: expected a number and seconds, as in 5/10", limit);
 	snprintf(number, sizeof number, "%.*s", (int)(slash - limit), limit);
-	if (!ob_number_count(name_of(OB_OPTION_RESTARTS), number, 1, OB_RESTART_LIMIT_MAX, &deaths, e) ||
-	    !ob_number_real(name_of(OB_OPTION_RESTARTS), slash + 1, 0, 1e9, &r->limit.seconds, e))
+	if (!ob_number_count("set restarts", number, 1, OB_RESTART_LIMIT_MAX, &deaths, e) ||
+	    !ob_number_real("set restarts", slash + 1, 0, 1e9, &r->limit.seconds, e))
 		return false;
 	r->limit.deaths = (uint32_t)deaths;
 	return r->on_death != OB_ON_DEATH_ABORT ||
-	       ob_fail(e, "--restarts: with --on-death abort nothing is restarted; leave one of them away");
+	       ob_fail(e, "--set restarts: with --on-death abort nothing is restarted; leave one of them away");
 }
 
-static bool read_setting(ob_run_settings *to, const ob_setting *s, const char *text, ob_error *e)
-{
-	void *at = (char *)to + s->offset;
-	uint64_t n = 0;
-	switch (s->kind) {
-	case OB_SETTING_REAL:
-		return ob_number_real(s->name, text, s->least, s->most, at, e);
-	case OB_SETTING_COUNT:
-		if (!ob_number_count(s->name, text, (uint64_t)s->least, (uint64_t)s->most, &n, e))
-			return false;
-		*(uint32_t *)at = (uint32_t)n;
-		return true;
-	case OB_SETTING_CHOICE:
-	case OB_SETTING_SWITCH:
-		return ob_setting_find(s->names, text, at) ||
-		       ob_fail(e, "--%s %s: expected one of %s", s->name, text, s->names);
-	}
-	return false;
-}
-
-static bool read_tolerance(ob_run_request *r, const char *text, ob_error *e)
+static bool read_tolerance(ob_settings *to, const char *text, ob_error *e)
 {
 	const ob_setting *s = &ob_setting_table[OB_SETTING_TOLERANCE];
 	ob_length l;
@@ -366,38 +342,66 @@ static bool read_tolerance(ob_run_request *r, const char *text, ob_error *e)
 		return ob_fail(e, "--tolerance %s: expected %s", text, OB_LENGTH_FORMS);
 	if (!(l.share > 0) && !(l.m >= s->least && l.m <= s->most))
 		return ob_fail(e, "--tolerance %s: expected %gm to %gm", text, s->least, s->most);
-	r->tolerance_share = l.share;
-	r->asked.tolerance = l.share > 0 ? OB_DEFAULT_TOLERANCE : l.m; // the default, until the scene is known
+	to->tolerance_share = l.share;
+	to->run.tolerance = l.share > 0 ? OB_DEFAULT_TOLERANCE : l.m; // the default, until the scene is known
+	return true;
+}
+
+static bool read_real(double *to, const ob_setting *s, const char *option, const char *text, ob_error *e)
+{
+	if (s->flags & OB_SETTING_NONE && strcmp(text, "none") == 0) {
+		*to = INFINITY;
+		return true;
+	}
+	const bool above = s->flags & OB_SETTING_ABOVE;
+	if (!above && s->least == 0 && strcmp(text, "0") == 0) {
+		*to = 0;
+		return true;
+	}
+	return ob_number_real(option, text, s->least, s->most, to, e);
+}
+
+bool ob_request_read_settings(ob_settings *to, const ob_arguments *a, ob_error *e)
+{
+	for (int i = 0; i < OB_SETTINGS; i++) {
+		const ob_setting *s = &ob_setting_table[i];
+		const char *text = a->setting[i];
+		const ob_setting_spelling option = ob_setting_option((ob_setting_id)i);
+		void *at = (char *)to + s->offset;
+		uint64_t n = 0;
+		bool fine = true;
+		if (!text)
+			continue;
+		to->given |= 1ull << i;
+		if (i == OB_SETTING_TOLERANCE)
+			fine = read_tolerance(to, text, e);
+		else if (s->kind == OB_SETTING_REAL)
+			fine = read_real(at, s, option.text, text, e);
+		else if (s->kind == OB_SETTING_TEXT)
+			*(const char **)at = text;
+		else if (s->kind == OB_SETTING_COUNT)
+			fine = ob_number_count(option.text, text, (uint64_t)s->least, (uint64_t)s->most, &n, e);
+		else
+			fine = ob_setting_find(s->form, text, at) ||
+			       ob_fail(e, "--%s %s: a run has one of %s; obsim compare runs both ways", option.text,
+				       text, s->form);
+		if (!fine)
+			return false;
+		if (s->kind == OB_SETTING_COUNT)
+			*(uint32_t *)at = (uint32_t)n;
+	}
 	return true;
 }
 
 static bool read_settings(ob_run_request *r, const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id option[OB_SETTINGS] = {
-		[OB_SETTING_ARCHITECTURE] = OB_OPTION_ARCH,
-		[OB_SETTING_STEP] = OB_OPTION_STEP,
-		[OB_SETTING_TOLERANCE] = OB_OPTION_TOLERANCE,
-		[OB_SETTING_SUBSTEPS] = OB_OPTION_SUBSTEPS,
-		[OB_SETTING_ITERATIONS] = OB_OPTION_ITERATIONS,
-		[OB_SETTING_SOLVER] = OB_OPTION_SOLVER,
-		[OB_SETTING_LAG] = OB_OPTION_LAG,
-		[OB_SETTING_INTEGRATOR] = OB_OPTION_INTEGRATOR,
-		[OB_SETTING_SLEEPING] = OB_OPTION_SLEEPING,
-		[OB_SETTING_NARROW_PHASE] = OB_OPTION_NARROW,
-		[OB_SETTING_LOAD] = OB_OPTION_LOAD,
-	};
-	r->asked = ob_run_settings_unset();
-	for (int i = 0; i < OB_SETTINGS; i++) {
-		const char *text = a->value[option[i]];
-		bool fine =
-			!text || (i == OB_SETTING_TOLERANCE ? read_tolerance(r, text, e)
-							    : read_setting(&r->asked, &ob_setting_table[i], text, e));
-		if (!fine)
-			return false;
-	}
-	if (a->value[OB_OPTION_TOLERANCE] && a->value[OB_OPTION_SUBSTEPS])
-		return ob_fail(
-			e, "--tolerance and --substeps: expected one of them, for a tolerance chooses the substeps");
+	r->asked = (ob_settings){ .every = 1 };
+	if (a->setting[OB_SETTING_TOLERANCE] && a->setting[OB_SETTING_SUBSTEPS])
+		return ob_fail(e, "--tolerance and --set substeps: expected one of them, for a tolerance chooses the "
+				  "substeps");
+	if (!ob_request_read_settings(&r->asked, a, e))
+		return false;
+	r->patience = r->asked.patience;
 	return true;
 }
 
@@ -502,7 +506,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		return false;
 	if (!a->operand && !resume)
 		return ob_fail(e, "no scene given: obsim %s falling_boxes", verbs[a->command]);
-	const char *isolation = a->value[OB_OPTION_ISOLATION], *measure = a->value[OB_OPTION_MEASURE];
+	const char *isolation = a->value[OB_OPTION_ISOLATION];
 	*r = (ob_run_request){
 		.scene = ob_shipped_find(a->operand),
 		.resume = resume,
@@ -514,11 +518,7 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		.isolation_given = isolation != NULL,
 		.explain = a->value[OB_OPTION_EXPLAIN] != NULL,
 		.strict = a->value[OB_OPTION_STRICT] != NULL,
-		.verify = a->value[OB_OPTION_VERIFY] != NULL,
 		.check = a->value[OB_OPTION_CHECK] != NULL,
-		.measure = !measure || strcmp(measure, "step") == 0 ? OB_MEASURE_STEPS
-			   : strcmp(measure, "profile") == 0        ? OB_MEASURE_PROFILE
-								    : OB_MEASURE_ENDS,
 		.record = a->value[OB_OPTION_RECORD],
 		.series = a->value[OB_OPTION_SERIES],
 		.trace = a->value[OB_OPTION_TRACE],
@@ -526,49 +526,41 @@ bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 		.full_report = a->value[OB_OPTION_REPORT] && strcmp(a->value[OB_OPTION_REPORT], "full") == 0,
 	};
 	r->scene_options.has_seed = a->value[OB_OPTION_SEED] != NULL;
-	if (r->measure != OB_MEASURE_STEPS && r->series)
-		return ob_fail(e, "--series has a line for each step: it needs --measure step");
-	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) && ob_request_read_patience(a, &r->patience, e) &&
+	if (!read_settings(r, a, e))
+		return false;
+	if (r->asked.measure != OB_MEASURE_STEPS && r->series)
+		return ob_fail(e, "--series has a line for each step: it needs --set measure=step");
+	return real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) &&
 	       ob_number_count("seed", a->value[OB_OPTION_SEED], 0, UINT64_MAX, &r->scene_options.seed, e) &&
-	       read_pace(r, a, e) && read_settings(r, a, e) && read_workers(r, a, e) && read_harden(r, a, e) &&
-	       read_deaths(r, a, e) && (!r->record || ob_record_check(e)) && check_name(r->name, e) &&
-	       read_frames(&r->frames, a, e) && check_outputs(a, e) && read_checkpoint(r, a, e) &&
+	       read_pace(r, a, e) && read_workers(r, a, e) && read_harden(r, a, e) && read_deaths(r, a, e) &&
+	       (!r->record || ob_record_check(e)) && check_name(r->name, e) &&
+	       read_frames(&r->frames, a, &r->asked, e) && check_outputs(a, e) && read_checkpoint(r, a, e) &&
 	       read_fault(r, a->value[OB_OPTION_FAULT], e) && ob_free_request_read(r, a, e);
 }
 
-bool ob_request_check_replay(const ob_arguments *a, const ob_option_id *allowed, size_t count, ob_error *e)
+bool ob_request_check_replay(const ob_arguments *a, uint64_t options, uint64_t settings, ob_error *e)
 {
 	if (a->operand)
 		return ob_fail(e,
 			       "--replay and the scene %s: expected one of them, for a record holds all that is shown",
 			       a->operand);
-	for (int i = 0; i < OB_OPTIONS; i++) {
-		bool fine = i == OB_OPTION_DEFINE ? a->defines == 0 : !a->value[i];
-		for (size_t k = 0; k < count; k++)
-			fine |= allowed[k] == (ob_option_id)i;
-		if (!fine)
-			return ob_fail(e, "--%s: a record is shown as it was run; leave this away",
-				       name_of((ob_option_id)i));
-	}
-	return true;
+	return ob_options_refuse(a, ~options, ~settings, ": a record is shown as it was run; leave this away", e);
 }
 
 bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id allowed[] = { OB_OPTION_REPLAY, OB_OPTION_DURATION,  OB_OPTION_FRAMES,
-						OB_OPTION_VIDEO,  OB_OPTION_RAW,       OB_OPTION_FPS,
-						OB_OPTION_SIZE,   OB_OPTION_SAMPLES,   OB_OPTION_CAMERA,
-						OB_OPTION_STILL,  OB_OPTION_COLOUR_BY, OB_OPTION_OVERLAY,
-						OB_OPTION_GPU,    OB_OPTION_QUALITY };
+	const uint64_t allowed = OB_BIT(OB_OPTION_REPLAY) | OB_BIT(OB_OPTION_DURATION) | OB_BIT(OB_OPTION_PICTURES) |
+				 OB_BIT(OB_OPTION_FPS) | OB_BIT(OB_OPTION_SIZE) | OB_BIT(OB_OPTION_QUALITY) |
+				 OB_BIT(OB_OPTION_CAMERA) | OB_BIT(OB_OPTION_STILL) | OB_BIT(OB_OPTION_COLOUR_BY) |
+				 OB_BIT(OB_OPTION_OVERLAY);
+	ob_settings asked = { 0 };
 	*r = (ob_replay_request){ .record = a->value[OB_OPTION_REPLAY] };
-	if (!ob_request_check_replay(a, allowed, sizeof allowed / sizeof *allowed, e) ||
-	    !read_frames(&r->frames, a, e) || !real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) ||
-	    !check_outputs(a, e))
+	if (!ob_request_check_replay(a, allowed, OB_BIT(OB_SETTING_SAMPLES) | OB_BIT(OB_SETTING_GPU), e) ||
+	    !ob_request_read_settings(&asked, a, e) || !read_frames(&r->frames, a, &asked, e) ||
+	    !real(a, OB_OPTION_DURATION, 1e9, &r->duration, e) || !check_outputs(a, e))
 		return false;
 	if (!r->frames.wanted)
-		return ob_fail(
-			e, "--replay needs --frames, --video or --raw; obsim serve --replay %s shows it in a browser",
-			r->record);
+		return ob_fail(e, "--replay needs --out; obsim serve --replay %s shows it in a browser", r->record);
 	if (r->frames.colour_by >= OB_COLOUR_WORKER && r->frames.colour_by <= OB_COLOUR_RANK)
 		return ob_fail(e,
 			       "--colour-by %s: a record does not hold where simulators ran; simulator, island, "
@@ -650,11 +642,11 @@ static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 	if (r->strict && !(r->run.tolerance > 0) && !s->scripts)
 		return ob_fail(e, "--strict: this run has no tolerance that it could miss, and no scripts; give it one "
 				  "with --tolerance");
-	if (r->run.monolith && r->verify)
-		return ob_fail(e, "--verify means nothing to --arch monolith");
-	r->run.verify = r->verify;
+	if (r->run.monolith && r->asked.run.verify)
+		return ob_fail(e, "--set verify=on means nothing to --arch monolith");
+	r->run.verify = r->asked.run.verify;
 	r->run.fault = r->fault;
-	r->run.timed = r->explain || r->measure == OB_MEASURE_PROFILE;
+	r->run.timed = r->explain || r->asked.measure == OB_MEASURE_PROFILE;
 	uint64_t steps = ob_request_steps(r->duration, r->run.step_length);
 	// a motion carries its step as 32 bits
 	if (steps > UINT32_MAX - 2)
@@ -667,13 +659,13 @@ static bool check_run(ob_run_request *r, const ob_scene *s, ob_error *e)
 static bool resolve_share(ob_run_request *r, const ob_scene *s, ob_error *e)
 {
 	const ob_setting *t = &ob_setting_table[OB_SETTING_TOLERANCE];
-	const double thin = ob_scene_thinnest(s), tolerance = r->tolerance_share * thin;
-	if (!(r->tolerance_share > 0) || isinf(thin))
+	const double thin = ob_scene_thinnest(s), tolerance = r->asked.tolerance_share * thin;
+	if (!(r->asked.tolerance_share > 0) || isinf(thin))
 		return true;
 	if (tolerance < t->least || tolerance > t->most)
 		return ob_fail(e, "--tolerance %g%%: of the thinnest object's %gm that is %gm; expected %gm to %gm",
-			       100 * r->tolerance_share, thin, tolerance, t->least, t->most);
-	r->asked.tolerance = tolerance;
+			       100 * r->asked.tolerance_share, thin, tolerance, t->least, t->most);
+	r->asked.run.tolerance = tolerance;
 	return true;
 }
 

@@ -14,7 +14,7 @@ enum { OB_STILLS_MAX = 64 };
 
 typedef struct ob_frames_request {
 	bool wanted; // any of the three below
-	const char *dir, *video, *raw; // NULL = not requested; raw "-" = standard output
+	const char *dir, *video, *raw; // by their names; NULL = not requested; raw "-" = standard output
 	const char *gpu, *camera; // NULL = the renderer's choice, the scene's first camera
 	double fps; // per simulated second
 	double still[OB_STILLS_MAX]; // s, ascending: times of single frames instead
@@ -25,12 +25,6 @@ typedef struct ob_frames_request {
 	char reader[OB_NAME_MAX]; // object whose readings are drawn; "" = all
 	ob_colour_key colour_by;
 } ob_frames_request;
-
-typedef enum ob_measure_when {
-	OB_MEASURE_STEPS, // each step
-	OB_MEASURE_ENDS, // the start and the end
-	OB_MEASURE_PROFILE, // start and end, and the workers' time by section
-} ob_measure_when;
 
 typedef struct ob_run_request {
 	const char *scene; // path; NULL until a resumed run sets it
@@ -44,26 +38,22 @@ typedef struct ob_run_request {
 	double patience; // s, for a step; 0 = the host's choice
 	ob_on_death on_death;
 	ob_restart_limit limit; // of deaths
-	ob_run_settings asked; // a layer: settings that are not on the command line are unset
+	ob_settings asked; // those of the command line
 	ob_run_settings run; // after ob_request_resolve
-	double tolerance_share; // of the thickness of the thinnest body: the tolerance; 0: it is a length
 	bool explain;
 	bool strict; // a missed tolerance is a failure, and so is an error of a script
-	bool verify; // a sample of steps is solved finely besides
 	bool check; // checks the simulators' shared state after each step
-	ob_measure_when measure;
 	ob_frames_request frames;
 	double pace; // simulated seconds a second; OB_PACE_MAX
 	bool full_report; // for people
 	const char *record, *series, *trace, *json; // paths; NULL = not requested; json "-" = standard output
 	const char *checkpoint, *resume; // paths; NULL = not requested
-	double every; // s, simulated, between checkpoints
 	ob_fault_plan fault; // to inject; zeroed = none
-	bool is_free, sync_asked; // is_free: after ob_request_resolve; sync_asked: the command line has --sync
+	bool is_free; // after ob_request_resolve
 	bool free_command; // the command can run free
-	const char *of_free, *of_lockstep; // an option that was given, and is for one of the two alone; NULL = none
+	ob_setting_spelling of_free,
+		of_lockstep; // an option that was given, and is for one of the two alone; "" = none
 	ob_free_settings free; // of a free run
-	const char *record_schedule, *replay_schedule; // paths; NULL = not requested
 	uint64_t schedule_digest; // of all that decides a free run, but for its settings and its schedule
 } ob_run_request;
 
@@ -71,8 +61,8 @@ typedef struct ob_run_request {
 // The strings stay those of a.
 bool ob_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
 
-// Seconds given by --patience; unchanged without it.
-bool ob_request_read_patience(const ob_arguments *a, double *seconds, ob_error *e);
+// Reads the settings of a command line; false and e on malformed ones.
+bool ob_request_read_settings(ob_settings *to, const ob_arguments *a, ob_error *e);
 
 // Fills duration and settings from the scene where the command line leaves them open. false and e when the result
 // cannot be run.
@@ -89,12 +79,16 @@ typedef struct ob_replay_request {
 	ob_frames_request frames;
 } ob_replay_request;
 
-// false and e when there is a scene beside --replay, or an option that is not allowed.
-bool ob_request_check_replay(const ob_arguments *a, const ob_option_id *allowed, size_t count, ob_error *e);
+// false and e when there is a scene beside --replay, or an option or a setting that is not allowed (OB_BIT).
+bool ob_request_check_replay(const ob_arguments *a, uint64_t options, uint64_t settings, ob_error *e);
 // false and e on options that have no meaning for a replay, or other errors.
 bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_error *e);
 // false and e when no camera has the requested name, or a frame is due after the run's duration (s).
 bool ob_request_check_frames(const ob_frames_request *f, const ob_scene *s, double duration, ob_error *e);
+
+// The parts of reading and resolving that free running adds (free_request.c).
+bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
+bool ob_free_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e);
 
 // Configuration of the host for a resolved request.
 ob_host_config ob_request_host(const ob_run_request *r);

@@ -65,17 +65,12 @@ static bool compare_states(ob_host *h, const ob_logged_requests *l, ob_error *e)
 // Refuses options without effect: a replay ends with the log, and writes no files.
 static bool check_options(const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id useless[] = { OB_OPTION_DURATION, OB_OPTION_FRAMES, OB_OPTION_VIDEO,
-						OB_OPTION_RAW,      OB_OPTION_RECORD, OB_OPTION_SERIES,
-						OB_OPTION_JSON,     OB_OPTION_REPORT, OB_OPTION_TRACE,
-						OB_OPTION_EXPLAIN,  OB_OPTION_RESUME, OB_OPTION_CHECKPOINT,
-						OB_OPTION_ON_DEATH };
-	for (size_t i = 0; i < sizeof useless / sizeof *useless; i++)
-		if (a->value[useless[i]])
-			return ob_fail(
-				e, "--%s: --replay-requests does as the log says, and writes nothing; leave it away",
-				ob_option_table[useless[i]].name);
-	return true;
+	const uint64_t useless = OB_BIT(OB_OPTION_DURATION) | OB_BIT(OB_OPTION_PICTURES) | OB_BIT(OB_OPTION_RECORD) |
+				 OB_BIT(OB_OPTION_SERIES) | OB_BIT(OB_OPTION_JSON) | OB_BIT(OB_OPTION_REPORT) |
+				 OB_BIT(OB_OPTION_TRACE) | OB_BIT(OB_OPTION_EXPLAIN) | OB_BIT(OB_OPTION_RESUME) |
+				 OB_BIT(OB_OPTION_CHECKPOINT) | OB_BIT(OB_OPTION_ON_DEATH);
+	return ob_options_refuse(a, useless, 0,
+				 ": --replay-requests does as the log says, and writes nothing; leave it away", e);
 }
 
 static bool prepare(const ob_arguments *a, ob_run_request *q, ob_scene **scene, ob_logged_requests *l, ob_error *e)

@@ -63,7 +63,7 @@ static uint64_t next_boundary(const run *r)
 	uint64_t now = r->now.step, next = r->steps;
 	if (now >= r->steps)
 		return UINT64_MAX;
-	if (r->request.measure == OB_MEASURE_STEPS)
+	if (r->request.asked.measure == OB_MEASURE_STEPS)
 		return now + 1;
 	if (r->recorder)
 		next = earlier(next, (now / r->scene->record_every + 1) * r->scene->record_every);
@@ -80,7 +80,7 @@ static bool use_snapshot(run *r, ob_error *e)
 	const ob_snapshot *prev = r->now.step > r->first ? &r->prev : NULL;
 	bool ends = r->now.step == 0 || r->now.step >= r->steps;
 	uint64_t begin = ob_clock_ns();
-	if (r->request.measure == OB_MEASURE_STEPS || ends) {
+	if (r->request.asked.measure == OB_MEASURE_STEPS || ends) {
 		if (!ob_observer_measure(&r->observer, &r->now, r->host, e))
 			return false;
 		ob_host_trace(r->host, OB_TRACE_MEASURE, begin, 0);
@@ -116,7 +116,7 @@ static bool take_snapshot(run *r, ob_error *e)
 
 static bool measures_all(const run *r)
 {
-	return r->request.measure == OB_MEASURE_STEPS && (!r->request.resume || r->saved.figures.each_step);
+	return r->request.asked.measure == OB_MEASURE_STEPS && (!r->request.resume || r->saved.figures.each_step);
 }
 
 // Writes a checkpoint of the newest snapshot's step, where the universe stands.
@@ -424,7 +424,7 @@ static void warn_of_coarse_tolerance(const run *r)
 	enum { COARSE = 10 }; // thickness by tolerance
 	const double tolerance = r->request.run.tolerance, thin = ob_scene_thinnest(r->scene);
 	ob_quantity allowed, size;
-	if (r->ranks.rank == 0 && !(r->request.tolerance_share > 0) && COARSE * tolerance > thin)
+	if (r->ranks.rank == 0 && !(r->request.asked.tolerance_share > 0) && COARSE * tolerance > thin)
 		ob_log_warn("the tolerance of %s is coarse for the thinnest object, of %s: --tolerance .1%% follows "
 			    "the size",
 			    ob_quantity_text(&allowed, tolerance, "m"), ob_quantity_text(&size, thin, "m"));
@@ -568,7 +568,7 @@ static bool share(run *r, ob_ranks ranks, ob_error *e)
 			return ob_fail(e, "--checkpoint: the name is too long");
 		q->checkpoint = r->own_checkpoint;
 	}
-	q->measure = OB_MEASURE_ENDS;
+	q->asked.measure = OB_MEASURE_ENDS;
 	q->pace = INFINITY;
 	return true;
 }
@@ -577,7 +577,7 @@ static void prepare(run *r, ob_host_config *config)
 {
 	const ob_run_request *q = &r->request;
 	r->steps = ob_request_steps(q->duration, q->run.step_length);
-	r->every = ob_request_steps(q->every, q->run.step_length);
+	r->every = ob_request_steps(q->asked.every, q->run.step_length);
 	r->kept = UINT64_MAX;
 	*config = ob_request_host(q);
 	config->ranks = r->ranks;
@@ -612,7 +612,7 @@ int ob_command_run(const ob_arguments *a)
 
 	signal(SIGPIPE, SIG_IGN); // a reader that leaves is an error of the sink, with a message
 	ob_interrupt_watch(); // before there is anything to clean up after Ctrl-C
-	const char *schedule = r.request.record_schedule;
+	const char *schedule = r.request.asked.record_schedule;
 	const bool begun =
 		!schedule || ob_free_schedule_create(schedule, &r.request.free, r.request.schedule_digest, &e);
 	r.host = begun ? ob_host_start(r.scene, &config, &e) : NULL;

@@ -328,10 +328,10 @@ static int show_film(const serve_request *q, ob_error *e)
 
 static bool read_replay_request(serve_request *q, const ob_arguments *a, ob_error *e)
 {
-	static const ob_option_id allowed[] = { OB_OPTION_REPLAY, OB_OPTION_LISTEN, OB_OPTION_PATIENCE };
 	const char *listen = a->value[OB_OPTION_LISTEN];
 	*q = (serve_request){ .server = { .look_only = true, .version = ob_version_commit } };
-	return ob_request_check_replay(a, allowed, sizeof allowed / sizeof *allowed, e) &&
+	return ob_request_check_replay(a, OB_BIT(OB_OPTION_REPLAY) | OB_BIT(OB_OPTION_LISTEN),
+				       OB_BIT(OB_SETTING_PATIENCE), e) &&
 	       ob_listen_read(&q->server.listen, listen ? listen : "127.0.0.1:8080", e);
 }
 
@@ -340,11 +340,11 @@ static int serve_replay(const ob_arguments *a)
 	serve_request q;
 	ob_error e;
 	const char *path = a->value[OB_OPTION_REPLAY];
-	double seconds = OB_FILM_SECONDS;
+	ob_settings asked = { .patience = OB_FILM_SECONDS };
 	const bool fine =
-		ob_serve_check(&e) && read_replay_request(&q, a, &e) && ob_request_read_patience(a, &seconds, &e);
+		ob_serve_check(&e) && read_replay_request(&q, a, &e) && ob_request_read_settings(&asked, a, &e);
 	ob_recording *r = fine ? ob_recording_open(path, &e) : NULL;
-	ob_message *film = r ? ob_film_make(r, path, seconds, &e) : NULL;
+	ob_message *film = r ? ob_film_make(r, path, asked.patience, &e) : NULL;
 	int code;
 	if (film) {
 		q.server.scene = &ob_recording_get_info(r)->scene;

@@ -263,13 +263,13 @@ char **ob_comparison_arguments(const ob_comparison *c, const ob_sweep_point *p, 
 	ADD("--isolation=%s", w->isolation);
 	if (w->harden)
 		ADD("--harden%s%s", *w->harden ? "=" : "", w->harden);
-	ADD("--narrow=%s", w->other_narrow ? c->other : c->narrow);
+	ADD("--set=narrow=%s", w->other_narrow ? c->other : c->narrow);
 	ADD("--seed=%" PRIu64, seed);
-	ADD("--measure=%s", kind == OB_COMPARE_MEASURED ? "step" : timed ? "profile" : "end");
+	ADD("--set=measure=%s", kind == OB_COMPARE_MEASURED ? "step" : timed ? "profile" : "end");
 	if (kind == OB_COMPARE_DRAWN) {
-		ADD("--raw=/dev/null");
+		ADD("--out=/dev/null");
 		ADD("--size=640x480");
-		ADD("--samples=1");
+		ADD("--set=samples=1");
 	}
 	if (w->workers == OB_WORKERS_EACH)
 		ADD("--workers=objects");

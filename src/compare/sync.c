@@ -102,19 +102,19 @@ static char **arguments(const job *j, uint64_t seed)
 	ADD("obsim");
 	ADD("run");
 	ADD("--json=-");
-	ADD("--measure=step");
+	ADD("--set=measure=step");
 	ADD("--seed=%" PRIu64, seed);
 	ADD("--duration=%.17g", c->duration);
 	ADD("--isolation=%s", of->processes ? "process" : "thread");
 	ADD("--workers=%s", of->each ? "objects" : "2");
 	ADD("--sync=%s", of->coupling == OB_SYNC_LOCKSTEP ? "lockstep" : "free");
 	if (of->coupling != OB_SYNC_LOCKSTEP) {
-		ADD("--coupling=%s", coupling[of->coupling]);
-		ADD("--update-rate=%.17g", rate_of(c, of));
-		ADD("--jitter=%.17g", c->jitter);
-		ADD("--delay=%.17g", of->delay);
-		ADD("--solver=%s", of->coupling == OB_SYNC_HEAVY ? "ghost" : "coloured");
-		ADD("--integrator=%s", of->coupling == OB_SYNC_ODE ? "ode" : "exact");
+		ADD("--set=coupling=%s", coupling[of->coupling]);
+		ADD("--set=update_rate=%.17g", rate_of(c, of));
+		ADD("--set=jitter=%.17g", c->jitter);
+		ADD("--set=delay=%.17g", of->delay);
+		ADD("--set=solver=%s", of->coupling == OB_SYNC_HEAVY ? "ghost" : "coloured");
+		ADD("--set=integrator=%s", of->coupling == OB_SYNC_ODE ? "ode" : "exact");
 	}
 	for (uint32_t i = 0; i < c->defines; i++)
 		ADD("-D%s", c->define[i]);

@@ -160,7 +160,7 @@ static bool check_steps(const char *bytes, size_t size, uint32_t objects, ob_err
 static const char *check_head(const file_head *h, size_t size, uint64_t digest)
 {
 	if (size < sizeof *h || memcmp(h->mark, file_mark, sizeof h->mark) != 0)
-		return "it is no schedule of a free run (obsim run --record-schedule)";
+		return "it is no schedule of a free run (obsim run --set record_schedule)";
 	if (h->format != FORMAT)
 		return "it was written by another version of obsim";
 	if (h->hash != hash_of_head(h))
@@ -168,9 +168,11 @@ static const char *check_head(const file_head *h, size_t size, uint64_t digest)
 	if (h->digest != digest)
 		return "it was recorded with another scene, -D, --seed or option of the solver";
 	const ob_free_settings *f = &h->settings;
-	if (!(f->update_rate > 0 && f->update_rate <= OB_UPDATE_RATE_MOST && f->max_lag >= 0 && f->jitter >= 0 &&
-	      f->jitter <= OB_JITTER_MOST && f->delay >= 0 && f->delay <= OB_DELAY_MOST && f->pace > 0 &&
-	      f->coupling <= OB_COUPLING_LEDGER && f->heavy <= 1))
+	const ob_setting *t = ob_setting_table;
+	if (!(f->update_rate > 0 && f->update_rate <= OB_UPDATE_RATE_MOST && f->max_lag >= 0 &&
+	      f->jitter >= 0 && f->jitter <= t[OB_SETTING_JITTER].most && f->delay >= 0 &&
+	      f->delay <= t[OB_SETTING_DELAY].most && f->pace > 0 && f->coupling <= OB_COUPLING_LEDGER &&
+	      f->heavy <= 1))
 		return "damaged at byte 0: the settings are out of range";
 	return NULL;
 }

@@ -1,5 +1,5 @@
 // The schedule of a free run: in which order simulators stepped, and whose versions each step read. With it the run
-// repeats to the bit, in one thread (obsim run --record-schedule, --replay-schedule).
+// repeats to the bit, in one thread (obsim run --set record_schedule, replay_schedule).
 //
 //   file   | head: settings, digest of the scene | step | step | step | ... | end |
 //                                                   |

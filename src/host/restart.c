@@ -416,7 +416,7 @@ static bool give_up(ob_host *h)
 	const uint32_t kept = r->deaths < OB_DEATHS_KEPT ? r->deaths : OB_DEATHS_KEPT;
 	if (is_over_limit(h))
 		ob_host_set_failure(h,
-				    "%s; giving up: simulators died more than %u times within %g s (--restarts), "
+				    "%s; giving up: simulators died more than %u times within %g s (--set restarts), "
 				    "%u of the last %u times this one",
 				    describe(h, &text), h->limit.deaths, h->limit.seconds, count_alike(r), kept);
 	else if (gets_nowhere(h))

@@ -427,7 +427,7 @@ static bool write_settings(hid_t file, const ob_run_settings *s)
 {
 	hid_t group = H5Gcreate2(file, "settings", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
 	bool ok = group >= 0;
-	for (int i = 0; i < OB_SETTINGS && ok; i++) {
+	for (int i = 0; i < OB_RUN_SETTINGS && ok; i++) {
 		const ob_setting *one = &ob_setting_table[i];
 		const void *at = (const char *)s + one->offset;
 		uint32_t count = 0;

@@ -143,7 +143,7 @@ bool ob_video_check(ob_error *e)
 			return true;
 		path += n;
 	}
-	return ob_fail(e, "--video: ffmpeg is missing: install ffmpeg, or write PNG files (--frames)");
+	return ob_fail(e, "--out: ffmpeg is missing: install ffmpeg for videos, or write PNG files (--out DIR)");
 }
 
 ob_sink *ob_sink_video(const char *path, int w, int h, double fps, ob_error *e)

@@ -49,9 +49,7 @@ typedef struct ob_builder {
 	uint64_t *hull_points; // [scene->hulls], hashes of their points
 	const ob_scene_options *options;
 	bool has_scene; // scene { ... } was called
-	ob_run_settings settings; // its layer: what it does not set is unset
 	int settings_line; // where it was called
-	double tolerance_share; // of the thinnest object's thickness: the tolerance; 0: it is a length, or not set
 	ob_material material[OB_SCENE_MATERIALS_MAX];
 	uint32_t materials;
 	ob_camera_draft camera[OB_SCENE_CAMERAS_MAX];

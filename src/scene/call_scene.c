@@ -14,10 +14,8 @@ typedef struct scene_fields {
 	uint64_t seed;
 	uint32_t room;
 	ob_vec3 gravity;
-	uint32_t sync, coupling; // 1 = free; ob_coupling
-	double update_rate, max_lag; // Hz, s; 0 = not set
 	ob_length tolerance;
-	ob_run_settings run; // settings that the scene does not set are unset
+	ob_settings asked;
 } scene_fields;
 
 #define F(member, ...) OB_FIELD(scene_fields, member, .name = #member, __VA_ARGS__)
@@ -28,24 +26,13 @@ static const ob_field own_fields[] = {
 	F(duration, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9),
 	F(room, .kind = OB_FIELD_COUNT, .low = 0, .high = OB_SCENE_ROOM_MAX),
 	F(seed, .kind = OB_FIELD_WHOLE, .low = 0, .high = 0x1p53),
-	F(sync, .kind = OB_FIELD_CHOICE, .choices = OB_SYNC_NAMES),
-	F(coupling, .kind = OB_FIELD_CHOICE, .choices = OB_COUPLING_NAMES),
-	F(update_rate, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = OB_UPDATE_RATE_MOST),
-	F(max_lag, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e3),
 };
 #undef F
 
-// The command line alone chooses architecture, narrow phase and load.
-static const ob_setting_id settings[] = { OB_SETTING_STEP,       OB_SETTING_TOLERANCE, OB_SETTING_SUBSTEPS,
-					  OB_SETTING_ITERATIONS, OB_SETTING_SOLVER,    OB_SETTING_LAG,
-					  OB_SETTING_INTEGRATOR, OB_SETTING_SLEEPING };
+enum { OWN_FIELDS = sizeof own_fields / sizeof *own_fields, FIELDS_MOST = OWN_FIELDS + OB_SETTINGS };
 
-enum {
-	OWN_FIELDS = sizeof own_fields / sizeof *own_fields,
-	SETTINGS = sizeof settings / sizeof *settings,
-};
-
-static void list_fields(ob_field field[OWN_FIELDS + SETTINGS])
+// Lists the fields, and the setting of each; returns their number.
+static size_t list_fields(ob_field field[FIELDS_MOST], ob_setting_id id[FIELDS_MOST])
 {
 	static const ob_field_kind kind[] = {
 		[OB_SETTING_REAL] = OB_FIELD_NUMBER,
@@ -53,24 +40,26 @@ static void list_fields(ob_field field[OWN_FIELDS + SETTINGS])
 		[OB_SETTING_CHOICE] = OB_FIELD_CHOICE,
 		[OB_SETTING_SWITCH] = OB_FIELD_SWITCH,
 	};
+	size_t n = OWN_FIELDS;
 	memcpy(field, own_fields, sizeof own_fields);
-	for (int i = 0; i < SETTINGS; i++) {
-		const ob_setting *s = &ob_setting_table[settings[i]];
-		field[OWN_FIELDS + i] = (ob_field){
+	for (int i = 0; i < OB_SETTINGS; i++) {
+		const ob_setting *s = &ob_setting_table[i];
+		if (!(s->flags & OB_SETTING_SCENE))
+			continue;
+		id[n] = (ob_setting_id)i;
+		field[n++] = (ob_field){
 			.name = s->name,
-			.kind = kind[s->kind],
-			.offset = offsetof(scene_fields, run) + s->offset,
+			.kind = i == OB_SETTING_TOLERANCE ? OB_FIELD_LENGTH : kind[s->kind],
+			.offset = i == OB_SETTING_TOLERANCE ? offsetof(scene_fields, tolerance)
+							    : offsetof(scene_fields, asked) + s->offset,
 			// object simulators need an iteration; 0 is the monolith's exact solver
-			.low = settings[i] == OB_SETTING_ITERATIONS ? 1 : s->least,
+			.low = i == OB_SETTING_ITERATIONS ? 1 : s->least,
 			.high = s->most,
-			.above = s->above,
-			.choices = s->names,
+			.above = s->flags & OB_SETTING_ABOVE,
+			.choices = s->form,
 		};
-		if (settings[i] == OB_SETTING_TOLERANCE) {
-			field[OWN_FIELDS + i].kind = OB_FIELD_LENGTH;
-			field[OWN_FIELDS + i].offset = offsetof(scene_fields, tolerance);
-		}
 	}
+	return n;
 }
 
 // Sets the seed, but not after random numbers were drawn: they came from another seed.
@@ -86,15 +75,18 @@ static void set_seed(lua_State *L, ob_builder *b, uint64_t seed)
 
 static void check_settings(lua_State *L, const scene_fields *f, const ob_scene *s)
 {
+	static const ob_setting_id of_free[] = { OB_SETTING_UPDATE_RATE, OB_SETTING_MAX_LAG };
+	const ob_settings *asked = &s->asked;
 	if (f->duration / s->run.step_length > UINT32_MAX)
 		ob_sandbox_fail(L, "scene.duration: expected at most %.0f steps, got %.10g", (double)UINT32_MAX,
 				f->duration / s->run.step_length);
-	if (ob_setting_is_set(&f->run, OB_SETTING_TOLERANCE) && ob_setting_is_set(&f->run, OB_SETTING_SUBSTEPS))
+	if (ob_setting_is_set(asked, OB_SETTING_TOLERANCE) && ob_setting_is_set(asked, OB_SETTING_SUBSTEPS))
 		ob_sandbox_fail(L, "scene.substeps: expected either tolerance or substeps, got both");
-	if (!f->sync && (f->update_rate > 0 || f->max_lag > 0))
-		ob_sandbox_fail(L, "scene.%s: expected with sync = \"free\" only",
-				f->update_rate > 0 ? "update_rate" : "max_lag");
-	if (ob_setting_is_set(&f->run, OB_SETTING_LAG) && s->run.solver != OB_SOLVER_LAGGED)
+	for (size_t i = 0; !asked->sync && i < sizeof of_free / sizeof *of_free; i++)
+		if (ob_setting_is_set(asked, of_free[i]))
+			ob_sandbox_fail(L, "scene.%s: expected with sync = \"free\" only",
+					ob_setting_table[of_free[i]].name);
+	if (ob_setting_is_set(asked, OB_SETTING_LAG) && s->run.solver != OB_SOLVER_LAGGED)
 		ob_sandbox_fail(L, "scene.lag: expected with solver = \"lagged\" only, got \"%s\"",
 				ob_setting_print(&s->run, OB_SETTING_SOLVER).text);
 }
@@ -103,27 +95,24 @@ static void check_settings(lua_State *L, const scene_fields *f, const ob_scene *
 static void set_tolerance(lua_State *L, ob_builder *b, scene_fields *f)
 {
 	lua_Debug at;
-	b->tolerance_share = f->tolerance.share;
-	if (f->tolerance.m > 0)
-		f->run.tolerance = f->tolerance.m;
-	else if (f->tolerance.share > 0)
-		f->run.tolerance = OB_DEFAULT_TOLERANCE;
-	b->settings = f->run;
+	f->asked.tolerance_share = f->tolerance.share;
+	f->asked.run.tolerance = f->tolerance.share > 0 ? OB_DEFAULT_TOLERANCE : f->tolerance.m;
 	b->settings_line = lua_getstack(L, 1, &at) && lua_getinfo(L, "l", &at) ? at.currentline : 1;
 }
 
 bool ob_builder_resolve_tolerance(ob_builder *b, const char *path, ob_error *e)
 {
 	const ob_setting *t = &ob_setting_table[OB_SETTING_TOLERANCE];
-	const double thin = ob_scene_thinnest(b->scene), tolerance = b->tolerance_share * thin;
-	if (!(b->tolerance_share > 0) || isinf(thin))
+	ob_settings *asked = &b->scene->asked;
+	const double thin = ob_scene_thinnest(b->scene), tolerance = asked->tolerance_share * thin;
+	if (!(asked->tolerance_share > 0) || isinf(thin))
 		return true;
 	if (tolerance < t->least || tolerance > t->most)
 		return ob_fail(
 			e, "%s:%d: scene.tolerance: %g%% of the thinnest object's %g m is %g m; expected %g to %g m",
-			path, b->settings_line, 100 * b->tolerance_share, thin, tolerance, t->least, t->most);
-	b->settings.tolerance = tolerance;
-	ob_run_settings_overlay(&b->scene->run, &b->settings);
+			path, b->settings_line, 100 * asked->tolerance_share, thin, tolerance, t->least, t->most);
+	asked->run.tolerance = tolerance;
+	ob_run_settings_overlay(&b->scene->run, asked);
 	return true;
 }
 
@@ -134,15 +123,15 @@ int ob_scene_call_scene(lua_State *L)
 	if (b->has_scene)
 		ob_sandbox_fail(L, "scene: expected once, got a second time");
 	b->has_scene = true;
-	ob_field fields[OWN_FIELDS + SETTINGS];
-	list_fields(fields);
-	scene_fields f = { .title = s->title,
-			   .duration = s->duration,
-			   .seed = s->seed,
-			   .room = s->room,
-			   .gravity = s->run.gravity,
-			   .run = ob_run_settings_unset() };
-	ob_fields_read(L, 1, "scene", fields, OWN_FIELDS + SETTINGS, &f);
+	ob_field fields[FIELDS_MOST];
+	ob_setting_id id[FIELDS_MOST];
+	const size_t count = list_fields(fields, id);
+	scene_fields f = {
+		.title = s->title, .duration = s->duration, .seed = s->seed, .room = s->room, .gravity = s->run.gravity
+	};
+	const uint64_t given = ob_fields_read(L, 1, "scene", fields, count, &f);
+	for (size_t i = OWN_FIELDS; i < count; i++)
+		f.asked.given |= (given >> i & 1) << id[i];
 	if (f.title != s->title)
 		snprintf(s->title, sizeof s->title, "%s", f.title);
 	s->tour = f.tour;
@@ -150,12 +139,8 @@ int ob_scene_call_scene(lua_State *L)
 	s->room = f.room;
 	s->run.gravity = f.gravity;
 	set_tolerance(L, b, &f);
-	ob_run_settings_overlay(&s->run, &f.run);
-	s->free = (ob_free_settings){ .update_rate = !f.sync             ? 0
-						     : f.update_rate > 0 ? f.update_rate
-									 : -1,
-				      .coupling = f.coupling,
-				      .max_lag = f.max_lag };
+	s->asked = f.asked;
+	ob_run_settings_overlay(&s->run, &s->asked);
 	check_settings(L, &f, s);
 	set_seed(L, b, f.seed);
 	return 0;

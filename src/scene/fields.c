@@ -436,7 +436,7 @@ static bool push_value(lua_State *L, int index, const char *where, const ob_fiel
 	return true;
 }
 
-void ob_fields_read(lua_State *L, int index, const char *where, const ob_field *field, size_t count, void *to)
+uint64_t ob_fields_read(lua_State *L, int index, const char *where, const ob_field *field, size_t count, void *to)
 {
 	index = lua_absindex(L, index);
 	luaL_checkstack(L, 8, "nested too deep");
@@ -450,11 +450,14 @@ void ob_fields_read(lua_State *L, int index, const char *where, const ob_field *
 		check_name(L, where, field, count);
 		lua_pop(L, 1);
 	}
+	uint64_t found = 0;
 	for (size_t i = 0; i < count; i++) {
 		reader r = { L, where, &field[i], (char *)to + field[i].offset };
 		bool given = push_value(L, index, where, &field[i]);
 		if (given || field[i].required)
 			read_kind[field[i].kind](&r);
+		found |= (uint64_t)(given && i < 64) << i % 64;
 		lua_pop(L, 1);
 	}
+	return found;
 }

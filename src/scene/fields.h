@@ -58,8 +58,9 @@ typedef struct ob_field {
 		.offset = offsetof(type, member), __VA_ARGS__ \
 	}
 
-// where: the name of the call, for messages ("box"). index: the table's, in the stack of L.
-void ob_fields_read(lua_State *L, int index, const char *where, const ob_field *field, size_t count, void *to);
+// Returns a bit for each of the first 64 fields: given. where: the name of the call, for messages ("box"). index: the
+// table's, in the stack of L.
+uint64_t ob_fields_read(lua_State *L, int index, const char *where, const ob_field *field, size_t count, void *to);
 
 // Raises "where.field: expected ..., got <the value at index>".
 _Noreturn void ob_fields_fail(lua_State *L, const char *where, const char *field, const char *expected, int index);

@@ -11,7 +11,6 @@
 #include "terrain/terrain.h"
 #include "motion/force.h"
 #include "motion/path.h"
-#include "settings/free.h"
 #include "settings/settings.h"
 
 enum { OB_SCENE_HULLS_MAX = 4096 }; // different ones, including those added during the run
@@ -85,7 +84,7 @@ typedef struct ob_scene {
 	char title[128];
 	bool tour; // viewers are led through it (src/serve/page/tour.js)
 	ob_run_settings run; // before the command line's settings (ob_run_settings_resolve)
-	ob_free_settings free; // update_rate: Hz; 0 = in lockstep, below 0 = free at the step's. The rest: 0 = not set
+	ob_settings asked; // those that the scene gives; run has those of lockstep
 	double duration; // s
 	uint64_t seed;
 	uint32_t objects;

@@ -233,9 +233,9 @@ static bool has_time(const film *f, const char *path, ob_error *e)
 {
 	return ob_clock_process_cpu() < f->until || ob_fail(e,
 							    "%s: it takes more than %g s of CPU to show it in a "
-							    "browser: --patience %g allows more, or record "
-							    "fewer steps or objects",
-							    path, f->seconds, 4 * f->seconds);
+							    "browser: --patience %g (serve: --set patience=%g) "
+							    "allows more, or record fewer steps or objects",
+							    path, f->seconds, 4 * f->seconds, 4 * f->seconds);
 }
 
 static bool write_states(film *f, const char *path, ob_error *e)

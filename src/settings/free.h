@@ -11,10 +11,7 @@ typedef enum ob_coupling {
 
 #define OB_COUPLING_NAMES "own|ledger"
 #define OB_SYNC_NAMES "lockstep|free"
-
-#define OB_UPDATE_RATE_MOST 1e5 // Hz
-#define OB_JITTER_MOST .9
-#define OB_DELAY_MOST 10. // s
+#define OB_UPDATE_RATE_MOST 1e5 // Hz, of a run and of an object
 
 // They lie in the table: a fixed size, no pointers.
 typedef struct ob_free_settings {

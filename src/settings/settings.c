@@ -6,27 +6,22 @@
 
 #include "base/number.h"
 
-#define UNSET UINT32_MAX // in counts, choices and switches; NaN in reals
-
-#define MEMBER(member) .offset = offsetof(ob_run_settings, member)
+enum {
+	SCENE = OB_SETTING_SCENE,
+	OPTION = OB_SETTING_OPTION,
+	ABOVE = OB_SETTING_ABOVE,
+	NONE = OB_SETTING_NONE,
+	OBJECTS = OB_SETTING_OBJECTS
+};
 
 const ob_setting ob_setting_table[OB_SETTINGS] = {
-	[OB_SETTING_ARCHITECTURE] = { "arch", OB_SETTING_CHOICE, MEMBER(monolith), .unit = "",
-				      .names = OB_ARCHITECTURE_NAMES },
-	[OB_SETTING_STEP] = { "step", OB_SETTING_REAL, MEMBER(step_length), 1e-9, 10, .unit = "s" },
-	[OB_SETTING_TOLERANCE] = { "tolerance", OB_SETTING_REAL, MEMBER(tolerance), 1e-6, 1, .unit = "m" },
-	[OB_SETTING_SUBSTEPS] = { "substeps", OB_SETTING_COUNT, MEMBER(substeps), 1, 1000, .unit = "" },
-	[OB_SETTING_ITERATIONS] = { "iterations", OB_SETTING_COUNT, MEMBER(iterations), 0, 100000, .unit = "" },
-	[OB_SETTING_SOLVER] = { "solver", OB_SETTING_CHOICE, MEMBER(solver), .unit = "", .names = OB_SOLVER_NAMES },
-	[OB_SETTING_LAG] = { "lag", OB_SETTING_COUNT, MEMBER(lag), 0, 256, .unit = "" },
-	[OB_SETTING_INTEGRATOR] = { "integrator", OB_SETTING_CHOICE, MEMBER(integrator), .unit = "",
-				    .names = OB_INTEGRATOR_NAMES },
-	[OB_SETTING_SLEEPING] = { "sleeping", OB_SETTING_SWITCH, MEMBER(sleeping), .unit = "",
-				  .names = OB_SWITCH_NAMES },
-	[OB_SETTING_NARROW_PHASE] = { "narrow", OB_SETTING_CHOICE, MEMBER(narrow_phase), .unit = "",
-				      .names = OB_NARROW_PHASE_NAMES },
-	[OB_SETTING_LOAD] = { "load", OB_SETTING_COUNT, MEMBER(load), 0, 1e9, .unit = "" },
+#define X(id, name, kind, member, group, flags, least, most, form, help) \
+	{ name, OB_SETTING_##kind, offsetof(ob_settings, member), OB_SETTING_##group, flags, least, most, form, help },
+	OB_SETTING_LIST(X)
+#undef X
 };
+_Static_assert(OB_SETTINGS <= 64, "each has a bit of ob_settings.given");
+_Static_assert(offsetof(ob_settings, run) == 0, "offsets hold in ob_run_settings, too");
 
 static const struct {
 	const char *former, *now;
@@ -67,57 +62,61 @@ double ob_run_settings_coarseness(const ob_run_settings *s)
 	return s->tolerance > 0 && s->substeps < OB_DEFAULT_SUBSTEPS ? (double)OB_DEFAULT_SUBSTEPS / s->substeps : 1;
 }
 
-ob_run_settings ob_run_settings_unset(void)
+int ob_setting_by_name(const char *name)
 {
-	ob_run_settings layer = { 0 };
-	for (int i = 0; i < OB_SETTINGS; i++) {
-		char *at = (char *)&layer + ob_setting_table[i].offset;
-		if (ob_setting_table[i].kind == OB_SETTING_REAL)
-			*(double *)at = NAN;
-		else
-			*(uint32_t *)at = UNSET;
+	const char *now = ob_setting_renamed(name);
+	for (int i = 0; i < OB_SETTINGS; i++)
+		if (strcmp(ob_setting_table[i].name, now ? now : name) == 0)
+			return i;
+	return -1;
+}
+
+// Copies those of the first settings that a layer gives.
+static void copy_given(void *to, const ob_settings *layer, int settings)
+{
+	static const size_t size[] = {
+		[OB_SETTING_REAL] = sizeof(double),       [OB_SETTING_COUNT] = sizeof(uint32_t),
+		[OB_SETTING_CHOICE] = sizeof(uint32_t),   [OB_SETTING_SWITCH] = sizeof(uint32_t),
+		[OB_SETTING_TEXT] = sizeof(const char *),
+	};
+	for (int i = 0; i < settings; i++) {
+		const ob_setting *t = &ob_setting_table[i];
+		if (ob_setting_is_set(layer, i))
+			memcpy((char *)to + t->offset, (const char *)layer + t->offset, size[t->kind]);
 	}
-	return layer;
 }
 
-bool ob_setting_is_set(const ob_run_settings *layer, ob_setting_id id)
+void ob_settings_overlay(ob_settings *s, const ob_settings *layer)
 {
-	const char *at = (const char *)layer + ob_setting_table[id].offset;
-	return ob_setting_table[id].kind == OB_SETTING_REAL ? !isnan(*(const double *)at)
-							    : *(const uint32_t *)at != UNSET;
+	copy_given(s, layer, OB_SETTINGS);
+	s->given |= layer->given;
 }
 
-void ob_run_settings_overlay(ob_run_settings *s, const ob_run_settings *layer)
+void ob_run_settings_overlay(ob_run_settings *s, const ob_settings *layer)
 {
 	if (ob_setting_is_set(layer, OB_SETTING_TOLERANCE)) {
-		s->substeps = ob_run_settings_least_substeps(layer->tolerance);
+		s->substeps = ob_run_settings_least_substeps(layer->run.tolerance);
 		s->iterations = OB_DEFAULT_TOLERANCE_ITERATIONS;
 	} else if (ob_setting_is_set(layer, OB_SETTING_SUBSTEPS)) {
 		s->tolerance = 0;
 	}
-	for (int i = 0; i < OB_SETTINGS; i++) {
-		const ob_setting *t = &ob_setting_table[i];
-		if (ob_setting_is_set(layer, i))
-			memcpy((char *)s + t->offset, (const char *)layer + t->offset,
-			       t->kind == OB_SETTING_REAL ? sizeof(double) : sizeof(uint32_t));
-	}
+	copy_given(s, layer, OB_RUN_SETTINGS);
 }
 
 // Rejects settings that a monolith does not support.
-static bool check_monolith(const ob_run_settings *layer, ob_error *e)
+static bool check_monolith(const ob_settings *layer, ob_error *e)
 {
-	static const ob_setting_id of_objects[] = { OB_SETTING_TOLERANCE, OB_SETTING_SOLVER, OB_SETTING_LAG,
-						    OB_SETTING_INTEGRATOR };
-	for (size_t i = 0; i < sizeof of_objects / sizeof *of_objects; i++)
-		if (ob_setting_is_set(layer, of_objects[i]))
-			return ob_fail(e, "--%s means nothing to --arch monolith",
-				       ob_setting_table[of_objects[i]].name);
+	for (int i = 0; i < OB_SETTINGS; i++)
+		if (ob_setting_is_set(layer, i) && ob_setting_table[i].flags & OBJECTS)
+			return ob_fail(e, "--%s means nothing to --arch monolith", ob_setting_option(i).text);
 	return true;
 }
 
-bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, ob_error *e)
+bool ob_run_settings_resolve(ob_run_settings *s, const ob_settings *layer, ob_error *e)
 {
+	static const ob_settings none;
 	ob_run_settings asked = *s;
+	layer = layer ? layer : &none;
 	ob_run_settings_overlay(&asked, layer);
 	if (asked.monolith) {
 		if (!check_monolith(layer, e))
@@ -131,11 +130,11 @@ bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, o
 	ob_run_settings_overlay(s, layer);
 
 	if (!s->monolith && s->iterations == 0)
-		return ob_fail(e, "--iterations 0 is ODE's exact solver, for --arch monolith; object simulators take "
-				  "1 at least");
+		return ob_fail(e, "--set iterations=0 is ODE's exact solver, for --arch monolith; object simulators "
+				  "take 1 at least");
 	if (s->solver != OB_SOLVER_LAGGED) {
 		if (ob_setting_is_set(layer, OB_SETTING_LAG))
-			return ob_fail(e, "--lag is for --solver lagged; this run's is %s",
+			return ob_fail(e, "--set lag is for --set solver=lagged; this run's is %s",
 				       ob_setting_print(s, OB_SETTING_SOLVER).text);
 		s->lag = 0;
 	}
@@ -145,11 +144,12 @@ bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, o
 		while (short_by / s->substeps > s->tolerance && 2 * s->substeps <= OB_MAX_SUBSTEPS)
 			s->substeps *= 2;
 		if (short_by / s->substeps > s->tolerance)
-			return ob_fail(
-				e,
-				"--integrator ode would need %.3g substeps to keep the tolerance of %g m, and there "
-				"are %d at most: take a smaller --step or a larger --tolerance, or fix --substeps",
-				short_by / s->tolerance, s->tolerance, OB_MAX_SUBSTEPS);
+			return ob_fail(e,
+				       "--set integrator=ode would need %.3g substeps to keep the tolerance of %g m, "
+				       "and there "
+				       "are %d at most: take a smaller --step or a larger --tolerance, or fix substeps "
+				       "with --set",
+				       short_by / s->tolerance, s->tolerance, OB_MAX_SUBSTEPS);
 	}
 	return true;
 }
@@ -162,24 +162,17 @@ static uint32_t names_in(const char *names)
 	return n;
 }
 
-static bool in_range(const ob_run_settings *s, const ob_setting *t)
+static bool in_range(const ob_run_settings *s, ob_setting_id id)
 {
+	const ob_setting *t = &ob_setting_table[id];
 	const char *at = (const char *)s + t->offset;
-	const double real = t->kind == OB_SETTING_REAL ? *(const double *)at : 0;
-	const uint32_t count = t->kind == OB_SETTING_REAL ? 0 : *(const uint32_t *)at;
-	switch (t->kind) {
-	case OB_SETTING_REAL:
-		if (t->offset == offsetof(ob_run_settings, tolerance) && real == 0) // no tolerance
-			return true;
-		return real >= t->least && real <= t->most && !(t->above && real == t->least);
-	case OB_SETTING_COUNT: // ODE's stepper may need more substeps than a caller may request
-		return count >= t->least &&
-		       count <= (t->offset == offsetof(ob_run_settings, substeps) ? OB_MAX_SUBSTEPS : t->most);
-	case OB_SETTING_CHOICE:
-	case OB_SETTING_SWITCH:
-		return count < names_in(t->names);
-	}
-	return false;
+	const double value = t->kind == OB_SETTING_REAL ? *(const double *)at : *(const uint32_t *)at;
+	if (t->kind == OB_SETTING_CHOICE || t->kind == OB_SETTING_SWITCH)
+		return value < names_in(t->form);
+	if (id == OB_SETTING_TOLERANCE && value == 0) // no tolerance
+		return true;
+	// ODE's stepper may need more substeps than a caller may request
+	return value >= t->least && value <= (id == OB_SETTING_SUBSTEPS ? OB_MAX_SUBSTEPS : t->most);
 }
 
 bool ob_run_settings_check(const ob_run_settings *s, ob_error *e)
@@ -190,8 +183,8 @@ bool ob_run_settings_check(const ob_run_settings *s, ob_error *e)
 			       ob_number_text(g.x).text, ob_number_text(g.y).text, ob_number_text(g.z).text);
 	if (s->fault.probability != 0) // drawn anew
 		return ob_fail(e, "a fault is asked for");
-	for (int i = 0; i < OB_SETTINGS; i++)
-		if (!in_range(s, &ob_setting_table[i]))
+	for (int i = 0; i < OB_RUN_SETTINGS; i++)
+		if (!in_range(s, (ob_setting_id)i))
 			return ob_fail(e, "%s is out of its range", ob_setting_table[i].name);
 	return true;
 }
@@ -231,7 +224,7 @@ bool ob_harden_read(uint32_t *measures, const char *list, ob_error *e)
 
 ob_setting_word ob_setting_print(const ob_run_settings *s, ob_setting_id id)
 {
-	const char *names = ob_setting_table[id].names;
+	const char *names = ob_setting_table[id].form;
 	uint32_t value = *(const uint32_t *)((const char *)s + ob_setting_table[id].offset);
 	ob_setting_word word = { "?" };
 	for (; value > 0 && *names; value--) {
@@ -243,6 +236,14 @@ ob_setting_word ob_setting_print(const ob_run_settings *s, ob_setting_id id)
 		memcpy(word.text, names, n);
 		word.text[n] = 0;
 	}
+	return word;
+}
+
+ob_setting_spelling ob_setting_option(ob_setting_id id)
+{
+	const ob_setting *t = &ob_setting_table[id];
+	ob_setting_spelling word;
+	snprintf(word.text, sizeof word.text, "%s%s", t->flags & OPTION ? "" : "set ", t->name);
 	return word;
 }
 

@@ -1,8 +1,6 @@
-// Settings of a run: stepping and solving. One record for scene files, the command line, the host, the shared
-// table, the engines and reports, and one description of its members: names, units, ranges.
-//
-// A layer of settings, from a scene or a command line, is the same record with unset members for all others. Pure; any
-// thread.
+// Settings of a run: stepping and solving, free running, watching. One record for scene files, the command line, the
+// host, the shared table, the engines and reports, and one table of its members (OB_SETTING_LIST): names, ranges, help.
+// Pure; any thread.
 #ifndef OB_SETTINGS_SETTINGS_H
 #define OB_SETTINGS_SETTINGS_H
 
@@ -12,6 +10,8 @@
 
 #include <ob/error.h>
 #include <ob/vec.h>
+
+#include "settings/free.h"
 
 typedef enum ob_solver_kind {
 	OB_SOLVER_COLOURED, // contact after contact, each on the state that the one before published
@@ -147,19 +147,85 @@ double ob_run_settings_coarseness(const ob_run_settings *s);
 // Coloured solver, exact integrator, at least 8 substeps with the default tolerance, sleeping.
 ob_run_settings ob_run_settings_default(void);
 
+// Figures measured in a run.
+typedef enum ob_measure_when {
+	OB_MEASURE_STEPS, // each step
+	OB_MEASURE_PROFILE, // start and end, and the workers' time by section
+	OB_MEASURE_ENDS, // the start and the end
+} ob_measure_when;
+#define OB_MEASURE_NAMES "step|profile|end"
+
+// Settings of a scene or a command line, with those that it gives.
+typedef struct ob_settings {
+	ob_run_settings run; // first
+	uint64_t given; // bits, 1 << ob_setting_id; all other members mean nothing, or are defaults
+	ob_free_settings free;
+	double tolerance_share; // of the thickness of the thinnest body: the tolerance; 0: it is a length
+	double patience, every; // s
+	const char *restarts, *gpu, *record_schedule, *replay_schedule;
+	uint32_t sync; // 1 = free
+	uint32_t measure; // ob_measure_when
+	uint32_t samples;
+} ob_settings;
+
+// The table of settings, from which --set, its help, the manual page, completions, fields of scenes and error texts
+// follow. A row: id, name everywhere, kind, member of ob_settings, group, flags, least and most of numbers, form of the
+// value (CHOICE, SWITCH: the names of all), help with the default in brackets.
+#define OB_SETTING_LIST(X) \
+	X(ARCHITECTURE, "arch", CHOICE, run.monolith, SOLVED, OPTION, 0, 0, OB_ARCHITECTURE_NAMES, \
+	  "one simulator per object, or one ODE world that holds all (obs)") \
+	X(STEP, "step", REAL, run.step_length, SOLVED, OPTION | SCENE, 1e-9, 10, "H", \
+	  "seconds a step, as .01 or 1/60 (the scene's)") \
+	X(TOLERANCE, "tolerance", REAL, run.tolerance, SOLVED, OPTION | SCENE | OBJECTS, 1e-6, 1, "LENGTH|P%", \
+	  "error that objects that touch may reach, as .5mm or .1% of the thinnest") \
+	X(SUBSTEPS, "substeps", COUNT, run.substeps, SOLVED, SCENE, 1, 1000, "N", \
+	  "substeps a step (the scene's; monolith: 1)") \
+	X(ITERATIONS, "iterations", COUNT, run.iterations, SOLVED, SCENE, 0, 100000, "N", \
+	  "of the contact solver a substep (the scene's; monolith: 20, 0 = exact)") \
+	X(SOLVER, "solver", CHOICE, run.solver, SOLVED, SCENE | OBJECTS, 0, 0, OB_SOLVER_NAMES, \
+	  "how contacts are solved (the scene's)") \
+	X(LAG, "lag", COUNT, run.lag, SOLVED, SCENE | OBJECTS, 0, 256, "K", \
+	  "lagged: iterations that a partner's state is late (1)") \
+	X(INTEGRATOR, "integrator", CHOICE, run.integrator, SOLVED, SCENE | OBJECTS, 0, 0, OB_INTEGRATOR_NAMES, \
+	  "free motion in closed form, or by ODE's stepper (the scene's)") \
+	X(SLEEPING, "sleeping", SWITCH, run.sleeping, SOLVED, SCENE, 0, 0, OB_SWITCH_NAMES, \
+	  "whether what rests may sleep (the scene's)") \
+	X(NARROW_PHASE, "narrow", CHOICE, run.narrow_phase, SOLVED, 0, 0, 0, OB_NARROW_PHASE_NAMES, \
+	  "objects touch as they are, or as boxes along the axes (obb)") \
+	X(LOAD, "load", COUNT, run.load, SOLVED, 0, 0, 1e9, "N", "add up 1 to N in each test of two boxes (0)") \
+	X(SYNC, "sync", CHOICE, sync, FREE, OPTION | SCENE, 0, 0, OB_SYNC_NAMES, \
+	  "all step together, or each at its own times (the scene's)") \
+	X(UPDATE_RATE, "update_rate", REAL, free.update_rate, FREE, ABOVE | SCENE, 0, OB_UPDATE_RATE_MOST, "HZ", \
+	  "steps of a simulator a second (the scene's)") \
+	X(COUPLING, "coupling", CHOICE, free.coupling, FREE, SCENE, 0, 0, OB_COUPLING_NAMES, \
+	  "who computes an impulse: each its own, or one that mails it (the scene's)") \
+	X(MAX_LAG, "max_lag", REAL, free.max_lag, FREE, ABOVE | NONE | SCENE, 0, 1e3, "S|none", \
+	  "seconds ahead of a neighbour (the scene's; pace max: two steps; else none)") \
+	X(JITTER, "jitter", REAL, free.jitter, FREE, 0, 0, .9, "P", "share by which lengths of steps vary (0)") \
+	X(DELAY, "delay", REAL, free.delay, FREE, 0, 0, 10, "S", "seconds until a publication is seen (0)") \
+	X(RECORD_SCHEDULE, "record_schedule", TEXT, record_schedule, RUN, 0, 0, 0, "FILE", \
+	  "free: record who stepped when, and read what, to repeat the run") \
+	X(REPLAY_SCHEDULE, "replay_schedule", TEXT, replay_schedule, RUN, 0, 0, 0, "FILE", \
+	  "repeat a free run to the bit, in one thread") \
+	X(VERIFY, "verify", SWITCH, run.verify, RUN, 0, 0, 0, OB_SWITCH_NAMES, \
+	  "solve a sample of steps again with 512 substeps, and print the errors (off)") \
+	X(MEASURE, "measure", CHOICE, measure, RUN, 0, 0, 0, OB_MEASURE_NAMES, \
+	  "each step, where the time goes, or neither (step)") \
+	X(EVERY, "every", REAL, every, RUN, ABOVE, 0, 1e9, "S", \
+	  "simulated seconds from one checkpoint to the next (1)") \
+	X(SAMPLES, "samples", COUNT, samples, RUN, 0, 1, 256, "N", "samples a pixel (draft: 4 on a GPU; fine: 16)") \
+	X(GPU, "gpu", TEXT, gpu, RUN, 0, 0, 0, "WHICH", "surfaceless, or the number of a GPU (the first that works)") \
+	X(PATIENCE, "patience", REAL, patience, WATCHED, ABOVE, 0, 1e9, "S", \
+	  "seconds that a step may take until it counts as stalled (60)") \
+	X(RESTARTS, "restarts", TEXT, restarts, WATCHED, 0, 0, 0, "N/S", \
+	  "end the run at more than N deaths within S seconds (no limit)")
+
 typedef enum ob_setting_id {
-	OB_SETTING_ARCHITECTURE,
-	OB_SETTING_STEP,
-	OB_SETTING_TOLERANCE,
-	OB_SETTING_SUBSTEPS,
-	OB_SETTING_ITERATIONS,
-	OB_SETTING_SOLVER,
-	OB_SETTING_LAG,
-	OB_SETTING_INTEGRATOR,
-	OB_SETTING_SLEEPING,
-	OB_SETTING_NARROW_PHASE,
-	OB_SETTING_LOAD,
-	OB_SETTINGS
+#define X(id, ...) OB_SETTING_##id,
+	OB_SETTING_LIST(X)
+#undef X
+		OB_SETTINGS,
+	OB_RUN_SETTINGS = OB_SETTING_SYNC, // all before it are settings of lockstep, which records and checkpoints list
 } ob_setting_id;
 
 typedef enum ob_setting_kind {
@@ -167,32 +233,54 @@ typedef enum ob_setting_kind {
 	OB_SETTING_COUNT, // uint32_t
 	OB_SETTING_CHOICE, // uint32_t, a number among names
 	OB_SETTING_SWITCH, // uint32_t, 0 or 1; in a scene true or false
+	OB_SETTING_TEXT, // const char *
 } ob_setting_kind;
 
+typedef enum ob_setting_group {
+	OB_SETTING_SOLVED, // by which scenes are solved
+	OB_SETTING_FREE, // of free running
+	OB_SETTING_WATCHED, // of a host that watches its simulators
+	OB_SETTING_RUN, // of a run that ends, with its results
+} ob_setting_group;
+
+enum {
+	OB_SETTING_SCENE = 1, // it is a field of scenes, too
+	OB_SETTING_OPTION = 2, // it has an option of its own in place of --set
+	OB_SETTING_ABOVE = 4, // least itself is too small
+	OB_SETTING_NONE = 8, // "none" is no bound
+	OB_SETTING_OBJECTS = 16, // means nothing to a monolith
+};
+
 typedef struct ob_setting {
-	const char *name; // name of the option, the scene's field and the report's key
+	const char *name;
 	ob_setting_kind kind;
-	size_t offset; // in ob_run_settings
-	double least, most; // of numbers
-	bool above; // least itself is too small
-	const char *unit; // "" = none
-	const char *names; // CHOICE, SWITCH: "a|b|c"
+	size_t offset; // in ob_settings; of those of lockstep in ob_run_settings, too
+	ob_setting_group group;
+	uint32_t flags;
+	double least, most;
+	const char *form, *help;
 } ob_setting;
 
 extern const ob_setting ob_setting_table[OB_SETTINGS];
 
-// Layer without any setting.
-ob_run_settings ob_run_settings_unset(void);
-bool ob_setting_is_set(const ob_run_settings *layer, ob_setting_id id);
-// Overwrites s with the settings of a layer. A tolerance replaces a number of substeps, and a number of substeps a
-// tolerance. gravity does not belong to a layer.
-void ob_run_settings_overlay(ob_run_settings *s, const ob_run_settings *layer);
+// Number of a setting by its name, or by that of earlier versions; -1: there is none.
+int ob_setting_by_name(const char *name);
 
-// Resolves the settings of a run: s (a scene's), the requested layer, then the defaults of the architecture. Solvers
-// that are wrong by design keep only an explicit tolerance, as more substeps would not help them. lag is 0 unless the
-// solver reads it. If ODE's stepper alone would miss the tolerance, it takes more substeps. Returns false and e on a
+static inline bool ob_setting_is_set(const ob_settings *layer, ob_setting_id id)
+{
+	return layer->given >> id & 1;
+}
+// Overwrites settings with those that a layer gives.
+void ob_settings_overlay(ob_settings *s, const ob_settings *layer);
+// The same for those of lockstep. A tolerance replaces a number of substeps, and a number of substeps a tolerance. gravity
+// does not belong to a layer.
+void ob_run_settings_overlay(ob_run_settings *s, const ob_settings *layer);
+
+// Resolves the settings of a run: s (a scene's), the requested layer (NULL = none), then the defaults of the architecture.
+// Solvers that are wrong by design keep only an explicit tolerance, as more substeps would not help them. lag is 0 unless
+// the solver reads it. If ODE's stepper alone would miss the tolerance, it takes more substeps. Returns false and e on a
 // setting without meaning for the architecture or the solver.
-bool ob_run_settings_resolve(ob_run_settings *s, const ob_run_settings *layer, ob_error *e);
+bool ob_run_settings_resolve(ob_run_settings *s, const ob_settings *layer, ob_error *e);
 
 // True if settings from outside are valid for a run: numbers in their ranges, choices among their names. Returns false
 // and e, naming the first invalid one.
@@ -200,11 +288,16 @@ bool ob_run_settings_check(const ob_run_settings *s, ob_error *e);
 
 // Finds the number of a word in "a|b|c"; false if absent.
 bool ob_setting_find(const char *names, const char *word, uint32_t *value);
-// Value of a choice or switch, and its word.
 typedef struct ob_setting_word {
 	char text[16];
 } ob_setting_word;
+// Word of a choice's or switch's value, among those of lockstep.
 ob_setting_word ob_setting_print(const ob_run_settings *s, ob_setting_id id);
+// The setting on a command line, without the dashes: "tolerance", "set lag".
+typedef struct ob_setting_spelling {
+	char text[32];
+} ob_setting_spelling;
+ob_setting_spelling ob_setting_option(ob_setting_id id);
 
 // Words of earlier versions, still accepted in command lines and scenes: the present name of an option, field or choice
 // for a former one. NULL: unchanged.

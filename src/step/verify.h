@@ -1,4 +1,4 @@
-// True errors of a sample of island steps (--verify): a probe solves them with many more substeps, and the differences
+// True errors of a sample of island steps (--set verify=on): a probe solves them with many more substeps, and the differences
 // go into the counters. The sample follows from the lowest id of the island and the step: any worker takes the same.
 #ifndef OB_STEP_VERIFY_H
 #define OB_STEP_VERIFY_H

@@ -62,7 +62,6 @@ static ob_host *start(const ob_scene *s, const ob_run_settings *run, const ob_sa
 static void make(ob_checkpoint_file *f)
 {
 	static const char *const defines[] = { "n=8" };
-	const ob_run_settings unset = ob_run_settings_unset();
 	ob_error e = { "" };
 	ob_saved_run r = { .scene = "all.lua",
 			   .text = text,
@@ -70,7 +69,7 @@ static void make(ob_checkpoint_file *f)
 			   .options = { .defines = defines, .define_count = 1 },
 			   .duration = 1 };
 	ob_scene *s = ob_scene_load_text(r.scene, text, sizeof text - 1, &r.options, &e);
-	CHECK(s && ob_run_settings_resolve(&s->run, &unset, &e));
+	CHECK(s && ob_run_settings_resolve(&s->run, NULL, &e));
 	r.settings = s->run;
 	ob_host *h = start(s, &r.settings, NULL, &e);
 	CHECK(h);

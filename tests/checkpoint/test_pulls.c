@@ -44,12 +44,11 @@ static uint64_t end_of(ob_host *h)
 
 int main(void)
 {
-	const ob_run_settings unset = ob_run_settings_unset();
 	ob_error e = { "" };
 	ob_checkpoint_file f = { 0 }, copy = { 0 };
 	ob_saved_run r = { .scene = "pulls.lua", .text = text, .text_size = sizeof text - 1, .duration = 2 }, opened;
 	ob_scene *s = ob_scene_load_text(r.scene, text, sizeof text - 1, &r.options, &e);
-	CHECK(s && ob_run_settings_resolve(&s->run, &unset, &e));
+	CHECK(s && ob_run_settings_resolve(&s->run, NULL, &e));
 	r.settings = s->run;
 	ob_host *h = start(s, &r.settings, OB_ISOLATION_THREAD, NULL);
 	go(h, 20);

@@ -3,6 +3,7 @@
 
 #include "check.h"
 #include "cli/options.h"
+#include "cli/output.h"
 
 enum { WORDS_MAX = 16 };
 
@@ -44,19 +45,14 @@ static const struct {
 	const char *ends;
 } files[] = {
 	{ OB_OPTION_RECORD, ".h5 .hdf5" },
-	{ OB_OPTION_VIDEO, ".mp4 .webm .mkv .mov .avi .gif .webp" },
 	{ OB_OPTION_JSON, ".json" },
 	{ OB_OPTION_SERIES, ".csv" },
 	{ OB_OPTION_TRACE, ".json" },
 	{ OB_OPTION_CHECKPOINT, "" },
 	{ OB_OPTION_LOG_REQUESTS, "" },
-	{ OB_OPTION_RECORD_SCHEDULE, "" },
-	{ OB_OPTION_RAW, "" },
-	{ OB_OPTION_FRAMES, "" },
 	{ OB_OPTION_OUT, "" },
 	{ OB_OPTION_RESUME, NULL },
 	{ OB_OPTION_REPLAY, NULL },
-	{ OB_OPTION_REPLAY_SCHEDULE, NULL },
 	{ OB_OPTION_REPLAY_REQUESTS, NULL },
 };
 enum { FILES = sizeof files / sizeof *files };
@@ -97,8 +93,44 @@ static void test_outputs(void)
 		if (k < FILES)
 			check_name((ob_command_bit)(o->commands & -o->commands), o->name, ".of.mine", true);
 	}
-	check_refused(OB_COMMAND_RUN, "s.lua --record a.MP4", "is the end of the name of a video, which --video");
+	check_refused(OB_COMMAND_RUN, "s.lua --record a.MP4",
+		      "is the end of the name of a video, which --out of obsim run");
 	check_refused(OB_COMMAND_RUN, "s.lua --series s.lua", "is the end of the name of a scene");
+}
+
+static ob_out kind_of(const char *path)
+{
+	ob_out kind = OB_OUTS;
+	ob_error e;
+	CHECK(ob_output_kind(path, &kind, &e));
+	return kind;
+}
+
+// What obsim run writes is known by its name; of each kind it writes one.
+static void test_pictures(void)
+{
+	static const char *const videos[] = { "a.mp4", "./d.e/a.webm", "a.GIF", "a.xyz" };
+	static const char *const raw[] = { "-", "a.rgb", "a.RAW", "/dev/null" };
+	static const char *const folders[] = { "frames", "/tmp", "./f29.97", "a.mp4/b", "..", "a.b/" };
+	for (size_t i = 0; i < sizeof videos / sizeof *videos; i++)
+		CHECK(kind_of(videos[i]) == OB_OUT_VIDEO);
+	for (size_t i = 0; i < sizeof raw / sizeof *raw; i++)
+		CHECK(kind_of(raw[i]) == OB_OUT_RAW);
+	for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
+		CHECK(kind_of(folders[i]) == OB_OUT_FOLDER);
+	ob_arguments a;
+	ob_error e;
+	char copy[256];
+	CHECK(parse(&a, OB_COMMAND_RUN, "s.lua --out a.mp4 --out frames --out -", copy, &e));
+	CHECK(strcmp(a.out[OB_OUT_VIDEO], "a.mp4") == 0 && strcmp(a.out[OB_OUT_FOLDER], "frames") == 0 &&
+	      strcmp(a.out[OB_OUT_RAW], "-") == 0);
+	ob_options_finish(&a);
+	check_refused(OB_COMMAND_RUN, "s.lua --out a.mp4 --out b.gif", "--out a.mp4 and --out b.gif are of one kind");
+	check_refused(OB_COMMAND_RUN, "s.lua --out a.h5", "is the end of the name of a record, which --record writes");
+	check_refused(OB_COMMAND_RUN, "s.lua --out a.png", "is the end of the name of a picture, which --out DIR of");
+	check_refused(OB_COMMAND_RUN, "s.lua --video a.mp4", "--video is now --out FILE.mp4");
+	check_refused(OB_COMMAND_RUN, "s.lua --frames d", "--frames is now --out DIR");
+	check_refused(OB_COMMAND_RUN, "s.lua --raw -", "--raw is now --out FILE.rgb, or -");
 }
 
 static void test_taken(void)
@@ -110,11 +142,11 @@ static void test_taken(void)
 		    &e));
 	CHECK(strcmp(a.operand, "s.lua") == 0);
 	CHECK(a.defines == 2 && strcmp(a.define[0], "n=3") == 0 && strcmp(a.define[1], "m=x") == 0);
-	CHECK(strcmp(a.value[OB_OPTION_ARCH], "monolith") == 0);
+	CHECK(strcmp(a.setting[OB_SETTING_ARCHITECTURE], "monolith") == 0);
 	CHECK(strcmp(a.value[OB_OPTION_DURATION], "2") == 0);
 	CHECK(strcmp(a.value[OB_OPTION_JSON], "-") == 0);
 	CHECK(strcmp(a.value[OB_OPTION_SEED], "-1") == 0); // a value; the request validates it
-	CHECK(!a.value[OB_OPTION_STEP] && !a.value[OB_OPTION_HELP]);
+	CHECK(!a.setting[OB_SETTING_STEP] && !a.value[OB_OPTION_HELP]);
 	ob_options_finish(&a);
 	CHECK(parse(&a, OB_COMMAND_RUN, "--harden s.lua", copy, &e)); // its value stands behind a =, or not at all
 	CHECK(strcmp(a.value[OB_OPTION_HARDEN], "") == 0 && strcmp(a.operand, "s.lua") == 0);
@@ -186,7 +218,7 @@ static void test_table(void)
 {
 	for (int i = 0; i < OB_OPTIONS; i++) {
 		const ob_option *o = &ob_option_table[i];
-		CHECK(o->name && o->help && o->commands);
+		CHECK(o->name && (o->help || ob_setting_by_name(o->name) >= 0) && o->commands);
 		for (int j = 0; j < i; j++)
 			CHECK(strcmp(o->name, ob_option_table[j].name) != 0 ||
 			      !(o->commands & ob_option_table[j].commands));
@@ -196,6 +228,7 @@ static void test_table(void)
 int main(void)
 {
 	test_outputs();
+	test_pictures();
 	test_taken();
 	test_refused();
 	test_defines_apart();

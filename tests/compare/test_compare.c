@@ -280,7 +280,7 @@ static bool says(char **argv, const char *word)
 
 static void test_arguments(void)
 {
-	char step[] = "--step=1/120", solver[] = "--solver=jacobi";
+	char step[] = "--step=1/120", solver[] = "--set=solver=jacobi";
 	ob_comparison *c = make(1, 3, 1);
 	c->passed = 2;
 	c->pass[0] = (ob_compare_option){ strdup(step), false };
@@ -289,17 +289,17 @@ static void test_arguments(void)
 	for (int id = 0; id < OB_CONFIGURATIONS; id++) {
 		bool monolith = strstr(ob_configuration_table[id].key, "monolith");
 		char **argv = ob_comparison_arguments(c, c->point, id, OB_COMPARE_SAMPLE, false, 9);
-		CHECK(says(argv, step) && says(argv, "-Dn=5") && says(argv, "--seed=9") && says(argv, "--measure=end"));
+		CHECK(says(argv, step) && says(argv, "-Dn=5") && says(argv, "--seed=9") && says(argv, "--set=measure=end"));
 		CHECK(says(argv, solver) == !monolith &&
 		      says(argv, "--workers=2") == (!monolith && !strstr(ob_configuration_table[id].key, "each")));
-		CHECK(says(argv, ob_configuration_table[id].other_narrow ? "--narrow=aabb" : "--narrow=obb"));
+		CHECK(says(argv, ob_configuration_table[id].other_narrow ? "--set=narrow=aabb" : "--set=narrow=obb"));
 		ob_program_free_arguments(argv);
 	}
 	char **argv = ob_comparison_arguments(c, c->point, OB_CONFIGURATION_PROCESSES_EACH, OB_COMPARE_SAMPLE, true, 0);
-	CHECK(says(argv, "--measure=profile") && says(argv, "--workers=objects") && says(argv, "--isolation=process"));
+	CHECK(says(argv, "--set=measure=profile") && says(argv, "--workers=objects") && says(argv, "--isolation=process"));
 	ob_program_free_arguments(argv);
 	argv = ob_comparison_arguments(c, c->point, OB_CONFIGURATION_THREADS, OB_COMPARE_DRAWN, false, 0);
-	CHECK(says(argv, "--raw=/dev/null") && says(argv, "scenes/heap.lua"));
+	CHECK(says(argv, "--out=/dev/null") && says(argv, "scenes/heap.lua"));
 	ob_program_free_arguments(argv);
 	finish(c);
 }

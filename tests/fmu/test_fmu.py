@@ -162,7 +162,7 @@ class Fmu(program.Case):
 			self.assertEqual(len(hashes), 1)
 
 	def test_hangs(self):
-		self.fails_alone(1, "it did not return within the run's patience", "--patience", "1")
+		self.fails_alone(1, "it did not return within the run's patience", "--set", "patience=1")
 
 	def test_crashes(self):
 		self.fails_alone(2, r"its process was ended by SIGABRT \(Aborted\)")

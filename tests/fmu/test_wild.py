@@ -103,7 +103,7 @@ class Wild(program.Case):
 	def check(self, moment, deed, said, way, standard):
 		peer = 0 if moment in EARLY else 1
 		wild = f"wild{standard}.fmu"
-		done, report = self.run_scene(wild, peer, *way, "--patience", 1, env={"WILD": f"{moment} {deed}"})
+		done, report = self.run_scene(wild, peer, *way, "--set", "patience=1", env={"WILD": f"{moment} {deed}"})
 		self.assertEqual(report["state_hash"], self.calm_hash(wild, peer), done.stderr)
 		self.assertEqual(report["deaths"], 0)
 		self.assertEqual(report["scripts_stopped"], 1 if said else 0, done.stderr)
@@ -178,7 +178,7 @@ class Wild(program.Case):
 			test_fmu.pack(self.path(name), "wild", 2, bytes(library))
 			way = [*WAYS.values()][i // 2 % len(WAYS)]
 			with self.subTest(i=i, way=way):
-				done, report = self.run_scene(name, 0, *way, "--patience", 2)
+				done, report = self.run_scene(name, 0, *way, "--set", "patience=2")
 				self.assertEqual(report["state_hash"], expected, done.stderr)
 				self.assertEqual(report["scripts_stopped"], len([line for line in done.stderr.splitlines() if name in line and
 					"object 0 (bad) was stopped at" in line]), done.stderr)

@@ -334,17 +334,17 @@ class Scenes:
 		r = self.r
 		words = ["--duration", r.choices([".02", ".05", ".1", ".3"], [6, 4, 1, .3])[0]]
 		for chance, more in [(.3, ["--isolation", r.choice(["thread", "process"])]), (.5, ["--workers", r.choice(["1", "2", "3", "objects"])]),
-				(.12, ["--narrow", "aabb"]), (.05, ["--tolerance", r.choice(["1um", "1mm", "1m", "1m", "1m"])]), (.1, ["--substeps", r.choice(["1", "4", "4", "64"])]),
-				(.1, ["--solver", r.choice(["coloured", "jacobi", "ghost", "lagged"])]), (.1, ["--integrator", r.choice(["exact", "ode"])]),
-				(.1, ["--measure", r.choice(["step", "end", "profile"])]), (.05, ["--step", r.choice(["1e-4", "1/60", ".1", "10"])]),
-				(.05, ["--iterations", r.choice(["1", "64"])]), (.05, ["--solver", "lagged", "--lag", r.choice(["0", "3"])]), (.05, ["--sleeping", r.choice(["on", "off"])]),
+				(.12, ["--set", "narrow=aabb"]), (.05, ["--tolerance", r.choice(["1um", "1mm", "1m", "1m", "1m"])]), (.1, ["--set", "substeps=" + r.choice(["1", "4", "4", "64"])]),
+				(.1, ["--set", "solver=" + r.choice(["coloured", "jacobi", "ghost", "lagged"])]), (.1, ["--set", "integrator=" + r.choice(["exact", "ode"])]),
+				(.1, ["--set", "measure=" + r.choice(["step", "end", "profile"])]), (.05, ["--step", r.choice(["1e-4", "1/60", ".1", "10"])]),
+				(.05, ["--set", "iterations=" + r.choice(["1", "64"])]), (.05, ["--set", "solver=lagged", "--set", "lag=" + r.choice(["0", "3"])]), (.05, ["--set", "sleeping=" + r.choice(["on", "off"])]),
 				(.05, ["--seed", r.choice(["0", "7"])]), (.02, ["-D", r.choice(["n=5", "s=b", "p=1/3", "m=1"])]), (.1, ["--explain"]), (.05, ["--trace", "t.json"]), (.05, ["--json", "/dev/null"]),
-				(.05, ["--series", "s.csv"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--every", ".01"]), (.05, ["--strict", "--tolerance", "1mm"]), (.05, ["--verify"]), (.1, ["--on-death", "freeze"])]:
+				(.05, ["--series", "s.csv"]), (.05, ["--record", "r.h5"]), (.05, ["--checkpoint", "c", "--set", "every=.01"]), (.05, ["--strict", "--tolerance", "1mm"]), (.05, ["--set", "verify=on"]), (.1, ["--on-death", "freeze"])]:
 			words += more if r.random() < chance else []
 		if "process" in words and not self.scripts:
 			words += ["--harden"] if r.random() < .3 else []
 		if r.random() < (.2 if not self.scripts and not self.hulls else .005):
-			words = ["--arch", "monolith", "--iterations", r.choice(["20", "0", "1"]), "--duration", ".1"]
+			words = ["--arch", "monolith", "--set", "iterations=" + r.choice(["20", "0", "1"]), "--duration", ".1"]
 		return words
 
 	def case(self, folder):
@@ -402,7 +402,7 @@ class Lua:
 			shutil.copytree(os.path.join(SCENES, name[:-4]), beside)
 		scripts = sorted(glob.glob(os.path.join(beside, "*.lua")))
 		self.mutate(self.r.choice(scripts) if scripts and self.r.random() < .7 else path)
-		return ["run", path, "--duration", ".1" if scripts else ".02", "--workers", "1", "--measure", "end"]
+		return ["run", path, "--duration", ".1" if scripts else ".02", "--workers", "1", "--set", "measure=end"]
 
 
 class Words:
@@ -541,7 +541,7 @@ class Recordings(Files):
 	def command(self, path, folder):
 		if self.r.random() < .5:
 			return ["export", path, os.path.join(folder, "page.html")]
-		return ["run", "--replay", path, "--raw", "/dev/null", "--size", "16x16", "--samples", "1", "--fps", "30"]
+		return ["run", "--replay", path, "--out", "/dev/null", "--size", "16x16", "--set", "samples=1", "--fps", "30"]
 
 
 class Records(Files):
@@ -578,7 +578,7 @@ class Schedules(Files):
 			with tempfile.TemporaryDirectory() as folder:
 				words = ["run", os.path.join(SCENES, scene + ".lua"), "--duration", ".05"]
 				path = os.path.join(folder, "file")
-				subprocess.run([obsim, *words, "--sync", "free", "--record-schedule", path], stdout=subprocess.DEVNULL, check=True)
+				subprocess.run([obsim, *words, "--sync", "free", "--set", f"record_schedule={path}"], stdout=subprocess.DEVNULL, check=True)
 				with open(path, "rb") as f:
 					data = f.read()
 				first, steps = data.index(b"step"), []
@@ -627,7 +627,7 @@ class Schedules(Files):
 		return data if self.r.random() < .8 else mutate(self.r, data, [b"step", b"end.", b"lost", *self.NUMBERS], 2)
 
 	def command(self, path, folder):
-		return [*self.words, "--replay-schedule", path]
+		return [*self.words, "--set", f"replay_schedule={path}"]
 
 
 KINDS = {"scenes": Scenes, "lua": Lua, "words": Words, "checkpoints": Checkpoints, "recordings": Recordings, "records": Records, "schedules": Schedules}

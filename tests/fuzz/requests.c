@@ -151,14 +151,13 @@ static bool step(ob_host *h)
 int main(int argc, char **argv)
 {
 	const long count = argc > 1 ? atol(argv[1]) : 1000;
-	const ob_run_settings unset = ob_run_settings_unset();
 	char name[OB_NAME_MAX];
 	ob_error e = { "" };
 	long taken = 0, ended = 0;
 	state = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
 	snprintf(name, sizeof name, "fuzz-requests-%d", (int)getpid());
 	ob_scene *s = ob_scene_load_text("hears.lua", text, sizeof text - 1, NULL, &e);
-	CHECK(s && ob_run_settings_resolve(&s->run, &unset, &e));
+	CHECK(s && ob_run_settings_resolve(&s->run, NULL, &e));
 	ob_host *h = start(s, name);
 	bool goes = step(h);
 	CHECK(goes);

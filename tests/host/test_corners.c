@@ -75,7 +75,6 @@ static void run(const corner *c, double mass, double speed, double spin, double 
 {
 	char *text;
 	ob_error e = { "" };
-	const ob_run_settings unset = ob_run_settings_unset();
 	const int bytes = asprintf(
 		&text,
 		"%s%s, mass = %g, restitution = %g, at = { .02, .03, %.17g }, velocity = { 0, 0, %g }, spin = { %g, "
@@ -85,7 +84,7 @@ static void run(const corner *c, double mass, double speed, double spin, double 
 	if (bytes < 0)
 		return;
 	ob_scene *s = ob_scene_load_text("corner.lua", text, strlen(text), NULL, &e);
-	CHECK(s && ob_run_settings_resolve(&s->run, &unset, &e));
+	CHECK(s && ob_run_settings_resolve(&s->run, NULL, &e));
 	ob_host_config config = { .isolation = OB_ISOLATION_THREAD, .workers = 1, .on_death = OB_ON_DEATH_FREEZE };
 	if (s)
 		config.run = s->run;

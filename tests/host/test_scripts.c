@@ -89,11 +89,10 @@ static void look_at_cells(const ob_universe *u, outcome *o)
 
 static ob_host *start(const char *lua, ob_host_config c, ob_scene **s)
 {
-	const ob_run_settings unset = ob_run_settings_unset();
 	ob_error e = { "" };
 	*s = ob_scene_load_text("scene.lua", lua, strlen(lua), NULL, &e);
-	const bool fine = *s && ob_run_settings_resolve(&(*s)->run, &unset, &e);
-	c.run = fine ? (*s)->run : unset;
+	const bool fine = *s && ob_run_settings_resolve(&(*s)->run, NULL, &e);
+	c.run = fine ? (*s)->run : ob_run_settings_default();
 	c.run.gravity.z *= lua == wild ? 1e20 : 1; // more than a scene may have
 	ob_host *h = fine ? ob_host_start(*s, &c, &e) : NULL;
 	if (!h)

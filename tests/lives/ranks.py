@@ -17,7 +17,7 @@ environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_R
 def run(scene, *before):
 	"""Hash of the state after 300 steps; else why there is none. A life that is too much work ends so in the same step everywhere."""
 	try:
-		done = subprocess.run([*before, obsim, "run", scene, "--workers", "2", "--check", "--duration", "5", "--measure", "end",
+		done = subprocess.run([*before, obsim, "run", scene, "--workers", "2", "--check", "--duration", "5", "--set", "measure=end",
 			"--json", "-"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=300, env=environment)
 	except subprocess.TimeoutExpired:
 		return "hangs"

@@ -282,13 +282,12 @@ static uint64_t hash_of(run *r, uint32_t *objects)
 
 static outcome live_here(const life *l, way w)
 {
-	const ob_run_settings unset = ob_run_settings_unset();
 	char path[300];
 	run r = { .l = l, .way = w, .e = { "" } };
 	outcome o = { 0 };
 	snprintf(path, sizeof path, "%s/life.lua", things_folder());
 	r.scene = ob_scene_load_text(path, l->text, strlen(l->text), NULL, &r.e);
-	bool fine = r.scene && ob_run_settings_resolve(&r.scene->run, &unset, &r.e);
+	bool fine = r.scene && ob_run_settings_resolve(&r.scene->run, NULL, &r.e);
 	if (fine) {
 		r.config =
 			(ob_host_config){ .isolation = w < WAY_PROCESSES ? OB_ISOLATION_THREAD : OB_ISOLATION_PROCESS,

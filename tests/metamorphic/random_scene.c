@@ -581,7 +581,8 @@ bool scene_read(const char *path, random_scene *s, ob_error *e)
 		return false;
 	*s = (random_scene){ .run = ob_run_settings_default() };
 	s->run.gravity = from->run.gravity;
-	ob_run_settings_overlay(&s->run, &from->run);
+	const ob_settings all = { .run = from->run, .given = (1ull << OB_RUN_SETTINGS) - 1 };
+	ob_run_settings_overlay(&s->run, &all);
 	bool fits = from->objects <= SCENE_BODIES || ob_fail(e, "%s: %u bodies are too many", path, from->objects);
 	for (uint32_t i = 0; fits && i < from->objects; i++) {
 		const ob_object_def *o = &from->object[i];

@@ -329,7 +329,10 @@ class Wrong(Case):
         self.says('No such file', obsim.run, 'nothing.lua')
         self.says('unknown', obsim.run, self.scene, nonsense=3)
         self.says('workers', obsim.run, self.scene, options={'workers': -1})
-        self.says('unknown option', obsim.run, self.scene, options={'video': 'a.mp4'})
+        self.says('--set video=a.mp4: there is no such setting', obsim.run, self.scene, options={'video': 'a.mp4'})
+        self.says('--set solver=x: expected one of', obsim.run, self.scene, options={'solver': 'x'})
+        with obsim.run(self.scene, options={'solver': 'jacobi', 'sleeping': False, 'substeps': 4, 'on_death': 'freeze'}) as u:
+            u.step()
 
     def test_changes(self):
         u = self.run_()

@@ -25,7 +25,7 @@ class SameBits:
 
 	def state(self, *words):
 		"""The state at the end."""
-		done = program.call("run", *words, "--measure", "end")
+		done = program.call("run", *words, "--set", "measure=end")
 		found = re.search(r"^  state +([0-9a-f]{16})$", done.stdout, re.MULTILINE)
 		self.assertTrue(done.returncode == 0 and found, f"{words}: {done.stdout}{done.stderr}")
 		return found.group(1)
@@ -44,6 +44,6 @@ class SameBits:
 
 	@unittest.skipUnless(shutil.which("mpirun"), "no mpirun")
 	def test_ranks(self):
-		done = subprocess.run(["mpirun", "-n", "2", program.OBSIM, "run", self.scene, "--workers", "1", "--measure", "end"],
+		done = subprocess.run(["mpirun", "-n", "2", program.OBSIM, "run", self.scene, "--workers", "1", "--set", "measure=end"],
 			env=program.RANKS, capture_output=True, text=True, timeout=program.PATIENCE)
 		self.assertIn(self.state(self.scene), done.stdout, done.stderr)

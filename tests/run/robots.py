@@ -106,7 +106,7 @@ def states(scene, bodies, seconds, folder, step="1/240"):
 	names = ", ".join(f'"{b.name}"' for b in bodies)
 	with open(path, "w", encoding="utf-8") as f:
 		f.write(scene + OBSERVER.format(seconds=seconds, names=names))
-	done = program.call("run", path, "--step", step, "--duration", seconds + 1 / 60, "--measure", "end")
+	done = program.call("run", path, "--step", step, "--duration", seconds + 1 / 60, "--set", "measure=end")
 	if done.returncode:
 		raise ValueError(done.stderr.strip().splitlines()[-1])
 	found = [{} for _ in bodies]

@@ -229,7 +229,7 @@ class Bombs(unittest.TestCase):
 	def test_schedules(self):
 		path = os.path.join(self.folder, "schedule")
 		words = "run", program.scene("stack"), "--duration", ".05"
-		self.assertEqual(program.call(*words, "--sync", "free", "--record-schedule", path).returncode, 0)
+		self.assertEqual(program.call(*words, "--sync", "free", "--set", f"record_schedule={path}").returncode, 0)
 		with open(path, "rb") as f:
 			good = f.read()
 		first = good.index(b"step")
@@ -238,7 +238,7 @@ class Bombs(unittest.TestCase):
 				bomb = bytearray(good)
 				struct.pack_into("<I", bomb, at, claim)
 				self.write("bomb", bytes(bomb))
-				self.read(f"schedule, {claim} at {at - first}", *words, "--replay-schedule", "bomb", codes=(1, 2))
+				self.read(f"schedule, {claim} at {at - first}", *words, "--set", "replay_schedule=bomb", codes=(1, 2))
 
 	def test_other_lists(self):
 		"""Lists of requests, results of experiments."""

@@ -36,7 +36,7 @@ class Broken(program.Case):
 				path = self.path("broken.lua")
 				with open(path, "w") as f:
 					f.write(text)
-				done = self.refuse("run", path, "--name", name, "--json", "out.json", "--frames", "frames", saying=saying)
+				done = self.refuse("run", path, "--name", name, "--json", "out.json", "--out", "frames", saying=saying)
 				self.assertIn("broken.lua", done.stderr)
 				os.remove(path)
 				self.assertEqual(os.listdir(self.directory.name), [])

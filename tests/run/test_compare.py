@@ -63,8 +63,8 @@ class Compare(program.Case):
 			self.assertEqual({(m["low"], m["high"]) for m in run["metrics"].values()}, {(None, None)})
 
 	def test_options_reach_whom_they_concern(self):
-		_, c = self.compare(program.scene("stack"), "-D", "n=2", "--duration", ".1", "--solver", "jacobi", "--iterations", "3",
-			"--step", "1/120", "--narrow", "aabb", "--load", "5", "--repeats", "1")
+		_, c = self.compare(program.scene("stack"), "-D", "n=2", "--duration", ".1", "--set", "solver=jacobi", "--set", "iterations=3",
+			"--step", "1/120", "--set", "narrow=aabb", "--set", "load=5", "--repeats", "1")
 		# each names its command: the same commands, by themselves, show the effect of the options
 		commands = {key: run["command"] for key, run in c["points"][0]["configurations"].items()}
 		self.assertEqual({run["samples"][0]["steps"] for run in c["points"][0]["configurations"].values()}, {12})

@@ -50,6 +50,9 @@ class Completions(program.Case):
 		for command in COMMANDS:
 			self.assertEqual(self.bash(command, "--"), options(command))
 		self.assertEqual(self.bash("run", "--arch", "m"), ["monolith"])
+		self.assertEqual(self.bash("run", "--set", "so"), ["solver=coloured", "solver=jacobi", "solver=ghost", "solver=lagged"])
+		self.assertEqual(self.bash("run", "--set", "solver", "=", "ja"), ["jacobi"])
+		self.assertEqual((self.bash("run", "--set", "lo"), self.bash("serve", "--set", "verify")), (["load="], []))
 		self.assertEqual(self.bash("lab", "stack-10", "stack-2"), ["stack-20"])
 		self.assertEqual(self.bash("lab", "--json", "--che"), ["--check"])
 		open(self.path("a scene.lua"), "w").close()

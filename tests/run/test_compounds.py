@@ -49,11 +49,11 @@ class Compounds(configurations.SameBits, program.Case):
 		record = self.path("r.h5")
 		one, other = self.path("one"), self.path("other")
 		picture = ["--size", "64x48", "--duration", "1/60"]
-		done = program.call("run", self.scene, "--record", record, "--frames", one, *picture)
+		done = program.call("run", self.scene, "--record", record, "--out", one, *picture)
 		if "no pictures" in done.stderr:
 			self.skipTest("no pictures")
 		self.assertEqual(done.returncode, 0, done.stderr)
-		done = program.call("run", "--replay", record, "--frames", other, *picture)
+		done = program.call("run", "--replay", record, "--out", other, *picture)
 		self.assertEqual(done.returncode, 0, done.stderr)
 		names = sorted(p.name for p in program.os.scandir(one))
 		self.assertTrue(names)

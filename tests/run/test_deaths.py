@@ -38,7 +38,7 @@ class Deaths(program.Case):
 		random.seed(25)
 		dead = 0
 		for name, words in SCENES.items():
-			words = [program.scene(name), *words, "--sleeping", "off", "--measure", "end"]
+			words = [program.scene(name), *words, "--set", "sleeping=off", "--set", "measure=end"]
 			began = time.time()
 			expected = program.report(*words)
 			self.assertEqual(expected["deaths"], 0)

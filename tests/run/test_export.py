@@ -128,8 +128,9 @@ class Served(Case):
 		for name in "a.mp4", "a.PNG", "a.h5", "a.json", "a.csv", "a.lua":
 			self.refuse("export", self.record, name, saying="is the end of the name of")
 			self.assertFalse(os.path.exists(self.path(name)))
-		for words in ("export", self.record, self.path("page.html")), ("serve", "--replay", self.record):
-			self.refuse(*words, "--patience", "1e-5", saying="takes more than 1e-05 s of CPU to show it in a browser: --patience")
+		for words in ("export", self.record, self.path("page.html"), "--patience", "1e-5"), \
+				("serve", "--replay", self.record, "--set", "patience=1e-5"):
+			self.refuse(*words, saying="takes more than 1e-05 s of CPU to show it in a browser: --patience")
 		self.refuse("export", self.record, self.path("no/a.html"), saying="No such file or directory", code=1)
 		self.refuse("export", self.record, "/dev/full", saying="No space left on device", code=1)
 
@@ -261,7 +262,7 @@ class Pages(Case):
 		"""The renderer's picture of a scene at a time, as large as the page's."""
 		size = "{}x{}".format(*b.run("const c = document.querySelector('#picture'); return [c.width, c.height]"))
 		folder = f"{scene}.{time}"
-		done = program.call("run", scene, "--frames", folder, "--fps", repr(1 / time), "--size", size, "--duration", "4", "--measure", "end")
+		done = program.call("run", scene, "--out", folder, "--fps", repr(1 / time), "--size", size, "--duration", "4", "--set", "measure=end")
 		self.assertEqual(done.returncode, 0, done.stderr)
 		with open(os.path.join(folder, "frame-000001.png"), "rb") as f: # the frame at 1 / fps
 			return f.read()

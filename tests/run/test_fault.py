@@ -5,7 +5,7 @@ import unittest
 
 import program
 
-BOXES = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--measure", "end"]
+BOXES = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--set", "measure=end"]
 
 
 class Fault(program.Case):
@@ -33,7 +33,7 @@ class Fault(program.Case):
 
 	def test_stopped(self):
 		whole = program.report(*BOXES)
-		done, kinds = self.faulty("--isolation", "process", "--workers", "2", "--patience", "1", "--fault", "stop:p=.0005,seed=2")
+		done, kinds = self.faulty("--isolation", "process", "--workers", "2", "--set", "patience=1", "--fault", "stop:p=.0005,seed=2")
 		self.assertEqual(done["state_hash"], whole["state_hash"])
 		self.assertGreater(kinds["stop"], 0)
 		self.assertGreater(done["deaths"], 0)
@@ -54,14 +54,14 @@ class Fault(program.Case):
 	def test_scribbling(self):
 		"""After random writes the host ends in order: the run goes on, or explains its end."""
 		for seed in range(1, 4):
-			done = program.call("run", *BOXES, "--isolation", "process", "--workers", "2", "--patience", "1", "--fault",
+			done = program.call("run", *BOXES, "--isolation", "process", "--workers", "2", "--set", "patience=1", "--fault",
 				f"scribble:p=.003,words=5,seed={seed}", "--name", self.name)
 			self.assertIn(done.returncode, (0, 1), done.stderr)
 			self.assertEqual(done.returncode == 1, bool(re.search("^obsim: (?!warning|note)", done.stderr, re.M)), done.stderr)
 
 	def test_full_disk(self):
 		file = self.path("run.ck")
-		done = program.call("run", *BOXES, "--checkpoint", file, "--every", ".1", "--fault", "nospace:p=.5", "--json", self.path("r.json"))
+		done = program.call("run", *BOXES, "--checkpoint", file, "--set", "every=.1", "--fault", "nospace:p=.5", "--json", self.path("r.json"))
 		self.assertIn("No space left on device", done.stderr)
 		self.assertEqual(program.call("inspect", file).returncode, 0)
 		whole = program.report(*BOXES)

@@ -8,7 +8,7 @@ import unittest
 
 import program
 
-ENTRANCES = ["run FILE", "compare FILE", "serve FILE", "run --resume FILE", "inspect FILE", "run --replay FILE --raw /dev/null", "serve --replay FILE",
+ENTRANCES = ["run FILE", "compare FILE", "serve FILE", "run --resume FILE", "inspect FILE", "run --replay FILE --out /dev/null", "serve --replay FILE",
 	"export FILE /dev/null"]
 
 

@@ -11,7 +11,7 @@ import zlib
 
 import program
 
-SIZE = ["--size", "64x48", "--samples", "1"]
+SIZE = ["--size", "64x48", "--set", "samples=1"]
 BOXES = [program.scene("falling_boxes"), "-D", "n=12"]
 BYTES = 64 * 48 * 3
 
@@ -50,7 +50,7 @@ class Frames(program.Case):
 		for still, frame in enumerate((3, 8)):
 			with open(self.path(f"film/frame-{frame:06}.png"), "rb") as a, open(self.path(f"stills/frame-{still:06}.png"), "rb") as b:
 				self.assertEqual(a.read(), b.read())
-		late = program.call("run", *BOXES, "--frames", self.path("late"), "--still", "2", "--duration", "1")
+		late = program.call("run", *BOXES, "--out", self.path("late"), "--still", "2", "--duration", "1")
 		self.assertEqual(late.returncode, 2)
 		self.assertIn("the run ends at 1 s", late.stderr)
 
@@ -66,12 +66,12 @@ class Frames(program.Case):
 
 	def test_own_times(self):
 		"""Bodies have colours by lag in a free run, and are grey in lockstep."""
-		for name, *words in (("free", "--sync", "free", "--jitter", ".3"), ("lockstep",)):
+		for name, *words in (("free", "--sync", "free", "--set", "jitter=.3"), ("lockstep",)):
 			self.draw(name, "--duration", "1", "--still", "1", "--colour-by", "lag", *words)
 		self.assertNotEqual(digest(self.path("free")), digest(self.path("lockstep")))
 
 	def draw(self, name, *words):
-		report = program.report(*BOXES, *SIZE, "--frames", self.path(name), *words)
+		report = program.report(*BOXES, *SIZE, "--out", self.path(name), *words)
 		names = sorted(os.listdir(self.path(name)))
 		self.assertEqual(names, [f"frame-{i:06}.png" for i in range(report["frames"])])
 		return report
@@ -92,15 +92,15 @@ class Frames(program.Case):
 
 	def test_six_hundred(self):
 		raw = self.path("all.rgb")
-		r = program.report(program.scene("cradle"), "--size", "16x16", "--samples", "1", "--raw", raw, "--duration", "10",
-			"--measure", "end")
+		r = program.report(program.scene("cradle"), "--size", "16x16", "--set", "samples=1", "--out", raw, "--duration", "10",
+			"--set", "measure=end")
 		self.assertEqual(r["frames"], 600)
 		self.assertEqual(os.path.getsize(raw), 600 * 16 * 16 * 3)
 
 	def test_same_bytes(self):
 		"""Twice, and in processes, and without measuring: the same pictures."""
 		expected = None
-		for i, words in enumerate(([], [], ["--isolation", "process", "--workers", "3"], ["--measure", "end"])):
+		for i, words in enumerate(([], [], ["--isolation", "process", "--workers", "3"], ["--set", "measure=end"])):
 			self.draw(str(i), "--duration", ".5", "--fps", "50", "--overlay", "aabb,contacts", *words)
 			found = digest(self.path(str(i)))
 			self.assertEqual(len(found), 25)
@@ -110,10 +110,10 @@ class Frames(program.Case):
 
 	def test_who_simulates(self):
 		"""A strip of workers at the upper left, with the own times of a free run below: the rest of the picture is as before."""
-		size, wide = ["--size", "640x360", "--samples", "1"], 640
+		size, wide = ["--size", "640x360", "--set", "samples=1"], 640
 		def picture(*words):
-			raw = self.path("raw")
-			program.report(*BOXES, *size, "--workers", "2", "--still", ".5", "--raw", raw, *words)
+			raw = self.path("r.rgb")
+			program.report(*BOXES, *size, "--workers", "2", "--still", ".5", "--out", raw, *words)
 			with open(raw, "rb") as f:
 				return f.read()
 		plain, strip = picture(), picture("--overlay", "simulators")
@@ -133,8 +133,8 @@ class Frames(program.Case):
 				"for i, x in ipairs { -3, -1.98, 2, 3.02 } do box { name = 'box ' .. i, size = { 1, 1, 1 }, at = { x, 0, .5 } } end\n")
 		wide, high = 320, 180
 		def picture(*words):
-			raw = self.path("raw")
-			program.report(self.path("scene.lua"), "--size", f"{wide}x{high}", "--samples", "1", "--still", ".5", "--duration", "1", "--raw", raw, *words)
+			raw = self.path("r.rgb")
+			program.report(self.path("scene.lua"), "--size", f"{wide}x{high}", "--set", "samples=1", "--still", ".5", "--duration", "1", "--out", raw, *words)
 			with open(raw, "rb") as f:
 				return f.read()
 		plain = picture()
@@ -155,23 +155,23 @@ class Frames(program.Case):
 		self.assertEqual(r["frames"], 12)
 
 	def test_directories_are_made(self):
-		"""Files may lie in a directory that --frames creates."""
-		report = program.report(*BOXES, *SIZE, "--duration", ".1", "--frames", self.path("a/b/c"), "--raw", self.path("a/r"),
+		"""Files may lie in a directory that --out creates."""
+		report = program.report(*BOXES, *SIZE, "--duration", ".1", "--out", self.path("a/b/c"), "--out", self.path("a/r.rgb"),
 			"--series", self.path("a/b/s.csv"))
 		self.assertEqual(len(os.listdir(self.path("a/b/c"))), report["frames"])
-		self.assertEqual(os.path.getsize(self.path("a/r")), report["frames"] * BYTES)
+		self.assertEqual(os.path.getsize(self.path("a/r.rgb")), report["frames"] * BYTES)
 		self.assertTrue(os.path.exists(self.path("a/b/s.csv")))
 
 	def test_raw_to_a_pipe(self):
-		done = subprocess.run([program.OBSIM, "run", *BOXES, *SIZE, "--duration", ".5", "--raw", "-"], stdout=subprocess.PIPE,
+		done = subprocess.run([program.OBSIM, "run", *BOXES, *SIZE, "--duration", ".5", "--out", "-"], stdout=subprocess.PIPE,
 			stderr=subprocess.PIPE, timeout=program.PATIENCE)
 		self.assertEqual(done.returncode, 0)
 		self.assertEqual(len(done.stdout), 30 * BYTES)
-		self.assertIn(b"frames", done.stderr) # the report gives way
+		self.assertIn(b"\n  state  ", done.stderr) # the report gives way
 
 	def test_reader_leaves(self):
 		"""A pipe whose reader has gone ends the run with a message."""
-		run = program.start("run", *BOXES, *SIZE, "--duration", "1000", "--raw", "-", "--name", self.name)
+		run = program.start("run", *BOXES, *SIZE, "--duration", "1000", "--out", "-", "--name", self.name)
 		run.stdout.close()
 		self.assertEqual(run.wait(program.PATIENCE), 1)
 		said = run.stderr.read()
@@ -180,7 +180,7 @@ class Frames(program.Case):
 
 	@unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
 	def test_what_ffmpeg_says(self):
-		done = program.call("run", *BOXES, *SIZE, "--video", self.path("v.xyz"), "--duration", "1")
+		done = program.call("run", *BOXES, *SIZE, "--out", self.path("v.xyz"), "--duration", "1")
 		self.assertEqual(done.returncode, 1)
 		self.assertRegex(done.stderr, r"^obsim: \S*v.xyz: ffmpeg failed: .*format")
 		self.assertNotIn("@ 0x", done.stderr)  # the temporary folder may have any name
@@ -188,19 +188,19 @@ class Frames(program.Case):
 	@unittest.skipUnless(shutil.which("ffmpeg") and shutil.which("ffprobe"), "ffmpeg is not installed")
 	def test_video(self):
 		video = self.path("v.mp4")
-		r = program.report(*BOXES, *SIZE, "--video", video, "--duration", "1", "--fps", "30")
+		r = program.report(*BOXES, *SIZE, "--out", video, "--duration", "1", "--fps", "30")
 		self.assertEqual(r["frames"], 30)
 		probe = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames,width,height",
 			"-of", "csv=p=0", video], stdout=subprocess.PIPE, text=True, check=True, timeout=60)
 		self.assertEqual(probe.stdout.strip(), "64,48,30")
 
 	def test_cameras_differ(self):
-		done = program.call("run", *BOXES, "--raw", self.path("x"), "--camera", "mian")
+		done = program.call("run", *BOXES, "--out", self.path("x.rgb"), "--camera", "mian")
 		self.assertEqual(done.returncode, 2)
 		self.assertIn("did you mean main?", done.stderr)
 
 	def test_wrong_gpu(self):
-		done = program.call("run", *BOXES, *SIZE, "--raw", self.path("x"), "--gpu", "99", "--name", self.name)
+		done = program.call("run", *BOXES, *SIZE, "--out", self.path("x.rgb"), "--set", "gpu=99", "--name", self.name)
 		self.assertEqual(done.returncode, 1)
 		self.assertIn("99", done.stderr)
 

@@ -39,7 +39,7 @@ class Free(program.Case):
 		"""Bodies that touch nothing end where they do in lockstep, whatever their rates."""
 		scene = self.scene(FLIGHT)
 		expected = program.report(scene)
-		for more in (), ("--update-rate", 37), ("--isolation", "process", "--workers", "objects"), ("--jitter", .3):
+		for more in (), ("--set", "update_rate=37"), ("--isolation", "process", "--workers", "objects"), ("--set", "jitter=.3"):
 			r, _ = self.run_free(scene, *more)
 			self.assertAlmostEqual(r["energy_end"] / expected["energy_end"], 1, delta=1e-9)
 			self.assertEqual(r["steps"], 60)
@@ -60,23 +60,23 @@ class Free(program.Case):
 		"""A simulator that is killed goes on where it had published: the common time reaches the end."""
 		for coupling in "own", "ledger":
 			r, done = self.run_free(self.scene(STACK), "--isolation", "process", "--workers", "objects",
-				"--fault", "kill:p=.002,seed=3", "--coupling", coupling)
+				"--fault", "kill:p=.002,seed=3", "--set", f"coupling={coupling}")
 			self.assertGreater(r["deaths"], 0)
 			self.assertEqual((r["steps"], r["coupling"]), (30, coupling))
 			self.assertIn("goes on where it had published", done.stderr)
 			self.assertIn("each simulator went on where it had published", done.stdout)
 
 	def test_ledger_has_one_impulse(self):
-		for more in ["--solver", "ghost"], ["--integrator", "ode"]:
-			done = program.call("run", self.scene(FLIGHT), "--sync", "free", "--coupling", "ledger", *more)
+		for more in ["--set", "solver=ghost"], ["--set", "integrator=ode"]:
+			done = program.call("run", self.scene(FLIGHT), "--sync", "free", "--set", "coupling=ledger", *more)
 			self.assertEqual(done.returncode, 2, done.stderr)
 
 	def test_stopped_simulator(self):
 		"""Only those that touch a stopped simulator wait, at the bound, and obsim top says so; it goes on later."""
 		name = f"free-stop-{os.getpid()}"
 		run = program.start("run", self.scene(STACK + "sphere { radius = .1, at = {9, 0, 1} }"), "--isolation", "process",
-			"--workers", "objects", "--pace", 1, "--max-lag", .02, "--duration", 3600, "--name", name, "--measure", "end",
-			"--coupling", "ledger")
+			"--workers", "objects", "--pace", 1, "--set", "max_lag=.02", "--duration", 3600, "--name", name, "--set", "measure=end",
+			"--set", "coupling=ledger")
 		self.addCleanup(run.wait)
 		self.addCleanup(run.kill)
 
@@ -105,11 +105,11 @@ for i = 1, 5 do sphere { radius = .1, at = {i, 0, 1}, born = i * .1, dies = i * 
 sphere { radius = .1, at = {9, 0, 1} }
 """)
 		for more in (), ("--workers", "objects"), ("--isolation", "process"):
-			r, _ = self.run_free(scene, "--update-rate", 240, *more)
+			r, _ = self.run_free(scene, "--set", "update_rate=240", *more)
 			self.assertEqual((r["steps"], r["objects"]), (60, 2))
 
 	def test_rates_of_objects(self):
-		"""Objects step at rates of their own; --update-rate is for the others."""
+		"""Objects step at rates of their own; --set update_rate is for the others."""
 		scene = self.scene("""
 scene { duration = 1, sync = 'free', update_rate = 100 }
 material "fast" { update_rate = 400 }
@@ -117,18 +117,18 @@ sphere { radius = .1, at = {0, 0, 20}, material = "fast" }
 sphere { radius = .1, at = {9, 0, 20}, material = "fast", update_rate = 250 }
 sphere { radius = .1, at = {19, 0, 20} }
 """)
-		for more, expected in ((), 750), (("--update-rate", 50), 700), (("--workers", "objects"), 750):
+		for more, expected in ((), 750), (("--set", "update_rate=50"), 700), (("--workers", "objects"), 750):
 			r, _ = self.run_free(scene, *more)
 			self.assertTrue(.95 * expected <= r["updates"] < 1.3 * expected, r["updates"])
 
 	def test_frames_of_the_common_time(self):
 		series = self.path("series.csv")
-		self.run_free(self.scene(FLIGHT), "--update-rate", 111, "--series", series)
+		self.run_free(self.scene(FLIGHT), "--set", "update_rate=111", "--series", series)
 		with open(series) as f:
 			self.assertEqual(len(f.readlines()), 62)
 
 	def test_paced(self):
-		r, _ = self.run_free(self.scene(FLIGHT), "--pace", 4, "--update-rate", 100)
+		r, _ = self.run_free(self.scene(FLIGHT), "--pace", 4, "--set", "update_rate=100")
 		self.assertEqual(r["max_lag"], None)
 		self.assertGreater(r["elapsed_s"], .2)
 
@@ -136,17 +136,17 @@ sphere { radius = .1, at = {19, 0, 20} }
 		scene = self.scene(FLIGHT)
 		for words, named in [
 			(["--tolerance", "1mm"], "tolerance"), (["--harden", "--isolation", "process"], "harden"),
-			(["--arch", "monolith"], "arch"), (["--lag", "1", "--solver", "lagged"], "lag"),
-			(["--checkpoint", self.path("c")], "checkpoint"), (["--sleeping", "on"], "sleeping"),
+			(["--arch", "monolith"], "arch"), (["--set", "lag=1", "--set", "solver=lagged"], "lag"),
+			(["--checkpoint", self.path("c")], "checkpoint"), (["--set", "sleeping=on"], "sleeping"),
 			(["--explain"], "explain"), (["--check"], "check"),
-			(["--on-death", "freeze"], "on-death"), (["--solver", "jacobi"], "solver"),
-			(["--measure", "profile"], "profile"),
+			(["--on-death", "freeze"], "on-death"), (["--set", "solver=jacobi"], "solver"),
+			(["--set", "measure=profile"], "profile"),
 		]:
 			done = program.call("run", scene, "--sync", "free", *words)
 			self.assertEqual(done.returncode, 2, words)
 			self.assertIn(named, done.stderr)
-		for option in "update-rate", "max-lag", "jitter", "delay", "coupling":
-			done = program.call("run", scene, "--" + option, "own" if option == "coupling" else ".5")
+		for setting in "update_rate=.5", "max_lag=.5", "jitter=.5", "delay=.5", "coupling=own":
+			done = program.call("run", scene, "--set", setting)
 			self.assertEqual((done.returncode, "is for --sync free" in done.stderr), (2, True), done.stderr)
 		scripted = self.scene("ground {}\nbox { size = {1, 1, 1}, at = {0, 0, 1}, script = [[function on_step(self) end]] }")
 		done = program.call("run", scripted, "--sync", "free")

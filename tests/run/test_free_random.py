@@ -37,11 +37,11 @@ class Random(program.Case):
 		return path
 
 	def options(self, draw, seed):
-		words = ["--sync", "free", "--coupling", draw.choice(["own", "ledger"]), "--seed", seed, "--measure", "end",
-			"--update-rate", draw.choice([60, 100, 333, 1000]), "--jitter", draw.choice([0, .3, .9]),
+		words = ["--sync", "free", "--set", "coupling=" + draw.choice(["own", "ledger"]), "--seed", seed, "--set", "measure=end",
+			"--set", f"update_rate={draw.choice([60, 100, 333, 1000])}", "--set", f"jitter={draw.choice([0, .3, .9])}",
 			"--workers", draw.choice([1, 2, 3, "objects"])]
-		words += draw.choice([[], ["--max-lag", "none"], ["--max-lag", .0005], ["--max-lag", .05]])
-		words += draw.choice([[], [], ["--delay", .002], ["--pace", 2]])
+		words += draw.choice([[], ["--set", "max_lag=none"], ["--set", "max_lag=.0005"], ["--set", "max_lag=.05"]])
+		words += draw.choice([[], [], ["--set", "delay=.002"], ["--pace", 2]])
 		isolation = draw.choice(["thread", "process"])
 		faults = [None, f"slow:p=.01,ms=3,seed={seed}"]
 		faults += [f"kill:p=.004,seed={seed}"] * 2 if isolation == "process" else []
@@ -71,7 +71,7 @@ class Random(program.Case):
 			draw = random.Random(seed)
 			scene, words = self.scene(draw), self.options(draw, seed)
 			kill = draw.random() < .5 and "process" in words # a thread cannot be killed
-			words += ["--patience", PATIENCE] + ([] if "--pace" in words else ["--pace", .5]) if kill else [] # or it ends at once
+			words += ["--set", f"patience={PATIENCE}"] + ([] if "--pace" in words else ["--pace", .5]) if kill else [] # or it ends at once
 			run = program.start("run", scene, *words, "--json", self.path("r.json"))
 			stops += self.stop_now_and_then(draw, run, [LONG] if kill else []) if kill or draw.random() < .5 else 0
 			_, errors = run.communicate(timeout=program.PATIENCE)

@@ -1,4 +1,4 @@
-"""obsim run --record-schedule, --replay-schedule: a free run repeats to the bit, in one thread, kills included."""
+"""obsim run --set record_schedule, replay_schedule: a free run repeats to the bit, in one thread, kills included."""
 
 import os
 import random
@@ -36,21 +36,21 @@ class Schedule(program.Case):
 		return path
 
 	def record(self, scene, file, *words):
-		return program.report(scene, "--sync", "free", "--update-rate", 400, "--jitter", .3, "--record-schedule", file, *words)
+		return program.report(scene, "--sync", "free", "--set", "update_rate=400", "--set", "jitter=.3", "--set", f"record_schedule={file}", *words)
 
 	def test_same_bits(self):
 		scene, file, deaths = self.scene(), self.path("s"), 0
 		draw = random.Random(1)
 		for k in range(RUNS):
-			words = ["--coupling", draw.choice(["own", "ledger"]), "--seed", k]
-			words += draw.choice([[], ["--delay", .004], ["--max-lag", "none"], ["--max-lag", .02]])
+			words = ["--set", "coupling=" + draw.choice(["own", "ledger"]), "--seed", k]
+			words += draw.choice([[], ["--set", "delay=.004"], ["--set", "max_lag=none"], ["--set", "max_lag=.02"]])
 			words += [["--workers", 2], ["--workers", "objects"],
 				["--isolation", "process", "--workers", "objects", "--fault", f"kill:p=.002,seed={k}"],
 				["--isolation", "process", "--workers", 2, "--fault", f"kill:p=.001,seed={k}"]][k % 4]
 			recorded = self.record(scene, file, *words)
-			again = program.report(scene, "--replay-schedule", file, "--seed", k)
+			again = program.report(scene, "--set", f"replay_schedule={file}", "--seed", k)
 			self.assertEqual(again["state_hash"], recorded["state_hash"], words)
-			self.assertEqual((again["workers"], again["coupling"], again["jitter"]), (1, words[1], .3))
+			self.assertEqual((again["workers"], f'coupling={again["coupling"]}', again["jitter"]), (1, words[1], .3))
 			deaths += recorded["deaths"]
 		self.assertGreater(deaths, 0)
 
@@ -67,7 +67,7 @@ class Schedule(program.Case):
 		for damaged in cuts + flips + [whole + b"more", whole[:600] + whole[700:], b"\0" * 4096]:
 			with open(broken, "wb") as f:
 				f.write(damaged)
-			done = program.call("run", scene, "--replay-schedule", broken)
+			done = program.call("run", scene, "--set", f"replay_schedule={broken}")
 			self.assertEqual(done.returncode, 2, done.stderr)
 			self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
 			self.assertIn(broken, done.stderr)
@@ -93,7 +93,7 @@ class Schedule(program.Case):
 		"""One line, exit 1 or 2, in bounded memory and without a wait that does not end."""
 		with open(file, "wb") as f:
 			f.write(data)
-		code, error, megabytes = program.peak("run", scene, "--replay-schedule", file)
+		code, error, megabytes = program.peak("run", scene, "--set", f"replay_schedule={file}")
 		self.assertIn(code, (1, 2), error)
 		self.assertEqual(len(error.strip().split("\n")), 1, error)
 		self.assertIn(file, error)
@@ -114,7 +114,7 @@ class Schedule(program.Case):
 	def test_order(self):
 		"""Steps that are missing, twice there, or in another order do not fit the scene."""
 		scene, file = self.scene(), self.path("s")
-		self.record(scene, file, "--coupling", "ledger")
+		self.record(scene, file, "--set", "coupling=ledger")
 		with open(file, "rb") as f:
 			whole = f.read()
 		steps, draw = self.steps(whole), random.Random(6)
@@ -133,7 +133,7 @@ class Schedule(program.Case):
 	def test_hostile(self):
 		"""Right checksums around numbers that nobody recorded: one line, or a replay in the same or in other bits."""
 		scene, file = self.scene(), self.path("s")
-		self.record(scene, file, "--coupling", "ledger")
+		self.record(scene, file, "--set", "coupling=ledger")
 		with open(file, "rb") as f:
 			whole = f.read()
 		steps, draw = self.steps(whole), random.Random(7)
@@ -149,7 +149,7 @@ class Schedule(program.Case):
 				data[at:at + size] = struct.pack("<Q", new)[:size]
 			with open(file, "wb") as f:
 				f.write(self.seal(data))
-			code, error, megabytes = program.peak("run", scene, "--replay-schedule", file)
+			code, error, megabytes = program.peak("run", scene, "--set", f"replay_schedule={file}")
 			self.assertIn(code, (0, 1, 2), error)
 			self.assertLessEqual(len(error.strip().split("\n")), 2, error)
 			self.assertLess(megabytes, 400 if not program.SANITIZED else 4000, error)
@@ -184,15 +184,15 @@ class Schedule(program.Case):
 	def test_refusals(self):
 		scene, file = self.scene(), self.path("s")
 		self.record(scene, file)
-		for words, named in [(["--workers", 2], "workers"), (["--coupling", "own"], "coupling"), (["--pace", 1], "pace"),
+		for words, named in [(["--workers", 2], "workers"), (["--set", "coupling=own"], "coupling"), (["--pace", 1], "pace"),
 			(["--isolation", "process"], "isolation"), (["--sync", "lockstep"], "sync free"), (["-D", "n=3"], "n"),
-			(["--substeps", 3], "another scene"), (["--duration", 1], "another scene"), (["--seed", 9], "another scene")]:
-			done = program.call("run", scene, "--replay-schedule", file, *words)
+			(["--set", "substeps=3"], "another scene"), (["--duration", 1], "another scene"), (["--seed", 9], "another scene")]:
+			done = program.call("run", scene, "--set", f"replay_schedule={file}", *words)
 			self.assertEqual((done.returncode, named in done.stderr), (2, True), done.stderr)
 		missing = os.path.join(self.path("none"), "s")
-		done = program.call("run", scene, "--sync", "free", "--record-schedule", missing)
-		self.assertEqual((done.returncode, "record-schedule" in done.stderr), (2, True), done.stderr)
-		done = program.call("run", scene, "--replay-schedule", missing)
+		done = program.call("run", scene, "--sync", "free", "--set", f"record_schedule={missing}")
+		self.assertEqual((done.returncode, "record_schedule" in done.stderr), (2, True), done.stderr)
+		done = program.call("run", scene, "--set", f"replay_schedule={missing}")
 		self.assertEqual((done.returncode, missing in done.stderr), (2, True), done.stderr)
 
 

@@ -58,7 +58,7 @@ class Stopped(program.Case):
 		"""A run that is ended while a simulator stands takes the ends of others for no deaths."""
 		for _ in range(3):
 			run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=40", "--sync", "free", "--pace", 1, "--isolation", "process", "--workers", 4,
-				"--duration", 3600, "--measure", "end")
+				"--duration", 3600, "--set", "measure=end")
 			pid = int(re.search(r"^ +1 +(\d+) ", self.top(), re.M)[1])
 			os.kill(pid, signal.SIGSTOP)
 			run.send_signal(signal.SIGTERM)
@@ -68,8 +68,7 @@ class Stopped(program.Case):
 		scene = self.path("scene.lua")
 		with open(scene, "w") as f:
 			f.write(SCENE)
-		run = self.start_stepping(scene, "--sync", "free", "--coupling", "ledger", "--update-rate", RATE, "--pace", 1, "--max-lag",
-			BOUND, "--isolation", "process", "--workers", "objects", "--duration", 3600, "--measure", "end")
+		run = self.start_stepping(scene, "--sync", "free", "--set", "coupling=ledger", "--set", f"update_rate={RATE}", "--pace", 1, "--set", f"max_lag={BOUND}", "--isolation", "process", "--workers", "objects", "--duration", 3600, "--set", "measure=end")
 		universe = Universe(self.name)
 		self.assertTrue(program.wait_until(lambda: min(universe.own_times().values()) > 1))
 		pid = int(re.search(rf"^ +{STOPPED} +(\d+) ", self.top(), re.M)[1])

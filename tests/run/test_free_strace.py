@@ -23,7 +23,7 @@ class Strace(program.Case):
 		scene, trace, report = self.path("scene.lua"), self.path("trace"), self.path("r.json")
 		with open(scene, "w") as f:
 			f.write(SCENE)
-		done = subprocess.run(["strace", "-f", "-qq", "-o", trace, program.OBSIM, "run", scene, "--pace", "1", "--measure", "end",
+		done = subprocess.run(["strace", "-f", "-qq", "-o", trace, program.OBSIM, "run", scene, "--pace", "1", "--set", "measure=end",
 			"--json", report, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=program.PATIENCE)
 		if done.returncode and "ptrace" in done.stderr.lower():
 			self.skipTest("strace may not trace here")
@@ -37,7 +37,7 @@ class Strace(program.Case):
 
 	def test_no_futex_in_a_step(self):
 		for coupling in "own", "ledger":
-			calls, r = self.traced("--workers", "2", "--max-lag", "none", "--coupling", coupling)
+			calls, r = self.traced("--workers", "2", "--set", "max_lag=none", "--set", f"coupling={coupling}")
 			self.assertGreaterEqual(r["updates"], 1900)
 			self.assertEqual(r["waits"], 0)
 			self.assertLess(calls.count("futex"), FEW, coupling)
@@ -46,7 +46,7 @@ class Strace(program.Case):
 
 	def test_waits_are_counted(self):
 		"""By the bound of the lag: a call to wait, and one to wake, for each wait that the report counts."""
-		calls, r = self.traced("--workers", "objects", "--max-lag", ".002", "--coupling", "ledger")
+		calls, r = self.traced("--workers", "objects", "--set", "max_lag=.002", "--set", "coupling=ledger")
 		self.assertGreater(r["waits"], 0)
 		self.assertLess(calls.count("futex"), 2 * r["waits"] + FEW)
 

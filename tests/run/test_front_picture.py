@@ -103,9 +103,9 @@ class FrontPicture(program.Case):
 				self.assertLess(os.path.getsize(path), 4e5)
 				found = frames_of_webp(path)
 				self.assertAlmostEqual(len(found), frames, delta=2) # equal frames are one
-				raw = self.path(name)
-				program.report(program.scene(scene), "--duration", ".01", "--still", "0", "--size", "320x180", "--raw", raw,
-					"--measure", "end", *words)
+				raw = self.path(name + ".rgb")
+				program.report(program.scene(scene), "--duration", ".01", "--still", "0", "--size", "320x180", "--out", raw,
+					"--set", "measure=end", *words)
 				with open(raw, "rb") as f:
 					data = f.read()
 				drawn = thumbnail(320, [data[i:i + 960] for i in range(0, 320 * 180 * 3, 960)])
@@ -113,20 +113,20 @@ class FrontPicture(program.Case):
 				self.assertLess(sum(off) / len(off), 2 * MEAN)
 
 	def draw(self, *words):
-		raw = self.path("raw")
-		program.report(program.scene("falling_boxes"), "--duration", "1.6", "--fps", "1.25", "--size", "320x180", "--raw", raw,
-			"--measure", "end", *words)
+		raw = self.path("r.rgb")
+		program.report(program.scene("falling_boxes"), "--duration", "1.6", "--fps", "1.25", "--size", "320x180", "--out", raw,
+			"--set", "measure=end", *words)
 		with open(raw, "rb") as f:
 			data = f.read()[320 * 180 * 3:]
 		return thumbnail(320, [data[i:i + 960] for i in range(0, len(data), 960)])
 
 	def test_is_what_is_drawn(self):
 		front = thumbnail(*rows_of_png(FRONT))
-		off = [abs(a - b) for a, b in zip(front, self.draw("--quality", "fine", "--samples", "8"))]
+		off = [abs(a - b) for a, b in zip(front, self.draw("--quality", "fine", "--set", "samples=8"))]
 		self.assertLess(sum(off) / len(off), MEAN)
 		self.assertLess(max(off), MOST)
 		# a different picture fails: another seed, another picture
-		other = [abs(a - b) for a, b in zip(front, self.draw("--samples", "1", "--seed", "2"))]
+		other = [abs(a - b) for a, b in zip(front, self.draw("--set", "samples=1", "--seed", "2"))]
 		self.assertGreater(sum(other) / len(other), 3 * MEAN)
 
 

@@ -15,7 +15,7 @@ class Visits(program.Case):
 	def test_visits(self):
 		for name in NAMED or sorted(file.removesuffix(".lua") for file in os.listdir(program.SCENES) if file.endswith(".lua")):
 			with self.subTest(scene=name):
-				visit = greedy.Visit(program.scene(name), "--patience", "600", objects=greedy.piles() if NAMED else None)
+				visit = greedy.Visit(program.scene(name), "--set", "patience=600", objects=greedy.piles() if NAMED else None)
 				self.assertTrue(visit.alive and visit.code == 0, visit.err[-3:])
 				self.assertGreater(visit.sent, 100)
 				self.assertTrue(visit.waits) # the innocent visitor was there

@@ -55,7 +55,7 @@ class Groups(program.Case):
 
 	def state(self, *words):
 		"""The state at the end, and what scripts have printed."""
-		done = program.call("run", *words, "--measure", "end")
+		done = program.call("run", *words, "--set", "measure=end")
 		found = re.search(r"^  state +([0-9a-f]{16})$", done.stdout, re.MULTILINE)
 		self.assertTrue(done.returncode == 0 and found, f"{words}: {done.stdout}{done.stderr}")
 		return found.group(1), sorted(re.findall(r"^obsim: (\S+) at (\S+) (\S+)$", done.stderr, re.MULTILINE))
@@ -94,7 +94,7 @@ class Groups(program.Case):
 		text = re.sub(r"^(hinge|fixed|apart).*\n", "", SCENE, flags=re.MULTILINE)
 		with open(self.scene, "w", encoding="utf-8") as f:
 			f.write(text)
-		done = subprocess.run(["mpirun", "-n", "2", program.OBSIM, "run", self.scene, "--workers", "1", "--measure", "end"],
+		done = subprocess.run(["mpirun", "-n", "2", program.OBSIM, "run", self.scene, "--workers", "1", "--set", "measure=end"],
 			env=program.RANKS, capture_output=True, text=True, timeout=program.PATIENCE)
 		self.assertIn(self.state(self.scene)[0], done.stdout, done.stderr)
 

@@ -34,7 +34,7 @@ def configuration(chance):
 
 class Hundred(program.Case):
 	def state(self, *words):
-		done = program.call("run", *words, "--measure", "end")
+		done = program.call("run", *words, "--set", "measure=end")
 		found = STATE.search(done.stdout)
 		self.assertTrue(done.returncode == 0 and found, f"{words}: {done.stdout}{done.stderr}")
 		deaths = re.search(r"deaths +(\d+)", done.stdout)
@@ -43,7 +43,7 @@ class Hundred(program.Case):
 
 	def state_of_ranks(self, ranks, workers):
 		done = subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), program.OBSIM, "run", SCENE, "--workers", str(workers),
-			"--measure", "end"], env=program.RANKS, capture_output=True, text=True, timeout=program.PATIENCE)
+			"--set", "measure=end"], env=program.RANKS, capture_output=True, text=True, timeout=program.PATIENCE)
 		found = STATE.search(done.stdout)
 		self.assertTrue(done.returncode == 0 and found, f"{ranks} ranks: {done.stdout}{done.stderr}")
 		return found.group(1)

@@ -14,7 +14,7 @@ import program
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 HEAVY = [program.scene("falling_boxes"), "-D", "n=2000", "--duration", program.FOR_EVER]
-LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", program.FOR_EVER, "--sleeping", "off"]
+LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", program.FOR_EVER, "--set", "sleeping=off"]
 
 
 class Interrupt(program.Case):
@@ -42,7 +42,7 @@ class Interrupt(program.Case):
 
 	def test_one_leg(self):
 		"""A run without measures on its way also reports its progress."""
-		report = self.interrupt("--measure", "end")
+		report = self.interrupt("--set", "measure=end")
 		self.assertGreater(report["simulated_s"], 0)
 
 	def test_at_start(self):
@@ -78,8 +78,8 @@ class Interrupt(program.Case):
 	def test_frames(self):
 		if "no EGL" in program.call("--version").stdout:
 			self.skipTest("no EGL")
-		video = ["--video", self.path("v.mp4")] if shutil.which("ffmpeg") and shutil.which("ffprobe") else []
-		report = self.interrupt("--frames", self.path("f"), "--size", "64x48", "--samples", "1", *video,
+		video = ["--out", self.path("v.mp4")] if shutil.which("ffmpeg") and shutil.which("ffprobe") else []
+		report = self.interrupt("--out", self.path("f"), "--size", "64x48", "--set", "samples=1", *video,
 			when=lambda: os.path.exists(self.path("f/frame-000002.png")))
 		names = sorted(os.listdir(self.path("f")))
 		self.assertEqual(names, [f"frame-{i:06}.png" for i in range(report["frames"])])
@@ -95,16 +95,16 @@ class Interrupt(program.Case):
 		"""At a terminal Ctrl-C reaches the whole group: ffmpeg and the simulators, too."""
 		words = ["--isolation", "process"]
 		if shutil.which("ffmpeg") and "no EGL" not in program.call("--version").stdout:
-			words += ["--video", self.path("v.mp4"), "--frames", self.path("f"), "--size", "64x48", "--samples", "1"]
+			words += ["--out", self.path("v.mp4"), "--out", self.path("f"), "--size", "64x48", "--set", "samples=1"]
 		run = program.start("run", *LONG, "--name", self.name, *words, start_new_session=True)
 		self.assertTrue(program.wait_until(lambda: program.steps(self.name) > 0))
-		self.assertTrue("--video" not in words or program.wait_until(lambda: os.path.exists(self.path("f/frame-000002.png"))))
+		self.assertTrue("--out" not in words or program.wait_until(lambda: os.path.exists(self.path("f/frame-000002.png"))))
 		os.killpg(run.pid, signal.SIGINT)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.assertIn("interrupted", run.stderr.read())
 		run.stdout.close()
 		run.stderr.close()
-		if "--video" in words:
+		if "--out" in words:
 			subprocess.run(["ffmpeg", "-v", "error", "-i", self.path("v.mp4"), "-f", "null", "-"], check=True, timeout=60)
 
 

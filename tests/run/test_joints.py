@@ -200,7 +200,7 @@ def kept(folder, text):
 
 
 def state(*words):
-	done = program.call("run", *words, "--measure", "end")
+	done = program.call("run", *words, "--set", "measure=end")
 	found = re.search(r"^  state +([0-9a-f]{16})$", done.stdout, re.MULTILINE)
 	if done.returncode or not found:
 		raise AssertionError(f"{words}: {done.stdout}{done.stderr}")
@@ -261,7 +261,7 @@ class Joints(unittest.TestCase):
 	def test_drives(self):
 		for arch, fine in (("obs", 1e-6), ("monolith", 1e-3)):
 			with tempfile.TemporaryDirectory() as folder:
-				done = program.call("run", kept(folder, DRIVES), "--measure", "end", "--arch", arch)
+				done = program.call("run", kept(folder, DRIVES), "--set", "measure=end", "--arch", arch)
 			self.assertEqual(done.returncode, 0, done.stderr)
 			at = {name: [float(x) for x in rest.split()] for name, rest in re.findall(r"@(\w+)(.*)", done.stderr)}
 			for name in ("flap", "gate"):
@@ -272,7 +272,7 @@ class Joints(unittest.TestCase):
 
 	def test_sleepers(self):
 		with tempfile.TemporaryDirectory() as folder:
-			done = program.call("run", kept(folder, SLEEPERS), "--measure", "end")
+			done = program.call("run", kept(folder, SLEEPERS), "--set", "measure=end")
 		self.assertEqual(done.returncode, 0, done.stderr)
 		at = [[float(x) for x in line.split()] for line in re.findall(r"@at (.*)", done.stderr)]
 		self.assertEqual(len(at), 2, done.stderr)
@@ -285,7 +285,7 @@ class Joints(unittest.TestCase):
 	def told(self, *words):
 		"""Instants and loads of all breaks by the joints' names, and the ended program."""
 		with tempfile.TemporaryDirectory() as folder:
-			done = program.call("run", kept(folder, BREAKS), "--measure", "end", *words)
+			done = program.call("run", kept(folder, BREAKS), "--set", "measure=end", *words)
 		self.assertEqual(done.returncode, 0, done.stderr)
 		return {name: (float(t), float(force), float(torque)) for name, t, force, torque in
 			re.findall(r"@broke (\w+)\s+(\S+)\s+(\S+)\s+(\S+)", done.stderr)}, done
@@ -302,7 +302,7 @@ class Joints(unittest.TestCase):
 		found = []
 		for arch in ("obs", "monolith"):
 			with tempfile.TemporaryDirectory() as folder:
-				done = program.call("run", kept(folder, FAR), "--measure", "end", "--arch", arch)
+				done = program.call("run", kept(folder, FAR), "--set", "measure=end", "--arch", arch)
 			self.assertEqual(done.returncode, 0, done.stderr)
 			found.append([float(x) for x in re.search(r"@arm(.*)", done.stderr).group(1).split()])
 		for one, other in zip(*found):
@@ -323,7 +323,7 @@ class Joints(unittest.TestCase):
 
 	def test_grabs(self):
 		with tempfile.TemporaryDirectory() as folder:
-			done = program.call("run", kept(folder, GRABS), "--measure", "end")
+			done = program.call("run", kept(folder, GRABS), "--set", "measure=end")
 		self.assertEqual(done.returncode, 0, done.stderr)
 		found = {name: [float(x) for x in rest.split()] for name, rest in re.findall(r"@(\w+)(.*)", done.stderr)}
 		self.assertEqual(set(found), {"hook", "rope", "slid"}, done.stderr)
@@ -334,7 +334,7 @@ class Joints(unittest.TestCase):
 	# Joints stay as they have become, whenever the run is saved, and whoever dies.
 	def test_removed_twice(self):
 		with tempfile.TemporaryDirectory() as folder:
-			done = program.call("run", kept(folder, TWICE), "--measure", "end")
+			done = program.call("run", kept(folder, TWICE), "--set", "measure=end")
 		self.assertEqual(re.findall(r"@(\w)\s+(\d)\s+(\d)", done.stderr), [("a", "0", "1"), ("b", "0", "1"), ("c", "0", "1")])
 
 	def test_again(self):
@@ -351,7 +351,7 @@ class Joints(unittest.TestCase):
 
 	def test_script(self):
 		with tempfile.TemporaryDirectory() as folder:
-			done = program.call("run", kept(folder, CRANK), "--measure", "end")
+			done = program.call("run", kept(folder, CRANK), "--set", "measure=end")
 		self.assertEqual(done.returncode, 0, done.stderr)
 		self.assertNotIn("@rate", done.stderr)
 		angle = float(re.search(r"@angle (\S+)", done.stderr).group(1))
@@ -371,8 +371,8 @@ class Joints(unittest.TestCase):
 				self.assertEqual(state("--resume", kept, *scene[-2:])[0], state(*scene)[0])
 
 	def test_refusals(self):
-		for words in (["--sync", "free"], ["--solver", "ghost"], ["--solver", "jacobi"],
-			["--integrator", "ode"]):
+		for words in (["--sync", "free"], ["--set", "solver=ghost"], ["--set", "solver=jacobi"],
+			["--set", "integrator=ode"]):
 			done = program.call("run", *self.scenes[0], *words)
 			self.assertNotEqual(done.returncode, 0, words)
 			self.assertRegex(done.stderr, r"^obsim: .*(has no joints, as this scene has: take|the scene has joints, which hold in lockstep) .*\n$")

@@ -8,7 +8,7 @@ import unittest
 
 import program
 
-LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", program.FOR_EVER, "--sleeping", "off", "--measure", "end"]
+LONG = [program.scene("falling_boxes"), "-D", "n=30", "--duration", program.FOR_EVER, "--set", "sleeping=off", "--set", "measure=end"]
 WAYS = [["--isolation", i, "--workers", w] for i in ("thread", "process") for w in ("2", "objects")]
 
 

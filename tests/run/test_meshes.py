@@ -8,7 +8,7 @@ import program
 
 FALLING = "ground {{}}\nfor i = 1, 5 do\n\tbox {{ size = {{ .6, .6, .6 }}, at = {{ .1 * i, 0, i }}{} }}\nend\n"
 STANDING = "ground {{}}\ncamera 'main' {{ eye = {{ 3, -5, 3 }}, target = {{ 0, 0, 1 }} }}\n{}\n"
-SIZE = ["--size", "96x64", "--samples", "1", "--fps", "10", "--duration", ".2"]
+SIZE = ["--size", "96x64", "--set", "samples=1", "--fps", "10", "--duration", ".2"]
 
 
 def difference(a, b):
@@ -25,8 +25,8 @@ class Meshes(program.Case):
 
 	def frames(self, name, text, *words):
 		scene = self.write(f"{name}.lua", text)
-		report = program.report(scene, *SIZE, "--raw", self.path(name), *words)
-		with open(self.path(name), "rb") as f:
+		report = program.report(scene, *SIZE, "--out", self.path(name + ".rgb"), *words)
+		with open(self.path(name + ".rgb"), "rb") as f:
 			return f.read(), report["state_hash"]
 
 	def test_it_moves_as_it_did(self):
@@ -109,8 +109,8 @@ class Meshes(program.Case):
 		self.write("cube.glb", glb.cube(.3, (1, .8, .9), picture=glb.QUARTERS, shine=True))
 		looks, _ = self.frames("meshed", FALLING.format(", mesh = 'cube.glb'"), "--record", self.path("r.h5"))
 		os.remove(self.path("cube.glb"))
-		program.call("run", "--replay", self.path("r.h5"), *SIZE, "--raw", self.path("again"))
-		with open(self.path("again"), "rb") as f:
+		program.call("run", "--replay", self.path("r.h5"), *SIZE, "--out", self.path("again.rgb"))
+		with open(self.path("again.rgb"), "rb") as f:
 			self.assertEqual(f.read(), looks)
 
 	def test_it_is_read_again_to_go_on(self):

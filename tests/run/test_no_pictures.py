@@ -11,7 +11,7 @@ BLIND = {**os.environ, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null", "__EGL_VEN
 
 class NoPictures(program.Case):
 	def test_frames_refused(self):
-		done = program.call("run", program.scene("stack"), "--duration", ".1", "--frames", self.path("f"), "--name", self.name,
+		done = program.call("run", program.scene("stack"), "--duration", ".1", "--out", self.path("f"), "--name", self.name,
 			env=BLIND)
 		self.assertEqual(done.returncode, 1)
 		self.assertIn("EGL", done.stderr)

@@ -35,7 +35,7 @@ class Parts(program.Case):
 
 	def test_missing(self):
 		stack = program.scene("stack")
-		self.refused("render", "run", stack, "--frames", "frames")
+		self.refused("render", "run", stack, "--out", "frames")
 		self.refused("render", "paper", "--quick")
 		self.refused("serve", "serve", stack)
 		self.refused("hdf5", "run", stack, "--record", "stack.h5")
@@ -50,13 +50,13 @@ class Parts(program.Case):
 		self.alone("--version")
 		other = os.path.join(os.path.dirname(program.OBSIM), "obsim-hdf5.so") # with more functions
 		shutil.copy(other, self.path("obsim-render.so"))
-		done = self.alone("run", program.scene("stack"), "--frames", "frames", "--duration", ".1")
+		done = self.alone("run", program.scene("stack"), "--out", "frames", "--duration", ".1")
 		self.assertNotEqual(done.returncode, 0)
 		self.assertRegex(done.stderr, r"obsim-render\.so belongs to another obsim")
 
 	def test_workers_map_none(self):
 		run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--isolation", "process", "--workers", "2",
-			"--duration", program.FOR_EVER, "--frames", self.path("frames"), "--size", "64x36")
+			"--duration", program.FOR_EVER, "--out", self.path("frames"), "--size", "64x36")
 		self.assertTrue(program.wait_until(lambda: "EGL" in mapped(run.pid)))
 		workers = program.simulators(run.pid)
 		self.assertGreaterEqual(len(workers), 2)

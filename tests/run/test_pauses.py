@@ -8,8 +8,8 @@ import unittest
 import program
 
 PATIENCE = 1  # s that a step may take
-LONG = [program.scene("falling_boxes"), "-D", "n=60", "--duration", "40", "--sleeping", "off", "--measure", "end",
-	"--patience", str(PATIENCE)]
+LONG = [program.scene("falling_boxes"), "-D", "n=60", "--duration", "40", "--set", "sleeping=off", "--set", "measure=end",
+	"--set", f"patience={PATIENCE}"]
 
 
 class Pauses(program.Case):

@@ -8,7 +8,7 @@ import unittest
 
 import program
 
-BOXES = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--measure", "end"]
+BOXES = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--set", "measure=end"]
 PROCESS = ["--isolation", "process"]
 BRICKS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "overworked.lua")
 ABORTS = "an assertion failed, as it was to (--fault abort)"
@@ -57,13 +57,13 @@ class Policy(program.Case):
 
 	def test_restarts(self):
 		"""More deaths than allowed: it gives up, and counts the deaths of the simulator."""
-		words = [*BOXES, *PROCESS, "--workers", "1", "--fault", "exit:p=.005,seed=5", "--restarts"]
-		done = program.call("run", *words, "2/1e6", "--name", self.name)
+		words = [*BOXES, *PROCESS, "--workers", "1", "--fault", "exit:p=.005,seed=5", "--set"]
+		done = program.call("run", *words, "restarts=2/1e6", "--name", self.name)
 		self.assertEqual(done.returncode, 1)
 		self.assertEqual(done.stderr.count("restarting all"), 2)
 		self.assertRegex(done.stderr, r"(?m)^obsim: simulator 0 .* left with exit code 99 .*giving up: simulators died more than 2 "
-			r"times within 1e\+06 s \(--restarts\), 3 of the last 3 times this one$")
-		self.assertEqual(program.call("run", *words, "9999/1e6").returncode, 0)
+			r"times within 1e\+06 s \(--set restarts\), 3 of the last 3 times this one$")
+		self.assertEqual(program.call("run", *words, "restarts=9999/1e6").returncode, 0)
 
 	def test_freeze(self):
 		"""The objects of a dead simulator stay, and the run goes on; the step of a second death depends on the
@@ -81,7 +81,7 @@ class Policy(program.Case):
 
 	def test_freeze_what_fails(self):
 		"""An island that takes too much work: the same in threads and processes, with any number of workers."""
-		seen, words = set(), (BRICKS, "--duration", ".05", "--on-death", "freeze", "--patience", "600") # sanitizers take a minute
+		seen, words = set(), (BRICKS, "--duration", ".05", "--on-death", "freeze", "--set", "patience=600") # sanitizers take a minute
 		for isolation, workers in program.ways(("thread", "1"), ("thread", "objects"), ("process", "2")):
 			r = program.report(*words, "--isolation", isolation, "--workers", workers)
 			self.assertEqual([d["cause"] for d in r["death_list"]], ["failure"] * r["deaths"])
@@ -116,8 +116,8 @@ end""")
 	def test_frozen_goes_on(self):
 		"""Frozen objects stay frozen in a checkpoint, and obsim top shows it."""
 		file = self.path("run.ck")
-		words = [program.scene("gas"), "-D", "n=40", "--measure", "end", *PROCESS, "--workers", "1", "--on-death", "freeze",
-			"--restarts", "9999/1e6"] # moves for ever
+		words = [program.scene("gas"), "-D", "n=40", "--set", "measure=end", *PROCESS, "--workers", "1", "--on-death", "freeze",
+			"--set", "restarts=9999/1e6"] # moves for ever
 		frozen = 0
 		for seed in range(1, 7):
 			r = program.report(*words, "--duration", "10", "--fault", f"segv:p=.001,seed={seed}", "--checkpoint", file)
@@ -132,9 +132,9 @@ end""")
 		run.wait(program.PATIENCE)
 
 	def test_what_is_refused(self):
-		for words, saying in (["--on-death", "retire"], "restart|freeze|abort|keep"), (["--restarts", "5"], "as in 5/10"), \
-				(["--restarts", "0/5"], "restarts"), (["--restarts", "5/-1"], "restarts"), \
-				(["--restarts", "5/10", "--on-death", "abort"], "nothing is restarted"), \
+		for words, saying in (["--on-death", "retire"], "restart|freeze|abort|keep"), (["--set", "restarts=5"], "as in 5/10"), \
+				(["--set", "restarts=0/5"], "restarts"), (["--set", "restarts=5/-1"], "restarts"), \
+				(["--set", "restarts=5/10", "--on-death", "abort"], "nothing is restarted"), \
 				(["--arch", "monolith", "--on-death", "freeze"], "monolith"):
 			self.refuse("run", *BOXES, *words, saying=saying)
 

@@ -19,7 +19,7 @@ RUNS = [
 	("machines", ["--duration", "2"]),
 	("flock", ["--duration", "2"]),
 	("shapes", ["--duration", "1", "--arch", "monolith"]),
-	("shapes", ["--duration", "1", "--integrator", "ode"]),
+	("shapes", ["--duration", "1", "--set", "integrator=ode"]),
 	(os.path.join(os.path.dirname(__file__), "scenes", "mathematics.lua"), ["--duration", "1"]),
 ]
 
@@ -36,7 +36,7 @@ class Processors(program.Case):
 		for name, words in RUNS:
 			with self.subTest(scene=name, words=words):
 				path = name if os.path.isabs(name) else program.scene(name)
-				here, there = (program.report(path, *words, "--measure", "end", env=environment)["state_hash"]
+				here, there = (program.report(path, *words, "--set", "measure=end", env=environment)["state_hash"]
 					for environment in (None, OTHER))
 				self.assertEqual(here, there)
 

@@ -30,7 +30,7 @@ class Progress(program.Case):
 		return seen.decode()
 
 	def test_long(self):
-		seen = self.run_on_terminal(program.scene("stack"), "--duration", program.FOR_EVER, "--measure", "end",
+		seen = self.run_on_terminal(program.scene("stack"), "--duration", program.FOR_EVER, "--set", "measure=end",
 			until=r"\] \d+ of \d+, .* left: \d+ steps/")
 		self.assertIn("left", seen)
 		self.assertTrue(seen.rpartition("left")[2].lstrip().startswith("\r\033[K") or "\r\033[K" in seen.rpartition("left")[2])

@@ -62,7 +62,7 @@ class Ranks(program.Case):
 
 	def test_same_bits(self):
 		for name, words in SCENES.items():
-			words = [program.scene(name), *words, "--measure", "end", "--json", "-"]
+			words = [program.scene(name), *words, "--set", "measure=end", "--json", "-"]
 			alone = program.report(*words[:-2], "--workers", "1")["state_hash"]
 			for ranks, workers in (3, 1), (2, 2):
 				with self.subTest(scene=name, ranks=ranks, workers=workers):
@@ -72,7 +72,7 @@ class Ranks(program.Case):
 		"""Bodies move from one rank's neighbours to another's, by far in a step. Colliding bodies are in
 		islands of several ranks' bodies, which merge and split, and no two steps have the same neighbours."""
 		for speed, duration in (3, 2), (100, .25):
-			words = [program.scene("gas"), "-D", f"speed={speed}", "--duration", duration, "--measure", "end", "--json", "-"]
+			words = [program.scene("gas"), "-D", f"speed={speed}", "--duration", duration, "--set", "measure=end", "--json", "-"]
 			alone = program.report(*words[:-2], "--workers", "1")["state_hash"]
 			for ranks, workers in (4, 1), (2, 2):
 				with self.subTest(speed=speed, ranks=ranks):
@@ -82,7 +82,7 @@ class Ranks(program.Case):
 		"""Motions that other ranks solve far from a rank's own bodies grow old there, unless a program reads
 		its universe."""
 		running, bodies = self.start_stepping_ranks([program.scene("sparse"), "--duration", program.FOR_EVER, "--workers", "1",
-			"--sleeping", "off", "--measure", "end"]), 200
+			"--set", "sleeping=off", "--set", "measure=end"]), 200
 		segment = program.segment(f"obsim-{self.ranks_of(running)[0][0]}")
 		with open(segment, "rb") as f, mmap.mmap(f.fileno(), 0, prot=mmap.PROT_READ) as memory:
 			control, slots = (struct.unpack_from("=Q", memory, 32 + 8 * area)[0] for area in (0, 5)) # table/layout.h, table/slot.h
@@ -112,8 +112,8 @@ class Ranks(program.Case):
 		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", ".5"]
 		with tempfile.TemporaryDirectory() as folder:
 			alone, shared = os.path.join(folder, "alone.csv"), os.path.join(folder, "shared.csv")
-			program.report(*words, "--measure", "step", "--series", alone)
-			done = run((3, [*words, "--workers", "1", "--measure", "step", "--series", shared]))
+			program.report(*words, "--set", "measure=step", "--series", alone)
+			done = run((3, [*words, "--workers", "1", "--set", "measure=step", "--series", shared]))
 			self.assertEqual(done.returncode, 0, done.stderr)
 			self.assertEqual(done.stdout.count("simulated"), 1 + done.stdout.count("per simulated"))
 			with open(alone, encoding="utf-8") as a, open(shared, encoding="utf-8") as b:
@@ -121,12 +121,12 @@ class Ranks(program.Case):
 
 	def test_contacts_are_drawn(self):
 		"""Contacts of other ranks are drawn, too."""
-		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "1.6", "--measure", "end", "--fps", "2", "--size", "160x120",
+		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "1.6", "--set", "measure=end", "--fps", "2", "--size", "160x120",
 			"--overlay", "contacts", "--workers", "1"]
 		with tempfile.TemporaryDirectory() as folder:
 			pictures = []
 			for name, ranks in ("alone", 1), ("shared", 3):
-				done = run((ranks, [*words, "--frames", os.path.join(folder, name)]))
+				done = run((ranks, [*words, "--out", os.path.join(folder, name)]))
 				self.assertEqual(done.returncode, 0, done.stderr)
 				with open(os.path.join(folder, name, "frame-000002.png"), "rb") as f:
 					pictures.append(f.read())
@@ -135,14 +135,14 @@ class Ranks(program.Case):
 	def test_scripts_are_drawn(self):
 		"""Rank 0 alone draws, and it alone would pause for that: all ranks reach the same scripts in the same
 		step. A resumed run has a first frame, too."""
-		words = [program.scene("flock"), "--measure", "end", "--workers", "1"]
+		words = [program.scene("flock"), "--set", "measure=end", "--workers", "1"]
 		draws = ["--fps", "6", "--size", "64x48", "--json", "-"]
 		with tempfile.TemporaryDirectory() as folder:
 			whole = program.report(*words, "--duration", ".5")["state_hash"]
 			program.report(*words, "--duration", ".25", "--checkpoint", os.path.join(folder, "kept"))
 			for begin in words, ["--resume", os.path.join(folder, "kept"), *words[1:]]:
 				with self.subTest(begin=begin):
-					more = ["--duration", ".5", "--frames", os.path.join(folder, str(len(begin))), *draws]
+					more = ["--duration", ".5", "--out", os.path.join(folder, str(len(begin))), *draws]
 					self.assertEqual(self.hash_of((2, [*begin, *more])), whole)
 
 	def test_goes_on_from_a_checkpoint(self):
@@ -161,9 +161,9 @@ class Ranks(program.Case):
 		with tempfile.TemporaryDirectory() as folder:
 			kept = os.path.join(folder, "kept")
 			for moment in 1.1, 1.2, 1.3:
-				program.report(program.scene("falling_boxes"), "-D", "n=300", "--duration", str(moment), "--workers", "1", "--measure", "end",
+				program.report(program.scene("falling_boxes"), "-D", "n=300", "--duration", str(moment), "--workers", "1", "--set", "measure=end",
 					"--checkpoint", kept)
-				more = ["--resume", kept, "--duration", str(moment + .05), "--workers", "1", "--measure", "end"]
+				more = ["--resume", kept, "--duration", str(moment + .05), "--workers", "1", "--set", "measure=end"]
 				alone = program.report(*more)["state_hash"]
 				for ranks in 2, 3:
 					self.assertEqual(self.hash_of((ranks, [*more, "--json", "-"])), alone)
@@ -171,13 +171,13 @@ class Ranks(program.Case):
 	def test_checkpoints_are_alike(self):
 		"""The checkpoint of each rank equals that of one process, except for its time and its counters."""
 		later = ".4", "1.1" # records have changed their rank before
-		for name, more, moments in ("falling_boxes", ["-D", "n=20", "--sleeping", "off"], later), \
-				("falling_boxes", ["-D", "n=20", "--solver", "ghost"], ["1.5"]), ("gas", ["-D", "n=100"], later), ("machines", [], later), \
-				("pile", [], later), (PARTED, ["--narrow", "aabb"], [".4166"]):
+		for name, more, moments in ("falling_boxes", ["-D", "n=20", "--set", "sleeping=off"], later), \
+				("falling_boxes", ["-D", "n=20", "--set", "solver=ghost"], ["1.5"]), ("gas", ["-D", "n=100"], later), ("machines", [], later), \
+				("pile", [], later), (PARTED, ["--set", "narrow=aabb"], [".4166"]):
 			for seconds in moments:
 				with self.subTest(name=name, seconds=seconds), tempfile.TemporaryDirectory() as folder:
 					kept, alone = os.path.join(folder, "kept"), os.path.join(folder, "alone")
-					words = [program.scene(name), *more, "--duration", seconds, "--measure", "end", "--workers", "1", "--checkpoint"]
+					words = [program.scene(name), *more, "--duration", seconds, "--set", "measure=end", "--workers", "1", "--checkpoint"]
 					program.report(*words, alone)
 					done = run((3, [*words, kept]))
 					self.assertEqual(done.returncode, 0, done.stderr)
@@ -186,7 +186,7 @@ class Ranks(program.Case):
 
 	def test_moves(self):
 		"""Simulators move from rank to rank, by requests to rank 0."""
-		words = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "3", "--sleeping", "off"]
+		words = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "3", "--set", "sleeping=off"]
 		alone = program.report(*words, "--workers", "1")["state_hash"]
 		with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as said:
 			running = subprocess.Popen(command((2, [*words, "--workers", "2", "--pace", ".25", "--name", self.name, "--json", "-"])),
@@ -223,7 +223,7 @@ class Ranks(program.Case):
 	def test_no_wrong_result(self):
 		"""If simulators of one rank write where they should not, the run ends with an error, or in the right
 		bits: they can change nothing but their own results."""
-		words = [program.scene("gas"), "--duration", "2", "--workers", "1", "--isolation", "process", "--measure", "end",
+		words = [program.scene("gas"), "--duration", "2", "--workers", "1", "--isolation", "process", "--set", "measure=end",
 			"--json", "-"]
 		right, ended = self.hash_of((2, words)), 0
 		for seed in range(1, 6):
@@ -237,18 +237,18 @@ class Ranks(program.Case):
 
 	def test_another_processor(self):
 		"""The second rank uses no fused operations, as on an older processor."""
-		words = [program.scene("flock"), "--duration", "1", "--workers", "1", "--measure", "end", "--json", "-"]
+		words = [program.scene("flock"), "--duration", "1", "--workers", "1", "--set", "measure=end", "--json", "-"]
 		older = ["env", "GLIBC_TUNABLES=" + program.OLDER_PROCESSOR, program.OBSIM, "run", *words]
 		launched = [*command((1, words)), ":", "-n", "1", *older]
 		done = subprocess.run(launched, env=program.RANKS, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
 			text=True, timeout=program.PATIENCE)
 		self.assertEqual(done.returncode, 0, done.stderr)
-		self.assertEqual(json.loads(done.stdout)["state_hash"], program.report(*words[:-4], "--measure", "end")["state_hash"])
+		self.assertEqual(json.loads(done.stdout)["state_hash"], program.report(*words[:-4], "--set", "measure=end")["state_hash"])
 
 	def test_one_wrong_bit(self):
 		"""Flips the last bit of each velocity in the second rank's memory. A late flip is overwritten, and a
 		flip far from all bodies of this rank has no effect. So flips are repeated, as motions are published."""
-		words = [program.scene("gas"), "--duration", program.FOR_EVER, "--workers", "1", "--measure", "end"]
+		words = [program.scene("gas"), "--duration", program.FOR_EVER, "--workers", "1", "--set", "measure=end"]
 		running, bodies = self.start_stepping_ranks(words), 200
 		segment = program.segment(f"obsim-{self.ranks_of(running)[1][0]}")
 		with open(segment, "r+b") as f, mmap.mmap(f.fileno(), 0) as memory:
@@ -278,13 +278,13 @@ class Ranks(program.Case):
 		"""A random process of a rank is killed at a random moment. The run ends, only checkpoints are left, and
 		the checkpoint of any other rank leads to the same end. The run keeps real time, so that it has not
 		ended before."""
-		words = [program.scene("falling_boxes"), "-D", "n=20", "--sleeping", "off", "--measure", "end"]
+		words = [program.scene("falling_boxes"), "-D", "n=20", "--set", "sleeping=off", "--set", "measure=end"]
 		right = program.report(*words, "--duration", "4", "--workers", "1")["state_hash"]
 		for victim, again in ("obsim", 2), ("obsim-fork", 4), ("sim 3", 3):
 			with self.subTest(victim=victim), tempfile.TemporaryDirectory() as folder:
 				kept = os.path.join(folder, "kept")
 				running = self.start_stepping_ranks([*words, "--duration", "4", "--pace", "1", "--workers", "1", "--checkpoint", kept,
-					"--every", ".1"])
+					"--set", "every=.1"])
 				time.sleep(random.uniform(0, 2))
 				ranks, below = self.ranks_of(running), program.processes(running.pid)
 				hit = random.randrange(3)
@@ -302,7 +302,7 @@ class Ranks(program.Case):
 				self.assertEqual(self.hash_of((again, ["--resume", random.choice(others), "--workers", "1", "--json", "-"])), right)
 
 	def test_a_stopped_rank_delays(self):
-		words = [program.scene("falling_boxes"), "-D", "n=20", "--sleeping", "off", "--duration", "2", "--measure", "end", "--json", "-"]
+		words = [program.scene("falling_boxes"), "-D", "n=20", "--set", "sleeping=off", "--duration", "2", "--set", "measure=end", "--json", "-"]
 		right = program.report(*words[:-2], "--workers", "1")["state_hash"]
 		running = self.start_stepping_ranks([*words, "--pace", "1", "--workers", "1"])
 		stopped = self.ranks_of(running)[1]

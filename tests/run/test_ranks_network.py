@@ -9,7 +9,7 @@ import unittest
 import network
 import program
 
-WORDS = [program.scene("falling_boxes"), "-D", "n=60", "--sleeping", "off", "--measure", "end"]
+WORDS = [program.scene("falling_boxes"), "-D", "n=60", "--set", "sleeping=off", "--set", "measure=end"]
 SOON = {"oob_tcp_keepalive_time": 5, "oob_tcp_keepalive_intvl": 1, "oob_tcp_keepalive_probes": 5} # s, s: as in docs/obsim.1
 
 
@@ -52,7 +52,7 @@ class Network(program.Case):
 		"""A cut cable sends no error; packets just stop. Both ranks end, and have their checkpoints."""
 		right = program.report(*WORDS, "--duration", "4", "--workers", "1")["state_hash"]
 		link, kept = self.link(None), self.path("kept")
-		running = self.start(link, *WORDS, "--duration", "4", "--pace", "1", "--workers", "1", "--checkpoint", kept, "--every", ".1")
+		running = self.start(link, *WORDS, "--duration", "4", "--pace", "1", "--workers", "1", "--checkpoint", kept, "--set", "every=.1")
 		stepping = lambda: sum(program.steps(f"obsim-{pid}") > 0 for pid in link.processes()) == 2
 		self.assertTrue(program.wait_until(lambda: stepping() or running.poll() is not None))
 		link.cut()

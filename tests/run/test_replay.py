@@ -8,7 +8,7 @@ import unittest
 
 import program
 
-SIZE = ["--size", "96x64", "--samples", "1"]
+SIZE = ["--size", "96x64", "--set", "samples=1"]
 BOXES = [program.scene("falling_boxes"), "-D", "n=12", "--duration", ".7"]
 COMES_AND_GOES = """scene {{ title = "Some come and go", duration = 1, step = 1 / 60 }}
 ground {{}}
@@ -49,7 +49,7 @@ class Replay(program.Case):
 		return record
 
 	def draw(self, folder, *words):
-		done = program.call("run", *words, *SIZE, "--frames", self.path(folder))
+		done = program.call("run", *words, *SIZE, "--out", self.path(folder))
 		self.assertEqual((done.returncode, done.stderr), (0, ""))
 		return pictures(self.path(folder))
 
@@ -84,7 +84,7 @@ class Replay(program.Case):
 
 	def test_pipe(self):
 		record = self.record(*BOXES)
-		done = subprocess.run([program.OBSIM, "run", "--replay", record, *SIZE, "--raw", "-", "--fps", "10"], capture_output=True,
+		done = subprocess.run([program.OBSIM, "run", "--replay", record, *SIZE, "--out", "-", "--fps", "10"], capture_output=True,
 			timeout=program.PATIENCE)
 		self.assertEqual((done.returncode, len(done.stdout)), (0, 7 * 96 * 64 * 3))
 		self.assertIn(b"7 frames", done.stderr)
@@ -101,9 +101,9 @@ class Replay(program.Case):
 
 	def test_misuse(self):
 		record = self.record(*BOXES[:3], "--duration", ".1")
-		frames = ["--frames", self.path("f")]
+		frames = ["--out", self.path("f")]
 		for words, saying in (
-				([], "--replay needs --frames, --video or --raw"),
+				([], "--replay needs --out"),
 				([*frames, "--seed", "2"], "--seed: a record is shown as it was run"),
 				([*frames, "-D", "n=3"], "--define: a record is shown as it was run"),
 				([*frames, program.scene("stack")], "expected one of them"),

@@ -43,7 +43,7 @@ class Report(program.Case):
 		self.assertEqual((r["frames"], r["fps"], r["frame_rate"], r["momentum_error"]), (0, None, None, None))
 
 	def test_fixed_substeps(self):
-		r = program.report(program.scene("falling_boxes"), "-D", "n=20", "--duration", "1", "--substeps", "4")
+		r = program.report(program.scene("falling_boxes"), "-D", "n=20", "--duration", "1", "--set", "substeps=4")
 		self.assertEqual((r["tolerance"], r["error_reached"], r["substeps"], r["substeps_max"]), (None, None, 4, 0))
 
 	def test_tolerance(self):
@@ -63,7 +63,7 @@ class Report(program.Case):
 
 	def test_missed_tolerance(self):
 		"""Impacts that are solved by too few iterations, however many substeps there are."""
-		words = ["run", program.scene("falling_boxes"), "-D", "n=20", "--duration", "1.2", "--measure", "end", "--iterations", "1"]
+		words = ["run", program.scene("falling_boxes"), "-D", "n=20", "--duration", "1.2", "--set", "measure=end", "--set", "iterations=1"]
 		for strict, code in ([], 0), (["--strict"], 1):
 			done = program.call(*words, "--tolerance", "1um", *strict)
 			self.assertEqual(done.returncode, code, done.stderr)
@@ -72,7 +72,7 @@ class Report(program.Case):
 		done = program.call("run", program.scene("stack"), "--duration", "1", "--strict")
 		self.assertEqual((done.returncode, done.stderr), (0, ""))
 		self.assertIn(" kept, ", done.stdout)
-		self.refuse("run", program.scene("stack"), "--substeps", "4", "--strict", saying="no tolerance")
+		self.refuse("run", program.scene("stack"), "--set", "substeps=4", "--strict", saying="no tolerance")
 
 	def test_script_errors(self):
 		"""A script that fails is named with its line and its step, also when its object has gone, and fails a strict run."""
@@ -95,9 +95,9 @@ for i = 1, 3 do sphere { radius = .1, at = { i, 0, 9 }, script = "door", dies = 
 
 	def test_verify(self):
 		"""Errors of a sample of steps: fewer substeps show larger ones, and nothing else changes."""
-		words = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "2", "--measure", "end", "--workers", "1"]
+		words = [program.scene("falling_boxes"), "-D", "n=30", "--duration", "2", "--set", "measure=end", "--workers", "1"]
 		plain = program.report(*words)
-		r, fine = (program.report(*words, "--verify", *more) for more in ([], ["--substeps", "128"]))
+		r, fine = (program.report(*words, "--set", "verify=on", *more) for more in ([], ["--set", "substeps=128"]))
 		self.assertEqual(r["state_hash"], plain["state_hash"])
 		for key in "substeps_median", "islands_redone", "box_tests", "error_reached", "energy_recovered":
 			self.assertEqual(r[key], plain[key], key)
@@ -110,9 +110,9 @@ for i = 1, 3 do sphere { radius = .1, at = { i, 0, 9 }, script = "door", dies = 
 		self.assertLess(r["verified_p99_m"], r["verified_second_p99_m"])
 		self.assertTrue(0 <= r["verified_share"] <= 1)
 		self.assertIsNone(fine["verified_share"])
-		done = program.call("run", *words, "--verify")
+		done = program.call("run", *words, "--set", "verify=on")
 		self.assertRegex(done.stdout, r"verified     \d+ body steps with 512 substeps: errors of a step .* in the median")
-		self.refuse("run", *words, "--arch", "monolith", "--verify", saying="monolith")
+		self.refuse("run", *words, "--arch", "monolith", "--set", "verify=on", saying="monolith")
 
 	def test_hits_in_the_air_keep_the_tolerance(self):
 		"""Hulls that hit each other while they fall: two of them jam as bodies that float do."""
@@ -161,7 +161,7 @@ for i = 1, 3 do sphere { radius = .1, at = { i, 0, 9 }, script = "door", dies = 
 
 	def test_five_lines(self):
 		"""The short report has the run, the verdict, speed, simulators, hash; a full report begins and ends with the same."""
-		for words in ([], ["--isolation", "process"], ["--substeps", "4"], ["--arch", "monolith"], ["--sync", "free"], ["--measure", "end"]):
+		for words in ([], ["--isolation", "process"], ["--set", "substeps=4"], ["--arch", "monolith"], ["--sync", "free"], ["--set", "measure=end"]):
 			short, full = (program.call("run", program.scene("stack"), "--duration", ".2", *words, *more).stdout.splitlines()
 				for more in ([], ["--report", "full"]))
 			self.assertEqual([line.split()[0] for line in short[1:]], ["error", "speed", "simulators", "state"], short)
@@ -175,7 +175,7 @@ for i = 1, 3 do sphere { radius = .1, at = { i, 0, 9 }, script = "door", dies = 
 		self.refuse("run", program.scene("stack"), "--report", "long", saying="--report long: expected one of short|full")
 
 	def test_explain(self):
-		cradle = program.call("run", program.scene("cradle"), "--substeps", "8", "--explain")
+		cradle = program.call("run", program.scene("cradle"), "--set", "substeps=8", "--explain")
 		self.assertEqual((cradle.returncode, cradle.stderr), (0, ""))
 		for line in ("gyroscope    none: all are spheres", "friction     none: no object has any", "renderer     none",
 				"recorder     none", "Lua          none", "tolerance    none"):
@@ -208,7 +208,7 @@ for i = 1, 3 do sphere { radius = .1, at = { i, 0, 9 }, script = "door", dies = 
 
 	def test_measure_end(self):
 		words = [program.scene("stack"), "--duration", ".5", "--workers", "1"]
-		every, parts, ends = (program.report(*words, "--measure", when) for when in ("step", "profile", "end"))
+		every, parts, ends = (program.report(*words, "--set", f"measure={when}") for when in ("step", "profile", "end"))
 		for key in "energy_gain_max", "worst_penetration_m", "worst_penetration_time_s":
 			self.assertIsNone(ends[key])
 			self.assertIsNone(parts[key])
@@ -227,7 +227,7 @@ for i = 1, 3 do sphere { radius = .1, at = { i, 0, 9 }, script = "door", dies = 
 	def test_where_the_time_goes(self):
 		"""Working, waiting for a core, waiting at the gate: together this is all of the workers' time."""
 		for way in ["--workers", "2"], ["--workers", "objects"], ["--workers", "2", "--isolation", "process"], ["--arch", "monolith"]:
-			r = program.report(program.scene("falling_boxes"), "-D", "n=60", "--duration", "4", "--measure", "profile", *way)
+			r = program.report(program.scene("falling_boxes"), "-D", "n=60", "--duration", "4", "--set", "measure=profile", *way)
 			had = r["workers"] * r["elapsed_s"]
 			self.assertGreater((r["work_s"] + r["held_s"] + r["gate_s"] + r["idle_s"]) / had, .95, way)
 			self.assertLess((r["work_s"] + r["held_s"] + r["gate_s"] + r["idle_s"]) / had, 1.05, way)
@@ -244,13 +244,13 @@ for i = 1, 3 do sphere { radius = .1, at = { i, 0, 9 }, script = "door", dies = 
 	def test_monolith(self):
 		r = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3")
 		self.assertEqual((r["arch"], r["workers"], r["substeps"], r["bodies"]), ("monolith", 1, 1, 216))
-		again = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3", "--measure", "end")
+		again = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3", "--set", "measure=end")
 		self.assertEqual(r["state_hash"], again["state_hash"])
-		finer = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3", "--substeps", "4")
+		finer = program.report(program.scene("pile"), "--arch", "monolith", "--duration", ".3", "--set", "substeps=4")
 		self.assertEqual(finer["substeps"], 4)
 
 	def test_seed(self):
-		words = [program.scene("falling_boxes"), "-D", "n=8", "--duration", ".1", "--measure", "end"]
+		words = [program.scene("falling_boxes"), "-D", "n=8", "--duration", ".1", "--set", "measure=end"]
 		a, b, c = (program.report(*words, "--seed", s) for s in ("5", "6", "5"))
 		self.assertEqual((a["seed"], b["seed"]), (5, 6))
 		self.assertNotEqual(a["state_hash"], b["state_hash"])

@@ -88,7 +88,7 @@ class Resume(program.Case):
 		the results of narrow-phase checks. So a repeated check changes nothing."""
 		scene, other = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "kicked.lua"), self.path("other.ck")
 		for step in range(1, 16):
-			words = [scene, "--measure", "end", "--duration"]
+			words = [scene, "--set", "measure=end", "--duration"]
 			program.report(*words, step / 15, "--checkpoint", self.file)
 			self.finish("--duration", (step + 1) / 15, *WAYS[step % len(WAYS)], "--checkpoint", self.file)
 			program.report(*words, (step + 1) / 15, "--checkpoint", other)
@@ -158,8 +158,8 @@ class Resume(program.Case):
 
 	def test_solvers(self):
 		"""Each solver's warm-start data is saved, and settings and parameters are those of the first part."""
-		for more in ["--solver", "jacobi"], ["--solver", "lagged", "--lag", "3"], ["--solver", "ghost"], ["--integrator", "ode"], \
-				["--substeps", "3", "--iterations", "7"], ["--narrow", "aabb"], ["--sleeping", "off"], ["--tolerance", ".1mm"]:
+		for more in ["--set", "solver=jacobi"], ["--set", "solver=lagged", "--set", "lag=3"], ["--set", "solver=ghost"], ["--set", "integrator=ode"], \
+				["--set", "substeps=3", "--set", "iterations=7"], ["--set", "narrow=aabb"], ["--set", "sleeping=off"], ["--tolerance", ".1mm"]:
 			with self.subTest(more=more):
 				words = [program.scene("falling_boxes"), "-D", "n=12", "--seed", "7", *more]
 				whole = program.report(*words, "--duration", "1.8")
@@ -169,14 +169,14 @@ class Resume(program.Case):
 	def test_measured_at_the_ends(self):
 		"""Only figures measured at each step of both parts are reported as maxima."""
 		words = self.words("cradle")
-		whole = program.report(*words, "--measure", "end")
+		whole = program.report(*words, "--set", "measure=end")
 		for first, second in ("end", "end"), ("end", "step"), ("step", "end"):
-			program.report(*words[:1], "--duration", ".5", "--measure", first, "--checkpoint", self.file)
-			again = self.finish("--duration", words[-1], "--measure", second)
+			program.report(*words[:1], "--duration", ".5", "--set", f"measure={first}", "--checkpoint", self.file)
+			again = self.finish("--duration", words[-1], "--set", f"measure={second}")
 			self.assertEqual(figures(again), figures(whole))
 
 	def test_every(self):
-		r = program.report(*self.words("come_and_go"), "--checkpoint", self.file, "--every", ".25")
+		r = program.report(*self.words("come_and_go"), "--checkpoint", self.file, "--set", "every=.25")
 		self.assertEqual(r["checkpoints"], 8)
 		self.assertEqual(r["checkpoint_bytes"], os.path.getsize(self.file))
 		self.assertGreater(r["checkpoint_s"], 0)
@@ -187,8 +187,8 @@ class Resume(program.Case):
 	def test_interrupted(self):
 		"""Ctrl-C and similar signals leave a checkpoint of the step at which they ended the run."""
 		for number in signal.SIGINT, signal.SIGTERM:
-			run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=40", "--duration", program.FOR_EVER, "--sleeping", "off",
-				"--checkpoint", self.file, "--every", "1e6", "--json", self.path("r.json"), "--isolation", "process")
+			run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=40", "--duration", program.FOR_EVER, "--set", "sleeping=off",
+				"--checkpoint", self.file, "--set", "every=1e6", "--json", self.path("r.json"), "--isolation", "process")
 			time.sleep(.3)
 			run.send_signal(number)
 			self.assertEqual(run.wait(program.PATIENCE), 1)
@@ -197,13 +197,13 @@ class Resume(program.Case):
 			seen = self.inspect()
 			self.assertEqual((seen["steps"], seen["state_hash"]), (r["steps"], r["state_hash"]))
 			end = (r["steps"] + 30) * r["step"]
-			whole = program.report(program.scene("falling_boxes"), "-D", "n=40", "--sleeping", "off", "--duration", end, "--measure", "end")
+			whole = program.report(program.scene("falling_boxes"), "-D", "n=40", "--set", "sleeping=off", "--duration", end, "--set", "measure=end")
 			self.assertEqual(self.finish("--duration", end)["state_hash"], whole["state_hash"])
 
 	def test_interrupted_in_a_long_step(self):
 		"""A step that takes far longer than others ends, too, and its checkpoint is kept."""
-		run = self.start_stepping(program.scene("gas"), "--duration", program.FOR_EVER, "--checkpoint", self.file, "--every", "1e6",
-			"--json", self.path("r.json"), "--narrow", "aabb", "--load", "1000000")
+		run = self.start_stepping(program.scene("gas"), "--duration", program.FOR_EVER, "--checkpoint", self.file, "--set", "every=1e6",
+			"--json", self.path("r.json"), "--set", "narrow=aabb", "--set", "load=1000000")
 		run.send_signal(signal.SIGTERM)
 		self.assertEqual(run.wait(program.PATIENCE), 1)
 		self.assertNotIn("no checkpoint", run.stderr.read())
@@ -212,11 +212,11 @@ class Resume(program.Case):
 
 	def test_killed_while_it_writes(self):
 		"""At any instant the file is a whole checkpoint, and the run goes on from it to the same end."""
-		words = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--measure", "end"]
+		words = [program.scene("falling_boxes"), "-D", "n=40", "--duration", "2", "--set", "measure=end"]
 		whole = program.report(*words)
 		resumed = 0
 		for i in range(12):
-			run = program.start("run", *words, "--checkpoint", self.file, "--every", "1/60", *WAYS[i % len(WAYS)])
+			run = program.start("run", *words, "--checkpoint", self.file, "--set", "every=1/60", *WAYS[i % len(WAYS)])
 			if i % 2: # from the first checkpoint on; else at any time, also during the start
 				self.assertTrue(program.wait_until(lambda: os.path.exists(self.file) or run.poll() is not None))
 			time.sleep(.02 * i)
@@ -229,7 +229,7 @@ class Resume(program.Case):
 			if not os.path.exists(self.file):
 				continue
 			self.inspect()
-			self.assertEqual(self.finish("--measure", "end")["state_hash"], whole["state_hash"])
+			self.assertEqual(self.finish("--set", "measure=end")["state_hash"], whole["state_hash"])
 			resumed += 1
 			os.remove(self.file)
 		self.assertGreater(resumed, 3)
@@ -242,7 +242,7 @@ class Resume(program.Case):
 		before = self.inspect()
 		limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (16384, 16384))
 		shm = "needs room in shared memory, which the limit counts, too"
-		done = program.call("run", "--resume", self.file, "--duration", "2", "--checkpoint", self.file, "--every", ".2", preexec_fn=limit)
+		done = program.call("run", "--resume", self.file, "--duration", "2", "--checkpoint", self.file, "--set", "every=.2", preexec_fn=limit)
 		self.assertEqual(done.returncode, 1, shm)
 		self.assertEqual(self.inspect(), before)
 
@@ -264,11 +264,11 @@ class Resume(program.Case):
 	def test_frames(self):
 		if "no EGL" in program.call("--version").stdout:
 			self.skipTest("no EGL")
-		size = ["--size", "64x48", "--samples", "1", "--fps", "25"]
+		size = ["--size", "64x48", "--set", "samples=1", "--fps", "25"]
 		words = self.words("come_and_go")
-		program.report(*words, "--duration", ".7", *size, "--frames", self.path("whole"))
-		program.report(*words, "--duration", ".32", *size, "--frames", self.path("parts"), "--checkpoint", self.file)
-		r = self.finish("--duration", ".7", *size, "--frames", self.path("parts"))
+		program.report(*words, "--duration", ".7", *size, "--out", self.path("whole"))
+		program.report(*words, "--duration", ".32", *size, "--out", self.path("parts"), "--checkpoint", self.file)
+		r = self.finish("--duration", ".7", *size, "--out", self.path("parts"))
 		self.assertEqual(r["frames"], 17 - 8)
 		for i in range(17):
 			with open(self.path(f"whole/frame-{i:06}.png"), "rb") as a, open(self.path(f"parts/frame-{i:06}.png"), "rb") as b:
@@ -278,10 +278,10 @@ class Resume(program.Case):
 		words = self.words("cradle")
 		program.report(*words[:1], "--duration", ".1", "--checkpoint", self.file)
 		self.refuse("run", *words[:1], "--resume", self.file, saying="a checkpoint holds its scene")
-		for more in ["-D", "n=3"], ["--seed", "1"], ["--step", ".01"], ["--substeps", "2"], ["--arch", "obs"]:
+		for more in ["-D", "n=3"], ["--seed", "1"], ["--step", ".01"], ["--set", "substeps=2"], ["--arch", "obs"]:
 			self.refuse("run", "--resume", self.file, *more, saying="keeps the settings that it has")
 		self.refuse("run", "--resume", self.file, "--duration", ".05", saying="is at 0.1 s already")
-		self.refuse("run", *words[:1], "--every", "1", saying="--every needs --checkpoint")
+		self.refuse("run", *words[:1], "--set", "every=1", saying="--set every needs --checkpoint")
 		self.refuse("run", *words[:1], "--checkpoint", "x.ck", "--arch", "monolith", saying="a monolith cannot be resumed")
 		for special in "/dev/null", "/dev/full", self.directory.name:
 			self.refuse("run", *words[:1], "--checkpoint", special, saying=special)
@@ -322,7 +322,7 @@ class Resume(program.Case):
 
 	def test_two_runs_one_file(self):
 		"""The second run with one file is refused; neither damages the other's checkpoints."""
-		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "2", "--measure", "end", "--checkpoint", self.file, "--every", "1/60"]
+		words = [program.scene("falling_boxes"), "-D", "n=20", "--duration", "2", "--set", "measure=end", "--checkpoint", self.file, "--set", "every=1/60"]
 		runs = [program.start("run", *words) for _ in range(2)]
 		for run in runs:
 			said = run.communicate(timeout=program.PATIENCE)[1]

@@ -25,7 +25,7 @@ NAME = sys.argv.pop(1)
 class SameBits(program.Case):
 	def hash_of(self, *words):
 		"""Hash of all states, and the largest estimate of an error, which the motions carry."""
-		found = program.report(program.scene(NAME), *SCENES[NAME], "--measure", "end", *words)
+		found = program.report(program.scene(NAME), *SCENES[NAME], "--set", "measure=end", *words)
 		self.assertEqual(found["outcome"], "finished")
 		self.assertRegex(found["state_hash"], "^[0-9a-f]{16}$")
 		return found["state_hash"], found["deviation_reached"]
@@ -50,22 +50,22 @@ class SameBits(program.Case):
 
 	def test_looking_changes_nothing(self):
 		words = [program.scene(NAME), *SCENES[NAME]]
-		self.assertEqual(program.report(*words, "--measure", "step")["state_hash"], self.hash_of()[0])
+		self.assertEqual(program.report(*words, "--set", "measure=step")["state_hash"], self.hash_of()[0])
 
 	def test_verified(self):
-		"""The fine solutions of --verify leave no trace, and the sample is the same everywhere."""
+		"""The fine solutions of --set verify=on leave no trace, and the sample is the same everywhere."""
 		expected, errors = self.hash_of("--workers", "1"), set()
 		for isolation, words in ("thread", ["--workers", "1"]), ("thread", ["--workers", "3"]), ("process", ["--harden", "--workers", "2"]):
-			found = program.report(program.scene(NAME), *SCENES[NAME], "--verify", "--measure", "end", "--isolation", isolation, *words)
+			found = program.report(program.scene(NAME), *SCENES[NAME], "--set", "verify=on", "--set", "measure=end", "--isolation", isolation, *words)
 			self.assertEqual((found["state_hash"], found["deviation_reached"]), expected)
 			errors.add((found["verified_steps"], found["verified_p50_m"], found["verified_max_m"], found["verified_second_max_m"]))
 		self.assertEqual(len(errors), 1)
 
 	def test_jacobi(self):
-		expected = self.hash_of("--solver", "jacobi", "--workers", "1")
+		expected = self.hash_of("--set", "solver=jacobi", "--workers", "1")
 		for isolation, workers in ("thread", "3"), ("process", "2"), ("process", "objects"):
 			with self.subTest(isolation=isolation, workers=workers):
-				found = self.hash_of("--solver", "jacobi", "--isolation", isolation, "--workers", workers)
+				found = self.hash_of("--set", "solver=jacobi", "--isolation", isolation, "--workers", workers)
 				self.assertEqual(found, expected)
 
 

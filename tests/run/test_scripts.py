@@ -7,7 +7,7 @@ import unittest
 
 import program
 
-ROOMY = ["--measure", "end"]
+ROOMY = ["--set", "measure=end"]
 MONOLITH = ["--arch", "monolith"]
 HARDENED = ["--isolation", "process", "--harden"]
 
@@ -85,7 +85,7 @@ box { name = "box", size = { .6, .4, .2 }, at = { 0, 5, 1000 }, spin = { 1, 2, 3
 
 	def test_torque_order(self):
 		"""A box that spins under a torque: twice as many substeps, a quarter of the error."""
-		found = [self.numbers(self.run_scene(self.TORQUES, "--substeps", n), "box")[0] for n in (8, 16, 32)]
+		found = [self.numbers(self.run_scene(self.TORQUES, "--set", f"substeps={n}"), "box")[0] for n in (8, 16, 32)]
 		first, second = [math.dist(a, b) for a, b in zip(found, found[1:])]
 		self.assertLess(first, 1e-5)
 		self.assertLess(second, .26 * first)
@@ -538,8 +538,8 @@ box { name = "it", size = { .4, .4, .4 }, at = { 0, 0, 1.2 }, mass = 1, script =
 		"""The report of a flock's run, and four pictures of it: colours are in no hash."""
 		if "no EGL" in program.call("--version").stdout:
 			return program.report(*self.FLOCK, *ROOMY, *words), None
-		raw = self.path("raw")
-		found = program.report(*self.FLOCK, *ROOMY, "--raw", raw, "--fps", "1", "--size", "320x180", *words)
+		raw = self.path("r.rgb")
+		found = program.report(*self.FLOCK, *ROOMY, "--out", raw, "--fps", "1", "--size", "320x180", *words)
 		with open(raw, "rb") as f:
 			return found, f.read()
 
@@ -560,7 +560,7 @@ box { name = "it", size = { .4, .4, .4 }, at = { 0, 0, 1.2 }, mass = 1, script =
 			for workers in program.ways(2, 3, 5, 8, "objects"):
 				with self.subTest(isolation=isolation, workers=workers):
 					self.same(self.bits("--isolation", isolation, "--workers", workers), expected)
-		looked = program.report(*self.FLOCK, "--measure", "step")
+		looked = program.report(*self.FLOCK, "--set", "measure=step")
 		self.assertEqual(looked["state_hash"], report["state_hash"])
 
 	def test_killed(self):

@@ -76,8 +76,8 @@ class Serve(Case):
 
 	def test_free_run(self):
 		"""While a simulator of a free run stands, a viewer sees that its neighbour waits for it, at the bound of the lag."""
-		self.serve("--sync", "free", "--max-lag", ".02", "--isolation", "process", "--workers", "objects", "-D", "n=3",
-			"--coupling", "ledger", scene="stack")
+		self.serve("--sync", "free", "--set", "max_lag=.02", "--isolation", "process", "--workers", "objects", "-D", "n=3",
+			"--set", "coupling=ledger", scene="stack")
 		v = self.viewer()
 		v.send(do="inspect", id=2)
 		v.until(lambda: v.told.get("details", {}).get("pid"))
@@ -111,7 +111,7 @@ class Serve(Case):
 
 	def test_keeps(self):
 		"""By default, objects that cannot be solved are frozen, and viewers see it; the universe goes on."""
-		self.serve_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "overworked.lua"), "--listen", "127.0.0.1:0", "--patience", "600")
+		self.serve_file(os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenes", "overworked.lua"), "--listen", "127.0.0.1:0", "--set", "patience=600")
 		v = self.viewer()
 		v.until(lambda: any(o["frozen"] for o in v.objects.values()))
 		v.until(lambda: v.told["statistics"]["step"] > 3 and v.told["statistics"]["frozen"] > 0)

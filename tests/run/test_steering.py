@@ -66,7 +66,7 @@ class Steering(configurations.SameBits, program.Case):
 	def places(self, text, *words):
 		"""Places of objects that scripts have printed: by name, a list of (time, x, y, z)."""
 		self.write(text)
-		done = program.call("run", self.scene, "--measure", "end", *words)
+		done = program.call("run", self.scene, "--set", "measure=end", *words)
 		self.assertEqual(done.returncode, 0, done.stderr)
 		found = {}
 		for name, numbers in re.findall(r"^obsim: (\w+) (.*)$", done.stderr, re.MULTILINE):

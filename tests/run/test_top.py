@@ -14,7 +14,7 @@ import unittest
 
 import program
 
-LONG = ["--duration", program.FOR_EVER, "--measure", "end", "--sleeping", "off"]
+LONG = ["--duration", program.FOR_EVER, "--set", "measure=end", "--set", "sleeping=off"]
 
 
 def read_screen(fd, until, seconds=program.PATIENCE):

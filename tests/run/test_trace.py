@@ -163,8 +163,7 @@ class Trace(program.Case):
 
 	def test_free_run(self):
 		"""Steps, and who waits for whom: for one that it may touch."""
-		words = [program.scene("stack"), "-D", "n=4", "--duration", ".5", "--sync", "free", "--coupling", "ledger", "--update-rate",
-			"240"]
+		words = [program.scene("stack"), "-D", "n=4", "--duration", ".5", "--sync", "free", "--set", "coupling=ledger", "--set", "update_rate=240"]
 		for way in WAYS:
 			with self.subTest(way=way):
 				r = program.report(*words, *way, "--trace", self.path("t.json"))
@@ -193,7 +192,7 @@ class Trace(program.Case):
 		self.assertEqual(len(worlds), r["steps"])
 
 	def test_frames(self):
-		done = program.call("run", program.scene("stack"), "--duration", ".2", "--frames", self.path("f"), "--size", "64x48",
+		done = program.call("run", program.scene("stack"), "--duration", ".2", "--out", self.path("f"), "--size", "64x48",
 			"--fps", "30", "--record", self.path("r.h5"), "--trace", self.path("t.json"))
 		if "EGL" in done.stderr or "without a renderer" in done.stderr:
 			self.skipTest("no EGL")
@@ -221,8 +220,7 @@ class Trace(program.Case):
 		for workers in "2", "objects":
 			with self.subTest(workers=workers):
 				path = self.path(workers + ".json")
-				run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping",
-					"off", "--isolation", "process", "--workers", workers, "--trace", path)
+				run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--set", "sleeping=off", "--isolation", "process", "--workers", workers, "--trace", path)
 				grown = lambda: os.path.exists(path) and os.path.getsize(path) > 400000 # a hundred events for each worker
 				self.assertTrue(program.wait_until(grown, program.PATIENCE))
 				os.kill(max(program.simulators(run.pid)), signal.SIGKILL)
@@ -244,8 +242,7 @@ class Trace(program.Case):
 		torn = 0
 		for i in range(8):
 			path = self.path(f"{i}.json")
-			run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping",
-				"off", "--isolation", "thread", "--trace", path)
+			run = self.start_universe(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--set", "sleeping=off", "--isolation", "thread", "--trace", path)
 			self.assertTrue(program.wait_until(lambda: os.path.exists(path) and os.path.getsize(path) > 20000 * i))
 			run.kill()
 			run.wait(program.PATIENCE)
@@ -273,7 +270,7 @@ class Trace(program.Case):
 		self.assertEqual(set(whole["otherData"]), {"events", "lost"})
 
 	def test_interrupted(self):
-		run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--sleeping", "off",
+		run = self.start_stepping(program.scene("falling_boxes"), "-D", "n=20", "--duration", program.FOR_EVER, "--set", "sleeping=off",
 			"--trace", self.path("t.json"))
 		time.sleep(.3)
 		run.send_signal(signal.SIGINT)

@@ -20,7 +20,7 @@ class Usage(program.Case):
 		self.assertEqual(listed["plaza"], "A plaza")
 		os.mkdir(self.path("stack"))
 		for name in "stack", "scenes/stack.lua": # as documents have it
-			done = program.call("run", name, "--duration", ".05", "--measure", "end", cwd=self.directory.name)
+			done = program.call("run", name, "--duration", ".05", "--set", "measure=end", cwd=self.directory.name)
 			self.assertEqual(done.returncode, 0, done.stderr)
 			self.assertNotIn("/../", done.stdout)
 		for name in "scenes/stak.lua", "scenes/stack", "other/stack.lua":
@@ -34,11 +34,11 @@ class Usage(program.Case):
 		self.refuse("run", STACK, "--duration", saying="needs a value")
 		self.refuse("run", STACK, "--duration", "1", "--duration", "2", saying="given twice")
 		self.refuse("run", STACK, "--arch", "monolith", "--workers", "2", saying="one worker")
-		self.refuse("run", STACK, "--fps", "60", saying="needs --frames")
+		self.refuse("run", STACK, "--fps", "60", saying="--fps needs --out")
 		self.refuse("run", STACK, "--json", "/no/such/dir/x.json", saying="no directory /no/such/dir")
-		self.refuse("run", STACK, "--json", "-", "--raw", "-", saying="both write standard output")
-		self.refuse("run", STACK, "--raw", "x.rgb", "--camera", "nowhere", saying="the scene has none of this name")
-		self.refuse("run", STACK, "--raw", "x.rgb", "--gpu", "big", saying="--gpu big: expected surfaceless")
+		self.refuse("run", STACK, "--json", "-", "--out", "-", saying="both write standard output")
+		self.refuse("run", STACK, "--out", "x.rgb", "--camera", "nowhere", saying="the scene has none of this name")
+		self.refuse("run", STACK, "--out", "x.rgb", "--set", "gpu=big", saying="--set gpu=big: expected surfaceless")
 		self.refuse("run", STACK, STACK, saying="one scene at a time")
 		self.refuse("run", STACK, "-D", "n=x", saying="n")
 		self.refuse("run", STACK, "-D", "mystery=1", saying="mystery")
@@ -46,6 +46,19 @@ class Usage(program.Case):
 		self.refuse("compare", STACK, "--frames", "x", saying="unknown option --frames")
 		self.refuse("top", "--interval", "0", saying="more than 0")
 		self.assertEqual(os.listdir(self.directory.name), [])
+
+	def test_settings(self):
+		"""What experiments vary is set by name; the option that it was says so; --set help lists what a command takes."""
+		for words, now in (["--lag", "3"], "--set lag=K"), (["--max-lag=1"], "--set max_lag=S|none"), (["--verify"], "--set verify=off|on"):
+			self.refuse("run", STACK, *words, saying=f"{words[0].split('=')[0]} is now {now}")
+		self.refuse("serve", STACK, "--verify", saying="unknown option --verify")
+		self.refuse("compare", STACK, "--set", "jitter=.1", saying="there is no such setting here; --set help lists them")
+		listed = {c: program.call(c, "--set", "help").stdout for c in ("run", "serve", "control", "compare")}
+		names = {c: re.findall(r"^  (\w+)=", text, re.M) for c, text in listed.items()}
+		self.assertEqual({c: len(n) for c, n in names.items()}, {"run": 22, "serve": 15, "control": 10, "compare": 8})
+		self.assertTrue(all(set(n) <= set(names["run"]) for n in names.values()))
+		self.assertTrue(all(len(line) <= 120 for line in listed["run"].splitlines()))
+		self.assertLessEqual(len(re.findall(r"^  .{4}--", program.call("run", "--help").stdout, re.M)), 36) # of them --help
 
 	def test_commands(self):
 		self.refuse("rnu", saying="did you mean 'obsim run'?")
@@ -108,10 +121,10 @@ class Usage(program.Case):
 
 	def test_video_without_ffmpeg(self):
 		"""Refused before anything is begun."""
-		done = subprocess.run([program.OBSIM, "run", STACK, "--video", self.path("v.mp4"), "--record", self.path("r.h5")],
+		done = subprocess.run([program.OBSIM, "run", STACK, "--out", self.path("v.mp4"), "--record", self.path("r.h5")],
 			env={**os.environ, "PATH": self.directory.name}, capture_output=True, text=True, timeout=program.PATIENCE)
 		self.assertEqual((done.returncode, done.stdout), (2, ""))
-		self.assertRegex(done.stderr, r"^obsim: --video: [^\n]*install ffmpeg[^\n]*\n\Z")
+		self.assertRegex(done.stderr, r"^obsim: --out: [^\n]*install ffmpeg[^\n]*\n\Z")
 		self.assertEqual(os.listdir(self.directory.name), [])
 
 	def test_help(self):

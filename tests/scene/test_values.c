@@ -228,7 +228,8 @@ static void check_heightfields(void)
 static void check_free(void)
 {
 	ob_scene *s = load_good("scene { sync = 'free', update_rate = 500, max_lag = .01 }\nground {}");
-	CHECK(s && s->free.update_rate == 500 && s->free.max_lag == .01 && s->free.coupling == OB_COUPLING_OWN);
+	CHECK(s && s->asked.sync && s->asked.free.update_rate == 500 && s->asked.free.max_lag == .01 &&
+	      !ob_setting_is_set(&s->asked, OB_SETTING_COUPLING));
 	ob_scene_free(s);
 	s = load_good("material 'slow' { update_rate = 30 }\nbox { size = {1, 1, 1}, material = 'slow' }\n"
 		      "sphere { radius = 1, at = {3, 0, 0}, material = 'slow', update_rate = 2000 }\n"
@@ -238,10 +239,11 @@ static void check_free(void)
 	CHECK(s && s->object[2].update_rate == 0 && s->object[3].update_rate == 0);
 	ob_scene_free(s);
 	s = load_good("scene { sync = 'free' }\nground {}");
-	CHECK(s && s->free.update_rate < 0 && s->free.max_lag == 0);
+	CHECK(s && s->asked.sync && !ob_setting_is_set(&s->asked, OB_SETTING_UPDATE_RATE) &&
+	      !ob_setting_is_set(&s->asked, OB_SETTING_MAX_LAG));
 	ob_scene_free(s);
 	s = load_good("scene { sync = 'lockstep' }\nground {}");
-	CHECK(s && s->free.update_rate == 0);
+	CHECK(s && !s->asked.sync && ob_setting_is_set(&s->asked, OB_SETTING_SYNC));
 	ob_scene_free(s);
 }
 

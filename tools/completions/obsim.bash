@@ -11,10 +11,18 @@ _obsim_requests()
 	"$1" help send 2>/dev/null | sed -n 's/^  obsim send NAME \([a-z]*\).*/\1/p'
 }
 
+# name= and, of a choice, name=value
+_obsim_settings()
+{
+	"$1" "$2" --set help 2>/dev/null | sed -n 's/^  \([a-z_]*=[^ ]*\).*/\1/p' |
+		awk -F= '$2 ~ /[A-Z]/ { print $1 "="; next } { n = split($2, v, "|"); for (i = 1; i <= n; i++) print $1 "=" v[i] }'
+}
+
 _obsim()
 {
 	local program=${COMP_WORDS[0]} command=${COMP_WORDS[1]} word=${COMP_WORDS[COMP_CWORD]}
-	local previous=${COMP_WORDS[COMP_CWORD - 1]}
+	local previous=${COMP_WORDS[COMP_CWORD - 1]} set=
+	[[ $previous == = ]] && set=${COMP_WORDS[COMP_CWORD - 2]}= previous=${COMP_WORDS[COMP_CWORD - 3]} # bash parts words at =
 	COMPREPLY=()
 	[[ $command:$previous == @(lab|paper|inspect):--json ]] && previous= # a flag there
 	if ((COMP_CWORD == 1)); then
@@ -25,34 +33,21 @@ _obsim()
 	--arch) mapfile -t COMPREPLY < <(compgen -W 'obs monolith' -- "$word") ;;
 	--isolation) mapfile -t COMPREPLY < <(compgen -W 'thread process' -- "$word") ;;
 	--workers) mapfile -t COMPREPLY < <(compgen -W 'objects 1 2 4 8' -- "$word") ;;
-	--solver) mapfile -t COMPREPLY < <(compgen -W 'coloured jacobi ghost lagged' -- "$word") ;;
 	--tolerance) mapfile -t COMPREPLY < <(compgen -W '5mm .5mm .05mm' -- "$word") ;;
-	--integrator) mapfile -t COMPREPLY < <(compgen -W 'exact ode' -- "$word") ;;
-	--sleeping) mapfile -t COMPREPLY < <(compgen -W 'on off' -- "$word") ;;
-	--narrow) mapfile -t COMPREPLY < <(compgen -W 'obb aabb' -- "$word") ;;
-	--measure) mapfile -t COMPREPLY < <(compgen -W 'step profile end' -- "$word") ;;
 	--on-death) mapfile -t COMPREPLY < <(compgen -W 'restart freeze abort keep' -- "$word") ;;
-	--restarts) mapfile -t COMPREPLY < <(compgen -W '5/10' -- "$word") ;;
 	--pace) mapfile -t COMPREPLY < <(compgen -W 'realtime max .1 10' -- "$word") ;;
+	--set) mapfile -t COMPREPLY < <(compgen -W "help $(_obsim_settings "$program" "$command")" -- "$set$word") && COMPREPLY=("${COMPREPLY[@]#"$set"}") ;;
 	--sync) mapfile -t COMPREPLY < <(compgen -W 'lockstep free lockstep,free' -- "$word") ;;
-	--update-rate) mapfile -t COMPREPLY < <(compgen -W '60 240 960' -- "$word") ;;
-	--coupling) mapfile -t COMPREPLY < <(compgen -W 'own ledger' -- "$word") ;;
-	--max-lag) mapfile -t COMPREPLY < <(compgen -W 'none .001 .01' -- "$word") ;;
-	--jitter) mapfile -t COMPREPLY < <(compgen -W '.1 .3' -- "$word") ;;
-	--record-schedule | --replay-schedule) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-	--delay) mapfile -t COMPREPLY < <(compgen -W '.001 .01' -- "$word") ;;
 	--quality) mapfile -t COMPREPLY < <(compgen -W 'draft fine' -- "$word") ;;
 	--overlay) mapfile -t COMPREPLY < <(compgen -W 'aabb contacts joints reads simulators caption aabb,contacts' -- "$word") ;;
 	--colour-by) mapfile -t COMPREPLY < <(compgen -W 'own simulator worker process rank island rest cost lag' -- "$word") ;;
 	--size) mapfile -t COMPREPLY < <(compgen -W '640x480 1280x720 1920x1080' -- "$word") ;;
-	--gpu) mapfile -t COMPREPLY < <(compgen -W 'surfaceless 0 1' -- "$word") ;;
 	--engines) mapfile -t COMPREPLY < <(compgen -W 'all obsim obsim-jacobi obsim-ode obsim-ghost obsim-lag ode-quick
 		ode-advised ode-world bullet mujoco' -- "$word") ;;
 	--sweep) mapfile -t COMPREPLY < <(compgen -W 'none substeps= iterations= tolerance= lag=' -- "$word") ;;
 	--fault) mapfile -t COMPREPLY < <(compgen -W 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p= nopages:p= abort:p=' -- "$word") ;;
-	--frames | --out) mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
-	--video | --raw | --record | --series | --json | --trace | --checkpoint | --resume | --replay | --log-requests | --replay-requests) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
-	--define | -D | --vary | --duration | --every | --step | --seed | --substeps | --iterations | --lag | --load | --patience | --name | --fps | --still | --samples | \
+	--out | --record | --series | --json | --trace | --checkpoint | --resume | --replay | --log-requests | --replay-requests) mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
+	--define | -D | --vary | --duration | --step | --seed | --patience | --name | --fps | --still | \
 		--camera | --interval | --repeats | --seeds | --limit | --objects) ;;
 	*)
 		case $command:$word in

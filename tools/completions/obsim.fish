@@ -4,6 +4,15 @@ function __obsim_cases
 	obsim lab --list 2>/dev/null | string match -rg '^ *\d+ +(\S+) '
 end
 
+# name= and, of a choice, name=value
+function __obsim_settings
+	echo help
+	for one in (obsim (commandline -opc)[2] --set help 2>/dev/null | string match -rg '^  ([a-z_]+=\S+)')
+		set -l parts (string split = $one)
+		string match -qr '[A-Z]' $parts[2]; and echo $parts[1]=; or printf "$parts[1]=%s\n" (string split '|' $parts[2])
+	end
+end
+
 function __obsim_universes
 	for path in /dev/shm/obsim.*
 		string replace /dev/shm/obsim. '' -- $path
@@ -34,26 +43,17 @@ complete -c obsim -n $both -s D -l define -x -d 'set a parameter of the scene'
 complete -c obsim -n $both -l duration -x -d 'simulated seconds'
 complete -c obsim -n $both -l step -x -d 'seconds a step'
 complete -c obsim -n $both -l seed -x -d 'seed of random numbers'
+complete -c obsim -n $both -l set -x -a '(__obsim_settings)' -d 'set what experiments vary'
 complete -c obsim -n $both -l workers -x -a 'objects 1 2 4 8' -d 'workers in the pool, or one for each object'
 complete -c obsim -n $both -l tolerance -x -a '5mm .5mm .05mm' -d 'error that objects that touch may reach'
-complete -c obsim -n $both -l substeps -x -d 'substeps a step'
-complete -c obsim -n $both -l iterations -x -d 'of the contact solver a substep'
-complete -c obsim -n $both -l solver -x -a 'coloured jacobi ghost lagged' -d 'how contacts are solved'
 complete -c obsim -n $both -l harden -a 'outbox checksum pages privileges limits calls' -d 'processes that write their own results alone'
-complete -c obsim -n $both -l lag -x -d 'lagged: iterations that a state is late'
-complete -c obsim -n $both -l integrator -x -a 'exact ode' -d 'free motion'
-complete -c obsim -n $both -l sleeping -x -a 'on off' -d 'whether what rests may sleep'
-complete -c obsim -n $both -l narrow -x -a 'obb aabb' -d 'what touches'
-complete -c obsim -n $both -l load -x -d 'numbers added up in each box test'
 
 set -l lives '__fish_seen_subcommand_from run serve control'
 complete -c obsim -n $lives -l arch -x -a 'obs monolith' -d 'one simulator per object, or one world'
 complete -c obsim -n $lives -l check -d 'check what simulators share after each step'
 complete -c obsim -n $lives -l isolation -x -a 'thread process' -d 'what a worker is'
 complete -c obsim -n $lives -l name -x -d 'name of the universe'
-complete -c obsim -n $lives -l patience -x -d 'seconds that a step may take'
 complete -c obsim -n $lives -l on-death -x -a 'restart freeze abort keep' -d 'what comes of a death'
-complete -c obsim -n $lives -l restarts -x -a '5/10' -d 'deaths within seconds'
 complete -c obsim -n '__fish_seen_subcommand_from run serve' -l pace -x -a 'realtime max .1 10' -d 'simulated seconds a second of the clock'
 
 set -l serve '__fish_seen_subcommand_from serve'
@@ -73,40 +73,26 @@ complete -c obsim -n '__fish_seen_subcommand_from export' -l patience -x -d 'sec
 set -l run '__fish_seen_subcommand_from run'
 complete -c obsim -n $run -l sync -x -a 'lockstep free' -d 'step together or at own times'
 complete -c obsim -n '__fish_seen_subcommand_from compare' -l sync -x -a 'lockstep,free' -d 'compare lockstep with free running'
-complete -c obsim -n $run -l update-rate -x -a '60 240 960' -d 'steps of a simulator a second'
-complete -c obsim -n $run -l coupling -x -a 'own ledger' -d 'who computes a contact'
-complete -c obsim -n $run -l max-lag -x -a 'none .001 .01' -d 'seconds ahead of a neighbour'
-complete -c obsim -n $run -l record-schedule -r -F -d 'record a free run, to repeat it'
-complete -c obsim -n $run -l replay-schedule -r -F -d 'repeat a recorded free run'
-complete -c obsim -n $run -l jitter -x -a '.1 .3' -d 'share by which lengths of steps vary'
-complete -c obsim -n $run -l delay -x -a '.001 .01' -d 'seconds until a publication is seen'
 complete -c obsim -n '__fish_seen_subcommand_from run compare' -l json -r -F -d 'the report as JSON'
 complete -c obsim -n $run -l report -x -a 'short full' -d 'five lines, or all that was measured'
 complete -c obsim -n $run -l explain -d 'what was modelled, what not, and what it cost'
 complete -c obsim -n $run -l trace -r -F -d 'what each worker did when, for ui.perfetto.dev'
 complete -c obsim -n $run -l checkpoint -r -F -d 'what the run needs to go on'
-complete -c obsim -n $run -l every -x -d 'simulated seconds between checkpoints'
 complete -c obsim -n $run -l replay-requests -r -F -d 'carry out what serve has logged'
 complete -c obsim -n '__fish_seen_subcommand_from run control' -l resume -r -F -d 'go on from a checkpoint'
 complete -c obsim -n $run -l fault -x -a 'kill:p= segv:p= exit:p= stop:p= slow:p= scribble:p= nospace:p= nopages:p= abort:p=' -d 'simulators that fail'
-complete -c obsim -n $run -l frames -x -a '(__fish_complete_directories)' -d 'write PNG files'
-complete -c obsim -n $run -l video -r -F -d 'write a video'
-complete -c obsim -n $run -l raw -r -F -d 'write raw rgb24 frames'
+complete -c obsim -n $run -l out -r -F -d 'PNG frames into a folder, a video, raw rgb24 frames'
 complete -c obsim -n $run -l fps -x -d 'frames per simulated second'
 complete -c obsim -n $run -l still -x -d 'frames of these times alone'
 complete -c obsim -n $run -l size -x -a '640x480 1280x720 1920x1080' -d pixels
 complete -c obsim -n $run -l quality -x -a 'draft fine' -d 'of pictures'
-complete -c obsim -n $run -l samples -x -a '1 2 4 8 16 64' -d 'samples a pixel'
 complete -c obsim -n $run -l camera -x -d 'which camera'
 complete -c obsim -n $run -l overlay -x -a 'aabb contacts joints reads simulators caption aabb,contacts' -d 'draw over it'
 complete -c obsim -n $run -l colour-by -x -a 'own simulator worker process rank island rest cost lag' -d 'colour objects by who simulates them'
-complete -c obsim -n $run -l gpu -x -a 'surfaceless 0 1' -d 'which GPU'
 complete -c obsim -n $run -l record -r -F -d 'trajectories as HDF5'
 complete -c obsim -n $run -l replay -r -F -d 'draw what was recorded'
 complete -c obsim -n $run -l series -r -F -d 'figures of each step as CSV'
 complete -c obsim -n $run -l strict -d 'fail where the tolerance is missed, or a script fails'
-complete -c obsim -n $run -l verify -d 'errors of a sample of steps'
-complete -c obsim -n $run -l measure -x -a 'step profile end' -d 'when to measure'
 
 set -l compare '__fish_seen_subcommand_from compare'
 set -l top '__fish_seen_subcommand_from top'
