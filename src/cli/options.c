@@ -305,9 +305,9 @@ bool ob_options_define(ob_arguments *own, const ob_arguments *a, const char *def
 
 _Static_assert(OB_OPTIONS <= 64, "each has a bit of a set");
 
-ob_setting_spelling ob_options_given(const ob_arguments *a, uint64_t options, uint64_t settings)
+ob_setting_word ob_options_given(const ob_arguments *a, uint64_t options, uint64_t settings)
 {
-	ob_setting_spelling found = { "" };
+	ob_setting_word found = { "" };
 	for (int i = 0; i < OB_SETTINGS; i++)
 		if (a->setting[i] && settings >> i & 1)
 			found = ob_setting_option((ob_setting_id)i);
@@ -319,7 +319,7 @@ ob_setting_spelling ob_options_given(const ob_arguments *a, uint64_t options, ui
 
 bool ob_options_refuse(const ob_arguments *a, uint64_t options, uint64_t settings, const char *why, ob_error *e)
 {
-	const ob_setting_spelling given = ob_options_given(a, options, settings);
+	const ob_setting_word given = ob_options_given(a, options, settings);
 	return !*given.text || ob_fail(e, "--%s%s", given.text, why);
 }
 

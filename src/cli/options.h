@@ -157,7 +157,7 @@ bool ob_options_define(ob_arguments *own, const ob_arguments *a, const char *def
 #define OB_BIT(id) (1ull << (id))
 enum { OB_LOCKSTEP_BITS = (1 << OB_RUN_SETTINGS) - 1 };
 // One of these that is given, as in ob_setting_option; "": none is.
-ob_setting_spelling ob_options_given(const ob_arguments *a, uint64_t options, uint64_t settings);
+ob_setting_word ob_options_given(const ob_arguments *a, uint64_t options, uint64_t settings);
 // False and e if one of these is given: "--NAME", and why it is refused.
 bool ob_options_refuse(const ob_arguments *a, uint64_t options, uint64_t settings, const char *why, ob_error *e);
 

@@ -224,15 +224,6 @@ static bool read_size(ob_frames_request *f, const char *text, ob_error *e)
 	return true;
 }
 
-static bool read_colours(ob_frames_request *f, const char *key, ob_error *e)
-{
-	uint32_t value = OB_COLOUR_OWN;
-	if (key && !ob_setting_find(OB_COLOUR_KEY_NAMES, key, &value))
-		return ob_fail(e, "--colour-by %s: expected one of %s", key, OB_COLOUR_KEY_NAMES);
-	f->colour_by = (ob_colour_key)value;
-	return true;
-}
-
 static bool read_frames(ob_frames_request *f, const ob_arguments *a, const ob_settings *asked, ob_error *e)
 {
 	*f = (ob_frames_request){
@@ -255,8 +246,10 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, const ob_se
 	if (f->gpu && strcmp(f->gpu, "surfaceless") != 0 && strspn(f->gpu, "0123456789") != strlen(f->gpu))
 		return ob_fail(e, "--set gpu=%s: expected surfaceless, or the number of a GPU, from 0", f->gpu);
 	const char *quality = a->value[OB_OPTION_QUALITY];
-	if (quality && strcmp(quality, "draft") != 0 && strcmp(quality, "fine") != 0)
-		return ob_fail(e, "--quality %s: expected draft or fine", quality);
+	uint32_t key = OB_COLOUR_OWN;
+	if (a->value[OB_OPTION_COLOUR_BY])
+		ob_setting_find(OB_COLOUR_KEY_NAMES, a->value[OB_OPTION_COLOUR_BY], &key);
+	f->colour_by = (ob_colour_key)key;
 	f->quality = quality && strcmp(quality, "fine") == 0 ? OB_QUALITY_FINE : OB_QUALITY_DRAFT;
 	const uint32_t most = f->quality == OB_QUALITY_FINE ? 256 : 32;
 	if (asked->samples > most)
@@ -269,9 +262,8 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, const ob_se
 		return false;
 	if (f->video && (f->width % 2 || f->height % 2))
 		return ob_fail(e, "--size %dx%d: a video needs an even width and height", f->width, f->height);
-	return read_overlay(f, a->value[OB_OPTION_OVERLAY], e) && read_colours(f, a->value[OB_OPTION_COLOUR_BY], e) &&
-	       (!f->wanted || ob_render_check(e)) && (!f->video || ob_video_check(e)) &&
-	       (!(f->caption || f->simulators) || ob_plot_check(e));
+	return read_overlay(f, a->value[OB_OPTION_OVERLAY], e) && (!f->wanted || ob_render_check(e)) &&
+	       (!f->video || ob_video_check(e)) && (!(f->caption || f->simulators) || ob_plot_check(e));
 }
 
 static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)
@@ -312,8 +304,8 @@ static bool read_deaths(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	uint32_t value = OB_ON_DEATH_RESTART;
 	uint64_t deaths = 0;
 	char number[32];
-	if (policy && !ob_setting_find(OB_ON_DEATH_NAMES, policy, &value))
-		return ob_fail(e, "--on-death %s: expected one of %s", policy, OB_ON_DEATH_NAMES);
+	if (policy)
+		ob_setting_find(OB_ON_DEATH_NAMES, policy, &value);
 	r->on_death = (ob_on_death)value;
 	if (ob_on_death_freezes_failed(r->on_death) && r->asked.run.monolith == 1)
 		return ob_fail(e,
@@ -349,7 +341,7 @@ static bool read_tolerance(ob_settings *to, const char *text, ob_error *e)
 
 static bool read_real(double *to, const ob_setting *s, const char *option, const char *text, ob_error *e)
 {
-	if (s->flags & OB_SETTING_NONE && strcmp(text, "none") == 0) {
+	if (strstr(s->form, "none") && strcmp(text, "none") == 0) {
 		*to = INFINITY;
 		return true;
 	}
@@ -366,7 +358,7 @@ bool ob_request_read_settings(ob_settings *to, const ob_arguments *a, ob_error *
 	for (int i = 0; i < OB_SETTINGS; i++) {
 		const ob_setting *s = &ob_setting_table[i];
 		const char *text = a->setting[i];
-		const ob_setting_spelling option = ob_setting_option((ob_setting_id)i);
+		const ob_setting_word option = ob_setting_option((ob_setting_id)i);
 		void *at = (char *)to + s->offset;
 		uint64_t n = 0;
 		bool fine = true;

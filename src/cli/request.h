@@ -51,7 +51,7 @@ typedef struct ob_run_request {
 	ob_fault_plan fault; // to inject; zeroed = none
 	bool is_free; // after ob_request_resolve
 	bool free_command; // the command can run free
-	ob_setting_spelling of_free,
+	ob_setting_word of_free,
 		of_lockstep; // an option that was given, and is for one of the two alone; "" = none
 	ob_free_settings free; // of a free run
 	uint64_t schedule_digest; // of all that decides a free run, but for its settings and its schedule

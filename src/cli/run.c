@@ -289,11 +289,11 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 	};
 	snprintf(p->scene, sizeof p->scene, "%s", q->scene);
 	snprintf(p->outcome, sizeof p->outcome, "%s", outcome);
-	snprintf(p->arch, sizeof p->arch, "%s", ob_setting_print(&q->run, OB_SETTING_ARCHITECTURE).text);
+	snprintf(p->arch, sizeof p->arch, "%.15s", ob_setting_print(&q->run, OB_SETTING_ARCHITECTURE).text);
 	snprintf(p->isolation, sizeof p->isolation, "%s", info.isolation);
-	snprintf(p->solver, sizeof p->solver, "%s", ob_setting_print(&q->run, OB_SETTING_SOLVER).text);
-	snprintf(p->integrator, sizeof p->integrator, "%s", ob_setting_print(&q->run, OB_SETTING_INTEGRATOR).text);
-	snprintf(p->narrow, sizeof p->narrow, "%s", ob_setting_print(&q->run, OB_SETTING_NARROW_PHASE).text);
+	snprintf(p->solver, sizeof p->solver, "%.15s", ob_setting_print(&q->run, OB_SETTING_SOLVER).text);
+	snprintf(p->integrator, sizeof p->integrator, "%.15s", ob_setting_print(&q->run, OB_SETTING_INTEGRATOR).text);
+	snprintf(p->narrow, sizeof p->narrow, "%.15s", ob_setting_print(&q->run, OB_SETTING_NARROW_PHASE).text);
 	snprintf(p->commit, sizeof p->commit, "%s", ob_version_commit);
 	p->fps = r->frames > 0 ? (double)r->frames / p->total_s : NAN;
 }

@@ -169,10 +169,9 @@ static const char *check_head(const file_head *h, size_t size, uint64_t digest)
 		return "it was recorded with another scene, -D, --seed or option of the solver";
 	const ob_free_settings *f = &h->settings;
 	const ob_setting *t = ob_setting_table;
-	if (!(f->update_rate > 0 && f->update_rate <= OB_UPDATE_RATE_MOST && f->max_lag >= 0 &&
-	      f->jitter >= 0 && f->jitter <= t[OB_SETTING_JITTER].most && f->delay >= 0 &&
-	      f->delay <= t[OB_SETTING_DELAY].most && f->pace > 0 && f->coupling <= OB_COUPLING_LEDGER &&
-	      f->heavy <= 1))
+	if (!(f->update_rate > 0 && f->update_rate <= OB_UPDATE_RATE_MOST && f->max_lag >= 0 && f->jitter >= 0 &&
+	      f->jitter <= t[OB_SETTING_JITTER].most && f->delay >= 0 && f->delay <= t[OB_SETTING_DELAY].most &&
+	      f->pace > 0 && f->coupling <= OB_COUPLING_LEDGER && f->heavy <= 1))
 		return "damaged at byte 0: the settings are out of range";
 	return NULL;
 }

@@ -6,47 +6,33 @@
 
 #include "settings/length.h"
 
-enum { SUBSTEPS_MAX = 1024, ITERATIONS_MAX = 100000, LAG_MAX = 64 };
+#define SUBSTEPS OB_SETTING_SUBSTEPS
+#define ITERATIONS OB_SETTING_ITERATIONS
+#define TOLERANCE OB_SETTING_TOLERANCE
+#define LAG OB_SETTING_LAG
+static const double lag_most = 64; // iterations
 
-static bool read_length(const char *text, double *out, ob_error *e)
+static bool add_value(ob_sweep *s, const char *name, const char *text, ob_error *e)
 {
-	ob_length l;
-	if (!ob_length_read(text, &l) || !(l.m > 0 && l.m <= 1))
-		return ob_fail(e, "--sweep tolerance=%s: expected a length above 0, at most 1 m, as .5mm", text);
-	*out = l.m;
-	return true;
-}
-
-static bool read_count(const char *knob, const char *text, uint32_t least, uint32_t most, uint32_t *out, ob_error *e)
-{
-	char *end;
-	unsigned long v = strtoul(text, &end, 10);
-	if (!*text || strspn(text, "0123456789") != strlen(text) || v < least || v > most)
-		return ob_fail(e, "--sweep %s=%s: expected a whole number from %u to %u", knob, text, least, most);
-	*out = (uint32_t)v;
-	return true;
-}
-
-static bool add_value(ob_sweep *s, const char *knob, const char *text, ob_error *e)
-{
-	size_t *count = !strcmp(knob, "substeps")     ? &s->substeps
-			: !strcmp(knob, "iterations") ? &s->iterations
-			: !strcmp(knob, "tolerance")  ? &s->tolerances
-			: !strcmp(knob, "lag")        ? &s->lags
-						      : NULL;
-	if (!count)
+	const int id = ob_setting_by_name(name);
+	if ((id != SUBSTEPS && id != ITERATIONS && id != TOLERANCE && id != LAG) ||
+	    strcmp(name, ob_setting_table[id].name))
 		return ob_fail(e, "--sweep %s: there are substeps, iterations, tolerance and lag, as in substeps=1,2,4",
-			       knob);
-	if (*count == OB_SWEEP_VALUES)
-		return ob_fail(e, "--sweep %s: at most %d values", knob, OB_SWEEP_VALUES);
-	size_t i = (*count)++;
-	if (count == &s->substeps)
-		return read_count(knob, text, 1, SUBSTEPS_MAX, &s->substeps_list[i], e);
-	if (count == &s->iterations)
-		return read_count(knob, text, 1, ITERATIONS_MAX, &s->iterations_list[i], e);
-	if (count == &s->lags)
-		return read_count(knob, text, 0, LAG_MAX, &s->lag_list[i], e);
-	return read_length(text, &s->tolerance_list[i], e);
+			       name);
+	if (s->of[id].n == OB_SWEEP_VALUES)
+		return ob_fail(e, "--sweep %s: at most %d values", name, OB_SWEEP_VALUES);
+	double *v = &s->of[id].value[s->of[id].n++];
+	ob_length l = { 0 };
+	if (id == TOLERANCE) {
+		*v = ob_length_read(text, &l) ? l.m : 0;
+		return (*v > 0 && *v <= 1) ||
+		       ob_fail(e, "--sweep tolerance=%s: expected a length above 0, at most 1 m, as .5mm", text);
+	}
+	const double least = id == LAG ? 0 : 1;
+	const double most = id == SUBSTEPS ? OB_MAX_SUBSTEPS : id == LAG ? lag_most : ob_setting_table[id].most;
+	*v = strtod(text, NULL);
+	return (*text && strspn(text, "0123456789") == strlen(text) && *v >= least && *v <= most) ||
+	       ob_fail(e, "--sweep %s=%s: expected a whole number from %g to %g", name, text, least, most);
 }
 
 static bool parse_lists(ob_sweep *s, char *rest, ob_error *e)
@@ -83,12 +69,9 @@ bool ob_sweep_parse(ob_sweep *s, const char *text, ob_error *e)
 static const ob_sweep *sensible(void)
 {
 	static const ob_sweep sweep = {
-		.substeps = 6,
-		.substeps_list = { 1, 2, 4, 8, 16, 32 }, // 60 Hz .. 1920 Hz
-		.tolerances = 4,
-		.tolerance_list = { 5e-3, 5e-4, 5e-5, 5e-6 },
-		.lags = 5,
-		.lag_list = { 0, 1, 2, 4, 8 },
+		.of[SUBSTEPS] = { 6, { 1, 2, 4, 8, 16, 32 } }, // 60 Hz .. 1920 Hz
+		.of[TOLERANCE] = { 4, { 5e-3, 5e-4, 5e-5, 5e-6 } },
+		.of[LAG] = { 5, { 0, 1, 2, 4, 8 } },
 	};
 	return &sweep;
 }
@@ -113,17 +96,17 @@ static void add(collection *c, ob_run_settings s)
 static void add_products(collection *to, const ob_sweep *s, const ob_run_settings *usual)
 {
 	// a setting that is not swept has its usual value alone; engines without iterations have 0
-	size_t substeps = s->substeps ? s->substeps : 1;
-	size_t iterations = s->iterations && usual->iterations ? s->iterations : 1;
+	size_t substeps = s->of[SUBSTEPS].n ? s->of[SUBSTEPS].n : 1;
+	size_t iterations = s->of[ITERATIONS].n && usual->iterations ? s->of[ITERATIONS].n : 1;
 	for (size_t i = 0; i < substeps; i++) {
 		for (size_t j = 0; j < iterations; j++) {
 			ob_run_settings one = *usual;
-			if (s->substeps) {
-				one.substeps = s->substeps_list[i];
+			if (s->of[SUBSTEPS].n) {
+				one.substeps = (uint32_t)s->of[SUBSTEPS].value[i];
 				one.tolerance = 0;
 			}
-			if (s->iterations && usual->iterations)
-				one.iterations = s->iterations_list[j];
+			if (s->of[ITERATIONS].n && usual->iterations)
+				one.iterations = (uint32_t)s->of[ITERATIONS].value[j];
 			add(to, one);
 		}
 	}
@@ -142,24 +125,24 @@ size_t ob_sweep_settings(const ob_sweep *s, const ob_case *c, const ob_engine_ki
 	if (late) {
 		usual.lag = 0; // the promised setting
 		add(&all, usual);
-		for (size_t i = 0; i < sweep->lags; i++) {
-			usual.lag = sweep->lag_list[i];
+		for (size_t i = 0; i < sweep->of[LAG].n; i++) {
+			usual.lag = (uint32_t)sweep->of[LAG].value[i];
 			add(&all, usual);
 		}
 		return all.count;
 	}
 	add(&all, usual);
 	add_products(&all, sweep, &usual);
-	for (size_t i = 0; i < sweep->lags && k->free; i++) {
+	for (size_t i = 0; i < sweep->of[LAG].n && k->free; i++) {
 		ob_run_settings one = usual;
-		one.lag = sweep->lag_list[i];
+		one.lag = (uint32_t)sweep->of[LAG].value[i];
 		add(&all, one);
 	}
-	for (size_t i = 0; i < sweep->tolerances && strcmp(k->name, "obsim") == 0; i++) {
+	for (size_t i = 0; i < sweep->of[TOLERANCE].n && strcmp(k->name, "obsim") == 0; i++) {
 		ob_run_settings one = usual;
 		one.substeps = 0;
 		one.iterations = OB_DEFAULT_TOLERANCE_ITERATIONS;
-		one.tolerance = sweep->tolerance_list[i];
+		one.tolerance = sweep->of[TOLERANCE].value[i];
 		add(&all, one);
 	}
 	return all.count;

@@ -8,9 +8,10 @@ enum { OB_SWEEP_VALUES = 16, OB_SWEEP_SETTINGS = 288 }; // per setting; per engi
 
 typedef struct ob_sweep {
 	bool own; // a sensible default for each engine; the lists below are empty then
-	size_t substeps, iterations, tolerances, lags;
-	uint32_t substeps_list[OB_SWEEP_VALUES], iterations_list[OB_SWEEP_VALUES], lag_list[OB_SWEEP_VALUES];
-	double tolerance_list[OB_SWEEP_VALUES]; // m
+	struct {
+		size_t n;
+		double value[OB_SWEEP_VALUES];
+	} of[OB_RUN_SETTINGS]; // substeps, iterations, tolerance (m) and lag
 } ob_sweep;
 
 // Parses "substeps=1,2,4,8,iterations=4,16,tolerance=5mm,.5mm,lag=0,1,2", each setting at most once; "none" = each

@@ -6,13 +6,7 @@
 
 #include "base/number.h"
 
-enum {
-	SCENE = OB_SETTING_SCENE,
-	OPTION = OB_SETTING_OPTION,
-	ABOVE = OB_SETTING_ABOVE,
-	NONE = OB_SETTING_NONE,
-	OBJECTS = OB_SETTING_OBJECTS
-};
+enum { SCENE = OB_SETTING_SCENE, OPTION = OB_SETTING_OPTION, ABOVE = OB_SETTING_ABOVE, OBJECTS = OB_SETTING_OBJECTS };
 
 const ob_setting ob_setting_table[OB_SETTINGS] = {
 #define X(id, name, kind, member, group, flags, least, most, form, help) \
@@ -239,10 +233,10 @@ ob_setting_word ob_setting_print(const ob_run_settings *s, ob_setting_id id)
 	return word;
 }
 
-ob_setting_spelling ob_setting_option(ob_setting_id id)
+ob_setting_word ob_setting_option(ob_setting_id id)
 {
 	const ob_setting *t = &ob_setting_table[id];
-	ob_setting_spelling word;
+	ob_setting_word word;
 	snprintf(word.text, sizeof word.text, "%s%s", t->flags & OPTION ? "" : "set ", t->name);
 	return word;
 }

@@ -160,7 +160,7 @@ typedef struct ob_settings {
 	ob_run_settings run; // first
 	uint64_t given; // bits, 1 << ob_setting_id; all other members mean nothing, or are defaults
 	ob_free_settings free;
-	double tolerance_share; // of the thickness of the thinnest body: the tolerance; 0: it is a length
+	double tolerance_share; // tolerance by the thickness of the thinnest body; 0: it is a length
 	double patience, every; // s
 	const char *restarts, *gpu, *record_schedule, *replay_schedule;
 	uint32_t sync; // 1 = free
@@ -199,7 +199,7 @@ typedef struct ob_settings {
 	  "steps of a simulator a second (the scene's)") \
 	X(COUPLING, "coupling", CHOICE, free.coupling, FREE, SCENE, 0, 0, OB_COUPLING_NAMES, \
 	  "who computes an impulse: each its own, or one that mails it (the scene's)") \
-	X(MAX_LAG, "max_lag", REAL, free.max_lag, FREE, ABOVE | NONE | SCENE, 0, 1e3, "S|none", \
+	X(MAX_LAG, "max_lag", REAL, free.max_lag, FREE, ABOVE | SCENE, 0, 1e3, "S|none", \
 	  "seconds ahead of a neighbour (the scene's; pace max: two steps; else none)") \
 	X(JITTER, "jitter", REAL, free.jitter, FREE, 0, 0, .9, "P", "share by which lengths of steps vary (0)") \
 	X(DELAY, "delay", REAL, free.delay, FREE, 0, 0, 10, "S", "seconds until a publication is seen (0)") \
@@ -239,26 +239,25 @@ typedef enum ob_setting_kind {
 typedef enum ob_setting_group {
 	OB_SETTING_SOLVED, // by which scenes are solved
 	OB_SETTING_FREE, // of free running
-	OB_SETTING_WATCHED, // of a host that watches its simulators
-	OB_SETTING_RUN, // of a run that ends, with its results
+	OB_SETTING_WATCHED, // limits of a host on its simulators
+	OB_SETTING_RUN, // results of obsim run
 } ob_setting_group;
 
 enum {
 	OB_SETTING_SCENE = 1, // it is a field of scenes, too
 	OB_SETTING_OPTION = 2, // it has an option of its own in place of --set
 	OB_SETTING_ABOVE = 4, // least itself is too small
-	OB_SETTING_NONE = 8, // "none" is no bound
-	OB_SETTING_OBJECTS = 16, // means nothing to a monolith
+	OB_SETTING_OBJECTS = 8, // means nothing to a monolith
 };
 
 typedef struct ob_setting {
 	const char *name;
 	ob_setting_kind kind;
-	size_t offset; // in ob_settings; of those of lockstep in ob_run_settings, too
+	size_t offset; // in ob_settings, and of lockstep settings in ob_run_settings
 	ob_setting_group group;
 	uint32_t flags;
 	double least, most;
-	const char *form, *help;
+	const char *form, *help; // a form of a real that ends in |none: none is no bound
 } ob_setting;
 
 extern const ob_setting ob_setting_table[OB_SETTINGS];
@@ -289,15 +288,12 @@ bool ob_run_settings_check(const ob_run_settings *s, ob_error *e);
 // Finds the number of a word in "a|b|c"; false if absent.
 bool ob_setting_find(const char *names, const char *word, uint32_t *value);
 typedef struct ob_setting_word {
-	char text[16];
+	char text[32];
 } ob_setting_word;
 // Word of a choice's or switch's value, among those of lockstep.
 ob_setting_word ob_setting_print(const ob_run_settings *s, ob_setting_id id);
 // The setting on a command line, without the dashes: "tolerance", "set lag".
-typedef struct ob_setting_spelling {
-	char text[32];
-} ob_setting_spelling;
-ob_setting_spelling ob_setting_option(ob_setting_id id);
+ob_setting_word ob_setting_option(ob_setting_id id);
 
 // Words of earlier versions, still accepted in command lines and scenes: the present name of an option, field or choice
 // for a former one. NULL: unchanged.

@@ -106,7 +106,7 @@ static ob_out kind_of(const char *path)
 	return kind;
 }
 
-// What obsim run writes is known by its name; of each kind it writes one.
+// The name of a picture file gives its kind; a run writes one of each kind.
 static void test_pictures(void)
 {
 	static const char *const videos[] = { "a.mp4", "./d.e/a.webm", "a.GIF", "a.xyz" };

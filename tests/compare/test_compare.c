@@ -289,14 +289,16 @@ static void test_arguments(void)
 	for (int id = 0; id < OB_CONFIGURATIONS; id++) {
 		bool monolith = strstr(ob_configuration_table[id].key, "monolith");
 		char **argv = ob_comparison_arguments(c, c->point, id, OB_COMPARE_SAMPLE, false, 9);
-		CHECK(says(argv, step) && says(argv, "-Dn=5") && says(argv, "--seed=9") && says(argv, "--set=measure=end"));
+		CHECK(says(argv, step) && says(argv, "-Dn=5") && says(argv, "--seed=9") &&
+		      says(argv, "--set=measure=end"));
 		CHECK(says(argv, solver) == !monolith &&
 		      says(argv, "--workers=2") == (!monolith && !strstr(ob_configuration_table[id].key, "each")));
 		CHECK(says(argv, ob_configuration_table[id].other_narrow ? "--set=narrow=aabb" : "--set=narrow=obb"));
 		ob_program_free_arguments(argv);
 	}
 	char **argv = ob_comparison_arguments(c, c->point, OB_CONFIGURATION_PROCESSES_EACH, OB_COMPARE_SAMPLE, true, 0);
-	CHECK(says(argv, "--set=measure=profile") && says(argv, "--workers=objects") && says(argv, "--isolation=process"));
+	CHECK(says(argv, "--set=measure=profile") && says(argv, "--workers=objects") &&
+	      says(argv, "--isolation=process"));
 	ob_program_free_arguments(argv);
 	argv = ob_comparison_arguments(c, c->point, OB_CONFIGURATION_THREADS, OB_COMPARE_DRAWN, false, 0);
 	CHECK(says(argv, "--out=/dev/null") && says(argv, "scenes/heap.lua"));

@@ -48,7 +48,7 @@ class Usage(program.Case):
 		self.assertEqual(os.listdir(self.directory.name), [])
 
 	def test_settings(self):
-		"""What experiments vary is set by name; the option that it was says so; --set help lists what a command takes."""
+		"""Settings have names; an option that has become one says so; --set help lists those of a command."""
 		for words, now in (["--lag", "3"], "--set lag=K"), (["--max-lag=1"], "--set max_lag=S|none"), (["--verify"], "--set verify=off|on"):
 			self.refuse("run", STACK, *words, saying=f"{words[0].split('=')[0]} is now {now}")
 		self.refuse("serve", STACK, "--verify", saying="unknown option --verify")

@@ -157,7 +157,7 @@ static void test_names(void)
 	CHECK(strcmp(ob_setting_former("solver"), "exchange") == 0 && !ob_setting_former("exchange"));
 }
 
-// Every name is one word that scenes may use; what a layer gives of free running overwrites what lies below.
+// Every name is one word that scenes may use. Settings of free running overwrite those of the layer below.
 static void test_table(void)
 {
 	for (int i = 0; i < OB_SETTINGS; i++) {
