@@ -77,6 +77,13 @@ static void add_body(ob_world *w, player *p, uint32_t i)
 		ob_world_kinematic(o);
 }
 
+static void join_bodies(ob_world *w, const random_scene *s)
+{
+	for (uint32_t i = 0; i < s->bodies; i++)
+		if (s->body[i].fixed)
+			ob_world_join(w, OB_JOINT_FIXED, i, s->body[i].fixed - 1, s->body[i].state.pose);
+}
+
 // Speeds up through the first half of a path that takes four times as long as the run.
 static void prescribe(const player *p, uint32_t i)
 {
@@ -101,6 +108,7 @@ static void put_bodies(player *p, const ob_world *w)
 {
 	for (uint32_t i = 0; i < w->objects; i++)
 		ob_write_passport(p->u, i, &w->passport[i]);
+	ob_joints_write(p->u, w->joint, w->joints);
 	for (uint32_t i = 0; i < w->objects; i++)
 		ob_sim_place(p->u, i, &w->state[i]);
 }
@@ -147,10 +155,12 @@ static bool open_player(player *p, uint32_t workers, const ob_saved_universe *fr
 	ob_world w = { .gravity = p->scene->run.gravity };
 	for (uint32_t i = 0; i < p->scene->bodies; i++)
 		add_body(&w, p, i);
+	join_bodies(&w, p->scene);
 	ob_universe_setup setup = { .name = name,
 				    .capacity = p->scene->bodies,
 				    .workers = workers ? workers : 1,
 				    .hulls = w.hulls,
+				    .joints = w.joints,
 				    .isolation = "thread",
 				    .run = p->scene->run };
 	p->u = ob_universe_create(&setup, &e);

@@ -8,7 +8,8 @@
 static const double tolerance = 1e-9; // m
 static const double pebble_mass = 1e-9; // mass, relative to the body on which it lies
 static const double pebble_size = .1; // half extent, relative to that body's least one
-static const double pebble_limit = 1e-6; // m: largest deviation
+static const double joined_limit =
+	1e-6; // m: largest deviation in a scene with a pebble or with joints that change nothing
 static const double disturbance = 1e-12; // m, for the twin
 // Pairs of twins: for each scene, and for one in which a relation seems to fail. Where motion forks, half of all twins
 // may take the other way.
@@ -17,7 +18,8 @@ static const double pi = 3.14159265358979323846;
 
 const char *const relation_name[RELATIONS] = { "again",   "workers",   "mirrored", "turned",   "tilted", "moved",
 					       "boosted", "reordered", "rescaled", "refined",  "far",    "momentum",
-					       "spin",    "energy",    "lifted",   "reframed", "pebble", "neighbour" };
+					       "spin",    "energy",    "lifted",   "reframed", "pebble", "neighbour",
+					       "idle",    "cut",       "bolted" };
 
 // ---- one scene, transformed
 
@@ -351,37 +353,122 @@ static void add_pebble(random_scene *s, uint32_t on, ob_vec3 up)
 	s->body[s->bodies++] = b;
 }
 
-// Adds so many pebbles, one on the other, to the highest body of all. Returns false if there is no room, or none to lie on.
-static bool add_pebbles(random_scene *s, int pebbles, uint64_t *seed)
+// Returns the highest body that moves and has one of these shapes (bits); SCENE_BODIES: there is none.
+static uint32_t highest(const random_scene *s, ob_vec3 up, unsigned shapes)
 {
-	const ob_vec3 up = ob_norm(s->run.gravity) > 0 ? vertical(s) : random_direction(seed);
-	uint32_t on = SCENE_BODIES;
+	uint32_t top = SCENE_BODIES;
 	for (uint32_t i = 0; i < s->bodies; i++) {
 		const scene_body *b = &s->body[i];
-		if (b->mass > 0 && (b->shape == OB_SHAPE_BOX || b->shape == OB_SHAPE_SPHERE) &&
-		    (on == SCENE_BODIES || ob_dot(up, b->state.pose.p) > ob_dot(up, s->body[on].state.pose.p)))
-			on = i;
+		if (b->mass > 0 && shapes >> b->shape & 1 &&
+		    (top == SCENE_BODIES || ob_dot(up, b->state.pose.p) > ob_dot(up, s->body[top].state.pose.p)))
+			top = i;
 	}
-	if (on == SCENE_BODIES || s->bodies + (uint32_t)pebbles > SCENE_BODIES)
+	return top;
+}
+
+static ob_vec3 up_of(const random_scene *s, uint64_t *seed)
+{
+	return ob_norm(s->run.gravity) > 0 ? vertical(s) : random_direction(seed);
+}
+
+// Adds so many pebbles, one on the other, to the highest body of all. Returns false if there is no room, or none to lie on.
+static bool add_pebbles(random_scene *s, uint32_t pebbles, uint64_t *seed)
+{
+	const ob_vec3 up = up_of(s, seed);
+	uint32_t on = highest(s, up, 1u << OB_SHAPE_BOX | 1u << OB_SHAPE_SPHERE);
+	if (on == SCENE_BODIES || s->bodies + pebbles > SCENE_BODIES)
 		return false;
-	for (int i = 0; i < pebbles; i++, on = s->bodies - 1)
+	for (uint32_t i = 0; i < pebbles; i++, on = s->bodies - 1)
 		add_pebble(s, on, up);
 	return true;
 }
 
-// Compares the original's bodies with those of the same scene with more.
-static void judge_more(const original *o, const random_scene *more, uint64_t steps, judged *j)
+static bool add_fixed_pebble(random_scene *s, uint64_t *seed)
+{
+	const uint32_t on = highest(s, up_of(s, &(uint64_t){ *seed }), 1u << OB_SHAPE_BOX | 1u << OB_SHAPE_SPHERE);
+	if (!add_pebbles(s, 1, seed))
+		return false;
+	s->body[s->bodies - 1].fixed = on + 1;
+	return true;
+}
+
+// Cuts the highest box across its longest edges. whole: centre of the box, from that of the piece that keeps its number.
+static bool cut(random_scene *s, uint64_t *seed, uint32_t *number, ob_vec3 *whole)
+{
+	const uint32_t i = *number = highest(s, up_of(s, seed), 1u << OB_SHAPE_BOX);
+	if (i == SCENE_BODIES || s->bodies == SCENE_BODIES || s->body[i].pushed)
+		return false;
+	scene_body *a = &s->body[i], *b = &s->body[s->bodies++];
+	double *half = &a->size.x;
+	const int along = half[0] >= half[1] && half[0] >= half[2] ? 0 : half[1] >= half[2] ? 1 : 2;
+	const ob_mat3 r = ob_quat_matrix(a->state.pose.q);
+	const ob_vec3 way = ob_scale(ob_column(&r, along), .5 * half[along]);
+	(&whole->x)[along] = -.5 * half[along];
+	half[along] *= .5, a->mass *= .5;
+	*b = *a;
+	b->fixed = i + 1;
+	for (int k = 0; k < 2; k++) {
+		ob_state *x = k ? &b->state : &a->state;
+		const ob_vec3 off = ob_scale(way, k ? -1 : 1);
+		x->pose.p = ob_add(x->pose.p, off);
+		x->v = ob_add(x->v, ob_cross(x->w, off));
+	}
+	return true;
+}
+
+// True if the two bodies do not move against each other.
+static bool stay_together(const original *o, uint32_t i, uint32_t k)
+{
+	const ob_state *a = &o->scene->body[i].state, *b = &o->scene->body[k].state;
+	for (int n = 0; n < PLAY_SAMPLES; n++) {
+		const ob_state *x = &o->base.at[n][i], *y = &o->base.at[n][k];
+		if (ob_norm(ob_sub(x->pose.p, a->pose.p)) > tolerance ||
+		    ob_norm(ob_sub(y->pose.p, b->pose.p)) > tolerance)
+			return false;
+	}
+	return true;
+}
+
+// Fixes the highest body to the one below it, if both stay where they are, and so does their twin.
+static bool bolt(const original *o, random_scene *s, uint64_t *seed)
+{
+	const unsigned any = ~0u;
+	const ob_vec3 up = up_of(s, seed);
+	const uint32_t top = highest(s, up, any);
+	random_scene rest = *s;
+	if (top == SCENE_BODIES || ob_norm(s->run.gravity) == 0 || o->samples < PLAY_SAMPLES)
+		return false;
+	rest.body[top].mass = 0;
+	const uint32_t below = highest(&rest, up, any);
+	if (below == SCENE_BODIES || !stay_together(o, top, below))
+		return false;
+	const ob_vec3 apart = ob_sub(s->body[top].state.pose.p, s->body[below].state.pose.p);
+	const double reach = ob_shape_radius(s->body[top].shape, s->body[top].size) +
+			     ob_shape_radius(s->body[below].shape, s->body[below].size);
+	s->body[top].fixed = below + 1;
+	return ob_norm(apart) <= reach;
+}
+
+// Compares the original's bodies with those of the same scene with more, or with joints. cut: one of which a piece is
+// left, with its centre from that of the piece; SCENE_BODIES: none.
+static void judge_more(const original *o, const random_scene *more, uint32_t cut, ob_vec3 whole, uint64_t steps,
+		       judged *j)
 {
 	played other;
 	const view same = same_view(o->scene);
 	play(more, 0, steps, &other);
+	for (int k = 0; k < PLAY_SAMPLES && cut < SCENE_BODIES; k++) {
+		ob_pose *piece = &other.at[k][cut].pose;
+		const ob_mat3 r = ob_quat_matrix(piece->q);
+		piece->p = ob_add(piece->p, ob_rotate(&r, whole));
+	}
 	memcpy(j->why, other.why, sizeof j->why);
 	j->applies = other.depth < 1e-6; // they overlap nothing
 	j->counted = o->samples == PLAY_SAMPLES;
-	j->limit = pebble_limit;
+	j->limit = joined_limit;
 	for (int k = 0; k < o->samples; k++) {
 		const double d = difference(o->scene, &o->base, &other, &same, k, steps);
-		if (d > pebble_limit && j->error <= pebble_limit)
+		if (d > joined_limit && j->error <= joined_limit)
 			j->when = sample_time(o->scene, k, steps);
 		j->error = fmax(j->error, d);
 	}
@@ -457,6 +544,8 @@ static judged judge(relation_id r, const original *o, uint64_t seed, uint64_t st
 	judged j = { .applies = true, .counted = true };
 	view v = same_view(o->scene);
 	random_scene more = *o->scene;
+	uint32_t piece = SCENE_BODIES;
+	ob_vec3 whole = { 0, 0, 0 };
 	seed = seed * FIRST_RELATIONS + r % FIRST_RELATIONS + ((uint64_t)(r / FIRST_RELATIONS) << 32);
 	switch (r) {
 	case RELATION_AGAIN:
@@ -472,9 +561,15 @@ static judged judge(relation_id r, const original *o, uint64_t seed, uint64_t st
 		break;
 	case RELATION_PEBBLE:
 	case RELATION_NEIGHBOUR:
-		j.applies = add_pebbles(&more, r == RELATION_PEBBLE ? 1 : 2, &seed);
+	case RELATION_IDLE:
+	case RELATION_CUT:
+	case RELATION_BOLTED:
+		j.applies = r == RELATION_IDLE     ? add_fixed_pebble(&more, &seed)
+			    : r == RELATION_CUT    ? cut(&more, &seed, &piece, &whole)
+			    : r == RELATION_BOLTED ? bolt(o, &more, &seed)
+						   : add_pebbles(&more, r == RELATION_PEBBLE ? 1 : 2, &seed);
 		if (j.applies)
-			judge_more(o, &more, steps, &j);
+			judge_more(o, &more, piece, whole, steps, &j);
 		break;
 	case RELATION_REFINED:
 		judge_refined(o, steps, &j);

@@ -27,6 +27,9 @@ typedef enum relation_id {
 	RELATION_REFRAMED, // the points of hulls in another frame and order
 	RELATION_PEBBLE, // a body of 1e-9 of another's mass that lies on it, or leans on it
 	RELATION_NEIGHBOUR, // a second one on the first: a pair that touches elsewhere in the island
+	RELATION_IDLE, // the pebble is fixed: a joint that carries nothing
+	RELATION_CUT, // a box in two pieces that are fixed together
+	RELATION_BOLTED, // what lies still on another body is fixed to it
 	RELATIONS
 } relation_id;
 
