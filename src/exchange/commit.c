@@ -313,7 +313,7 @@ static bool are_sound_posts(const ob_script_cell *c)
 	while (at + sizeof(ob_script_post) <= c->outbox_bytes) {
 		const ob_script_post *post = (const ob_script_post *)(const void *)(c->outbox + at);
 		at += (uint32_t)sizeof *post;
-		if (post->kind >= OB_SCRIPT_POST_KINDS || post->bytes % 8 || post->used > post->bytes ||
+		if (post->kind >= OB_REQUEST_AT_ONCE || post->bytes % 8 || post->used > post->bytes ||
 		    post->bytes > c->outbox_bytes - at)
 			return false;
 		at += post->bytes;

@@ -122,20 +122,15 @@ static bool find_object(const ob_host *h, const ob_change *change, ob_request *r
 	return true;
 }
 
-// Fills in the fields of all rows of a command, in the order of the table. A zero leaves an optional one as it is.
 static void read_change(const ob_change *change, const ob_request_row *row, ob_request *r)
 {
-	const uint32_t command = row->control;
+	enum { VALUES = sizeof change->value / sizeof *change->value };
 	const double *v = change->value;
+	const uint32_t joint = row->to == OB_TO_JOINT;
 	ob_request_begin(r, row);
 	r->origin = OB_ORIGIN_PROGRAM;
-	if (row->to == OB_TO_JOINT)
-		r->joint = *v >= 0 && *v < UINT32_MAX ? (uint32_t)*v : UINT32_MAX, v++;
-	for (; row->control == command; row++)
-		for (const ob_request_field *f = row->field; f->name; f++)
-			for (uint32_t i = 0; i < f->count; i++, v++)
-				if (*v != 0 || !f->optional)
-					ob_request_put(r, f, i, *v);
+	r->joint = joint && v[0] >= 0 && v[0] < UINT32_MAX ? (uint32_t)v[0] : UINT32_MAX;
+	ob_request_put_numbers(r, v + joint, VALUES - joint);
 }
 
 // All changes of the packet, or none: those of a command, and behind them `forces` changes of forces.

@@ -125,10 +125,10 @@ void ob_host_get_times(ob_host *h, ob_host_times *out);
 uint32_t ob_host_get_deaths(ob_host *h, ob_death out[OB_DEATHS_KEPT]);
 // Copies the first errors that have stopped scripts, OB_SCRIPT_ERRORS_KEPT of them at most; returns their number. Paused.
 uint32_t ob_host_get_script_errors(ob_host *h, ob_script_error out[OB_SCRIPT_ERRORS_KEPT]);
-// Requests, carried out at the next step boundary. The id of an added object appears in the roster. Any thread. false:
-// no memory, or, for add, an invalid definition, explained by e. remove: nothing happens if another generation has the
-// id by then.
-bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e);
+// Requests that change objects, of the program itself, carried out at the next step boundary. The id of an added object appears
+// in the roster. Any thread. false: no memory, or an invalid definition to add, explained by e. remove: nothing happens if another
+// generation has the id by then.
+bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e);
 bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation);
 // Requests of visitors and other programs, of any kind: checks the request against the universe as it is now, completes
 // it, and carries it out or queues it, whatever the role. Any thread.
@@ -142,8 +142,6 @@ bool ob_host_operate(ob_host *h);
 // Takes the oldest wish of a visitor, which the leader is to carry out: OB_REQUEST_SET, _SEED or _SAVE. false: there is none.
 // Between a wait and the next go.
 bool ob_host_take_wish(ob_host *h, ob_request *out);
-// Requests that change objects, checked as by ob_host_request_add. Any thread.
-bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e);
 // With a trace: records an activity of the calling thread, the one that starts and stops the host, since begin
 // (ob_clock_ns).
 void ob_host_trace(ob_host *h, ob_trace_kind kind, uint64_t begin, uint32_t number);

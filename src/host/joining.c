@@ -203,9 +203,7 @@ void ob_joint_request_carry_out(ob_universe *u, const ob_request *r)
 {
 	ob_joint_passport j;
 	ob_error e;
-	if (!ob_joint_request_check(u, r, &e))
-		ob_log_warn("a request was left out: %s", e.text);
-	else if (r->kind == OB_REQUEST_MOTOR)
+	if (r->kind == OB_REQUEST_MOTOR)
 		set_motor(u, r->joint, r->motor);
 	else if (r->kind == OB_REQUEST_UNJOIN)
 		unjoin(u, r->joint);
@@ -230,9 +228,9 @@ static uint32_t find_same(const ob_universe *u, const ob_joint_passport *j)
 bool ob_joint_post_carry_out(ob_universe *u, const ob_script_post *post, ob_error *e)
 {
 	ob_joint_passport j;
-	if ((post->kind != OB_SCRIPT_JOIN && post->kind != OB_SCRIPT_UNJOIN) || post->used != sizeof j)
+	if ((post->kind != OB_REQUEST_JOIN && post->kind != OB_REQUEST_UNJOIN) || post->used != sizeof j)
 		return ob_fail(e, "the joint makes no sense");
-	if (post->kind == OB_SCRIPT_JOIN) {
+	if (post->kind == OB_REQUEST_JOIN) {
 		read_joint(&j, post + 1);
 		return !has_ends(u, &j) || join(u, &j, e);
 	}

@@ -19,7 +19,7 @@ bool ob_joint_request_find(const ob_universe *u, const char *name, ob_request *r
 bool ob_create_as_scene(ob_universe *u, const char *text, size_t bytes, uint32_t origin,
 			bool (*ask)(void *with, ob_request *r, ob_error *e), void *with, ob_error *e);
 bool ob_joint_request_check(const ob_universe *u, const ob_request *r, ob_error *e);
-// Carries out a request that was valid when it came; warns if it is not any more.
+// Carries out a request that is valid now; warns if there is no room.
 void ob_joint_request_carry_out(ob_universe *u, const ob_request *r);
 // Carries out a post of a kind of joints'. It is not trusted; one of a joint or an object that has gone is left out. false: it
 // makes no sense, or there is no room.

@@ -328,9 +328,7 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 	const ob_passport *pass = ob_passport_of(p->u, r->id);
 	const ob_pull pull = ob_pull_of_request(r);
 	const ob_state state = complete_state(&legal, &r->state);
-	const bool pushes = r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_KICK;
-	if (!pushes && !ob_is_pull_request(r) && r->kind != OB_REQUEST_STATE && r->kind != OB_REQUEST_FRICTION &&
-	    r->kind != OB_REQUEST_SURFACE && r->kind != OB_REQUEST_PATH && !ob_is_joint_request(r))
+	if (r->kind == OB_REQUEST_REMOVE || r->kind == OB_REQUEST_MESSAGE || r->kind == OB_REQUEST_COLOUR)
 		return true;
 	if (r->kind != OB_REQUEST_FORCE && ob_universe_settings(p->u)->monolith)
 		return ob_fail(e, "the one ODE world keeps its bodies to itself: take object simulators");
@@ -346,74 +344,56 @@ bool ob_population_check_change(const ob_population *p, const ob_request *r, ob_
 		return ob_surface_velocity_check(pass, r->surface_velocity, e);
 	if (r->kind == OB_REQUEST_FRICTION)
 		return ob_friction_check(r->friction, e);
-	if (pushes && pass->flags & OB_OBJECT_PRESCRIBED)
+	if (r->kind == OB_REQUEST_STATE)
+		return ob_state_check(pass, &state, e);
+	if (pass->flags & OB_OBJECT_PRESCRIBED)
 		return ob_fail(e, "object %u (%.*s) does not move by forces", r->id, OB_NAME_MAX, pass->name);
-	return pushes ? ob_push_check(pass, r->force, r->kind == OB_REQUEST_KICK ? r->twist : ob_v3(0, 0, 0), e)
-		      : ob_state_check(pass, &state, e);
+	return ob_push_check(pass, r->force, r->kind == OB_REQUEST_KICK ? r->twist : ob_v3(0, 0, 0), e);
 }
 
-// Sets an object's friction or surface velocity. Its contacts begin anew, so that those at rest on it are solved again.
-static void set_surface(const ob_population *p, const ob_request *r, const ob_state *now)
+// Carries out a request for an object that exists, and was valid when it came.
+static void change_object(ob_population *p, const ob_request *r)
 {
-	ob_passport pass = *ob_passport_of(p->u, r->id);
-	if (r->kind == OB_REQUEST_FRICTION)
-		pass.friction = r->friction;
-	else
-		pass.surface_velocity = r->surface_velocity;
-	ob_write_passport(p->u, r->id, &pass);
-	ob_sim_place_anew(p->u, r->id, now);
-}
-
-// Carries out a request that changes the motion of an object that exists.
-static void set_motion(ob_population *p, const ob_request *r)
-{
+	const uint32_t id = r->id, step = (uint32_t)ob_step_count(p->u);
+	const ob_state now = ob_state_now(p->u, id, ob_newest_motion(p->u, id), step),
+		       state = complete_state(&now, &r->state);
+	const ob_pull pull = ob_pull_of_request(r);
+	ob_passport pass = *ob_passport_of(p->u, id);
 	ob_error e;
 	if (!ob_population_check_change(p, r, &e)) {
-		ob_log_warn("a request was left out: %s", e.text); // valid when it came
-		return;
-	}
-	const ob_pull pull = ob_pull_of_request(r);
-	const ob_state now = ob_state_now(p->u, r->id, ob_newest_motion(p->u, r->id), ob_step_count(p->u)),
-		       state = complete_state(&now, &r->state);
-	if (ob_is_pull_request(r)) {
-		if (!ob_pulls_set(&p->pulls, &pull))
-			ob_log_warn("object %u is not pulled: too many pulls act, or there is no memory", r->id);
+		ob_log_warn("a request was left out: %s", e.text);
 		return;
 	}
 	if (r->kind == OB_REQUEST_FORCE || r->kind == OB_REQUEST_STATE || r->kind == OB_REQUEST_PATH)
-		end_plan(p, r->id);
-	if (r->kind == OB_REQUEST_PATH) {
-		if (!ob_given_paths_ask(&p->paths, r->id, (uint32_t)ob_step_count(p->u), &r->path, &now))
-			ob_log_warn("object %u goes on as it was: too many paths, or there is no memory", r->id);
-		return;
-	}
-	if (r->kind == OB_REQUEST_FORCE)
-		ob_sim_push(p->u, r->id, r->force, true);
-	else if (r->kind == OB_REQUEST_KICK)
-		ob_sim_kick(p->u, r->id, r->force, r->twist);
-	else if (r->kind == OB_REQUEST_FRICTION || r->kind == OB_REQUEST_SURFACE)
-		set_surface(p, r, &now);
-	else
-		ob_sim_place_anew(p->u, r->id, &state);
-}
-
-// Carries out a request for an object that exists.
-static void change_on_request(ob_population *p, const ob_request *r)
-{
-	ob_passport pass = *ob_passport_of(p->u, r->id);
+		end_plan(p, id);
 	if (r->kind == OB_REQUEST_REMOVE) {
-		remove_object(p, r->id);
+		remove_object(p, id);
 	} else if (r->kind == OB_REQUEST_MESSAGE) {
-		if (!ob_script_deliver(p->u, r->id, r->values, r->bytes))
+		if (!ob_script_deliver(p->u, id, r->values, r->bytes))
 			ob_log_warn("object \"%.*s\" got no message: too many wait for it", OB_NAME_MAX, pass.name);
 	} else if (r->kind == OB_REQUEST_COLOUR) {
 		memcpy(pass.colour, r->colour, sizeof pass.colour);
 		pass.flags &= ~(uint32_t)OB_OBJECT_MESH_COLOUR;
-		ob_write_passport(p->u, r->id, &pass);
+		ob_write_passport(p->u, id, &pass);
 	} else if (ob_is_joint_request(r)) {
 		ob_joint_request_carry_out(p->u, r);
-	} else {
-		set_motion(p, r);
+	} else if (ob_is_pull_request(r)) {
+		if (!ob_pulls_set(&p->pulls, &pull))
+			ob_log_warn("object %u is not pulled: too many pulls act, or there is no memory", id);
+	} else if (r->kind == OB_REQUEST_PATH) {
+		if (!ob_given_paths_ask(&p->paths, id, step, &r->path, &now))
+			ob_log_warn("object %u goes on as it was: too many paths, or there is no memory", id);
+	} else if (r->kind == OB_REQUEST_FORCE) {
+		ob_sim_push(p->u, id, r->force, true);
+	} else if (r->kind == OB_REQUEST_KICK) {
+		ob_sim_kick(p->u, id, r->force, r->twist);
+	} else if (r->kind == OB_REQUEST_STATE) {
+		ob_sim_place_anew(p->u, id, &state);
+	} else { // contacts begin anew, so that those at rest on it are solved again
+		pass.friction = r->kind == OB_REQUEST_FRICTION ? r->friction : pass.friction;
+		pass.surface_velocity = r->kind == OB_REQUEST_SURFACE ? r->surface_velocity : pass.surface_velocity;
+		ob_write_passport(p->u, id, &pass);
+		ob_sim_place_anew(p->u, id, &now);
 	}
 }
 
@@ -434,7 +414,7 @@ static bool is_as_requested(const ob_population *p, const ob_request *r)
 static void steer_for_script(ob_population *p, uint32_t cell, const ob_script_post *post)
 {
 	const uint32_t id = post->object;
-	ob_request r = { 0 };
+	ob_request r;
 	ob_error e;
 	if (ob_universe_step_data(p->u)->script_turn[cell].flags & OB_SCRIPT_STOPPED ||
 	    id >= ob_universe_capacity(p->u) || p->slots[id].generation != post->generation ||
@@ -446,7 +426,7 @@ static void steer_for_script(ob_population *p, uint32_t cell, const ob_script_po
 	if (!valid || !ob_population_check_change(p, &r, &e))
 		ob_script_request_refuse(p->u, cell, post->line, e.text);
 	else if (!is_as_requested(p, &r))
-		set_motion(p, &r);
+		change_object(p, &r);
 }
 
 static void carry_out_scripts(ob_population *p)
@@ -467,13 +447,14 @@ static void carry_out_scripts(ob_population *p)
 			at += (uint32_t)sizeof *post + post->bytes;
 			if (at > OB_SCRIPT_OUTBOX_BYTES || post->used > post->bytes)
 				break;
-			if (post->kind == OB_SCRIPT_CREATE)
+			if (post->kind == OB_REQUEST_ADD)
 				create_for_script(p, cell, post);
-			else if (post->kind == OB_SCRIPT_JOIN || post->kind == OB_SCRIPT_UNJOIN)
+			else if (post->kind == OB_REQUEST_JOIN || post->kind == OB_REQUEST_UNJOIN)
 				join_for_script(p, cell, post);
-			else if (post->kind >= OB_SCRIPT_STATE && post->kind < OB_SCRIPT_POST_KINDS)
+			else if (post->kind == OB_REQUEST_STATE || post->kind == OB_REQUEST_SURFACE ||
+				 post->kind == OB_REQUEST_PATH)
 				steer_for_script(p, cell, post);
-			else if (post->kind == OB_SCRIPT_REMOVE && post->object < capacity &&
+			else if (post->kind == OB_REQUEST_REMOVE && post->object < capacity &&
 				 p->slots[post->object].generation == post->generation)
 				remove_object(p, post->object);
 		}
@@ -586,7 +567,7 @@ static void carry_out_request(ob_population *p, const ob_request *r)
 		ob_pulls_release(&p->pulls, r->id, r->origin);
 	else if (r->id < ob_universe_capacity(p->u) && p->slots[r->id].generation == r->generation &&
 		 p->slots[r->id].use == SLOT_PRESENT)
-		change_on_request(p, r);
+		change_object(p, r);
 }
 
 // Carries out requests. After a restart, first those that were carried out before, in the same places; new ones wait until

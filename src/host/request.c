@@ -40,23 +40,34 @@ static bool check_new(const ob_host *h, ob_request *r, ob_error *e)
 	return true;
 }
 
-// Checks the target of a move: the worker numbers that a pool has for its number of objects.
-static bool check_move(const ob_universe *u, const ob_request *r, const ob_passport *p, ob_error *e)
+// Reads the passport of the request's object. false and e: it has gone.
+static bool find_object(const ob_host *h, const ob_request *r, ob_passport *p, ob_error *e)
 {
+	return (ob_universe_get_passport(h->u, r->id, p) && p->generation == r->generation) ||
+	       ob_fail(e, "the object has gone");
+}
+
+// Checks the target of a move: the worker numbers that a pool has for its number of objects.
+static bool check_move(const ob_host *h, ob_request *r, ob_error *e)
+{
+	const ob_universe *u = h->u;
+	ob_passport p;
 	const uint32_t simulators = ob_universe_simulators(u), ids = ob_universe_ids(u),
 		       workers = simulators < ids ? simulators : ids;
+	if (!find_object(h, r, &p, e))
+		return false;
 	if (ob_universe_settings(u)->monolith)
 		return ob_fail(e, "in the one ODE world no object has a simulator");
 	if (ob_universe_settings(u)->one_per_object)
 		return ob_fail(e, "each object has a worker of its own, and cannot move");
-	if (p->flags & (OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC | OB_OBJECT_FROZEN))
+	if (p.flags & (OB_OBJECT_STATIC | OB_OBJECT_KINEMATIC | OB_OBJECT_FROZEN))
 		return ob_fail(e, "object %u (%.*s) does not move by forces, and has no simulator", r->id, OB_NAME_MAX,
-			       p->name);
+			       p.name);
 	return r->worker < workers ||
 	       ob_fail(e, "there is no worker %u for objects: they are 0 to %u", r->worker, workers - 1);
 }
 
-static bool check_return(const ob_host *h, ob_error *e)
+static bool check_return(const ob_host *h, ob_request *r, ob_error *e)
 {
 	if (!h->returns)
 		return ob_fail(e, "this run cannot be put back on request: obsim serve can, without --record, and a "
@@ -112,16 +123,8 @@ static bool check_wish(const ob_host *h, ob_request *r, ob_error *e)
 	return r->kind == OB_REQUEST_SEED || check_parameter(h->scene, text, e);
 }
 
-// Checks a request to the universe as a whole, or to the origin's pulls.
-static bool check_whole(const ob_host *h, ob_request *r, ob_error *e)
-{
-	if (r->kind >= OB_REQUEST_SET && r->kind <= OB_REQUEST_SAVE)
-		return check_wish(h, r, e);
-	return r->kind == OB_REQUEST_RELEASE || check_return(h, e);
-}
-
 // Checks a request about time.
-static bool check_time(const ob_host *h, const ob_request *r, ob_error *e)
+static bool check_time(const ob_host *h, ob_request *r, ob_error *e)
 {
 	const double now = (double)ob_step_count(h->u) * ob_universe_settings(h->u)->step_length;
 	if (!h->pace)
@@ -136,9 +139,12 @@ static bool check_time(const ob_host *h, const ob_request *r, ob_error *e)
 	return ob_request_check_bounds(r, ob_request_row_of(r->kind), e);
 }
 
-static bool check_kill(const ob_host *h, const ob_request *r, const ob_passport *p, ob_error *e)
+static bool check_kill(const ob_host *h, ob_request *r, ob_error *e)
 {
 	uint32_t worker;
+	ob_passport p;
+	if (!find_object(h, r, &p, e))
+		return false;
 	if (!h->spawn->own_memory)
 		return ob_fail(
 			e, "simulators are threads of one process, which cannot be killed alone: start the run with "
@@ -147,55 +153,46 @@ static bool check_kill(const ob_host *h, const ob_request *r, const ob_passport 
 		return ob_fail(e, "the one ODE world is one simulator, without which the run ends");
 	return ob_universe_get_home(h->u, r->id, &worker) ||
 	       ob_fail(e, "object %u (%.*s) has no simulator: no force moves it, or it was not solved yet", r->id,
-		       OB_NAME_MAX, p->name);
+		       OB_NAME_MAX, p.name);
 }
 
-bool ob_request_check(const ob_host *h, ob_request *r, ob_error *e)
+static bool check_change(const ob_host *h, ob_request *r, ob_error *e)
 {
 	ob_passport p;
-	if (r->kind >= OB_REQUEST_KINDS)
-		return ob_fail(e, "unknown request");
-	if (r->kind != OB_REQUEST_MOVE && ob_universe_ranks(h->u) > 1)
-		return ob_fail(e, "on several ranks, objects can only be moved");
-	if (r->kind == OB_REQUEST_ADD)
-		return check_new(h, r, e);
-	if (r->kind == OB_REQUEST_AVATAR)
-		return ob_population_check_avatar(h->population, r, &(ob_object_def){ 0 }, e);
-	if (r->kind >= OB_REQUEST_PAUSE)
-		return check_time(h, r, e);
-	if (r->kind >= OB_REQUEST_KEEP || r->kind == OB_REQUEST_RELEASE)
-		return check_whole(h, r, e);
-	if (!ob_universe_get_passport(h->u, r->id, &p) || p.generation != r->generation)
-		return ob_fail(e, "the object has gone");
+	if (!find_object(h, r, &p, e))
+		return false;
 	if (r->kind == OB_REQUEST_COLOUR && !is_colour(r->colour))
 		return ob_fail(e, "a colour has parts from 0 to 1, and is opaque: alpha is 1");
 	if (r->kind == OB_REQUEST_MESSAGE && (r->bytes > sizeof r->values || !ob_script_turn_of(h->u, r->id)))
 		return ob_fail(e, "object %u (%.*s) has no script to send a message to", r->id, OB_NAME_MAX, p.name);
-	if (r->kind == OB_REQUEST_MOVE)
-		return check_move(h->u, r, &p, e);
-	if (r->kind == OB_REQUEST_KILL)
-		return check_kill(h, r, &p, e);
 	return ob_population_check_change(h->population, r, e);
 }
 
-static bool request(ob_host *h, const ob_request *r)
+static bool check_avatar(const ob_host *h, ob_request *r, ob_error *e)
 {
-	if (!ob_requests_push(h->requests, r))
+	return ob_population_check_avatar(h->population, r, &(ob_object_def){ 0 }, e);
+}
+
+// ---- where they are carried out
+
+bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e)
+{
+	if (r->kind == OB_REQUEST_ADD && !ob_object_check(&r->def, e))
 		return false;
+	if (!ob_requests_push(h->requests, r))
+		return ob_fail(e, "out of memory");
 	ob_host_pause_early(h);
 	return true;
 }
 
-bool ob_host_request_add(ob_host *h, const ob_object_def *def, ob_error *e)
+static bool operate(ob_host *h, const ob_request *r, ob_error *e)
 {
-	return ob_object_check(def, e) &&
-	       (request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = *def }) || ob_fail(e, "out of memory"));
+	return ob_requests_push(h->operations, r) || ob_fail(e, "out of memory");
 }
 
-bool ob_host_request(ob_host *h, const ob_request *r, ob_error *e)
+static bool wish(ob_host *h, const ob_request *r, ob_error *e)
 {
-	return (r->kind != OB_REQUEST_ADD || ob_object_check(&r->def, e)) &&
-	       (request(h, r) || ob_fail(e, "out of memory"));
+	return ob_requests_push(h->wishes, r) || ob_fail(e, "out of memory");
 }
 
 static bool move(ob_host *h, const ob_request *r, ob_error *e)
@@ -211,52 +208,62 @@ static bool kill_simulator(ob_host *h, const ob_request *r, ob_error *e)
 	       ob_fail(e, "the simulator of object %u has gone", r->id);
 }
 
-// Carries out a request about time. The run is not paused for it: its leader waits for the pace.
-static void lead_time(ob_host *h, const ob_request *r)
+// The run is not paused for it: its leader waits for the pace.
+static bool lead_time(ob_host *h, const ob_request *r, ob_error *e)
 {
 	const double length = ob_universe_settings(h->u)->step_length;
-	switch (r->kind) {
-	case OB_REQUEST_STEP:
+	if (r->kind == OB_REQUEST_STEP)
 		ob_pace_allow(h->pace, r->steps);
-		break;
-	case OB_REQUEST_UNTIL:
+	else if (r->kind == OB_REQUEST_UNTIL)
 		ob_pace_run_until(h->pace, (uint64_t)fmin(ceil(r->until / length - 1e-6), 1e18));
-		break;
-	case OB_REQUEST_RATE:
+	else if (r->kind == OB_REQUEST_RATE)
 		ob_pace_set_rate(h->pace, r->rate > 0 ? r->rate : OB_PACE_MAX);
-		break;
-	default:
+	else
 		ob_pace_set_paused(h->pace, r->kind == OB_REQUEST_PAUSE);
-	}
+	return true;
+}
+
+// Check and deed of a kind. Others change an object: the population carries them out.
+static const struct deed {
+	bool (*check)(const ob_host *h, ob_request *r, ob_error *e); // NULL: always valid
+	bool (*carry_out)(ob_host *h, const ob_request *r, ob_error *e);
+} deeds[OB_REQUEST_KINDS] = {
+	[OB_REQUEST_ADD] = { check_new, ob_host_request },
+	[OB_REQUEST_AVATAR] = { check_avatar, ob_host_request },
+	[OB_REQUEST_RELEASE] = { NULL, ob_host_request },
+	[OB_REQUEST_MOVE] = { check_move, move },
+	[OB_REQUEST_KILL] = { check_kill, kill_simulator },
+	[OB_REQUEST_KEEP] = { check_return, operate },
+	[OB_REQUEST_RETURN] = { check_return, operate },
+	[OB_REQUEST_RESTART] = { check_return, operate },
+	[OB_REQUEST_SET] = { check_wish, wish },
+	[OB_REQUEST_SEED] = { check_wish, wish },
+	[OB_REQUEST_SAVE] = { check_wish, wish },
+	[OB_REQUEST_PAUSE] = { check_time, lead_time },
+	[OB_REQUEST_RESUME] = { check_time, lead_time },
+	[OB_REQUEST_STEP] = { check_time, lead_time },
+	[OB_REQUEST_UNTIL] = { check_time, lead_time },
+	[OB_REQUEST_RATE] = { check_time, lead_time },
+};
+
+static struct deed deed_of(const ob_request *r)
+{
+	return deeds[r->kind].carry_out ? deeds[r->kind] : (struct deed){ check_change, ob_host_request };
+}
+
+bool ob_request_check(const ob_host *h, ob_request *r, ob_error *e)
+{
+	if (r->kind >= OB_REQUEST_KINDS)
+		return ob_fail(e, "unknown request");
+	if (r->kind != OB_REQUEST_MOVE && ob_universe_ranks(h->u) > 1)
+		return ob_fail(e, "on several ranks, objects can only be moved");
+	const struct deed deed = deed_of(r);
+	return !deed.check || deed.check(h, r, e);
 }
 
 bool ob_host_ask(ob_host *h, ob_request *r, ob_error *e)
 {
-	if (!ob_request_check(h, r, e))
-		return false;
-	switch (r->kind) {
-	case OB_REQUEST_MOVE:
-		return move(h, r, e);
-	case OB_REQUEST_KILL:
-		return kill_simulator(h, r, e);
-	case OB_REQUEST_KEEP:
-	case OB_REQUEST_RETURN:
-	case OB_REQUEST_RESTART:
-		return ob_requests_push(h->operations, r) || ob_fail(e, "out of memory");
-	case OB_REQUEST_SET:
-	case OB_REQUEST_SEED:
-	case OB_REQUEST_SAVE:
-		return ob_requests_push(h->wishes, r) || ob_fail(e, "out of memory");
-	case OB_REQUEST_PAUSE:
-	case OB_REQUEST_RESUME:
-	case OB_REQUEST_STEP:
-	case OB_REQUEST_UNTIL:
-	case OB_REQUEST_RATE:
-		lead_time(h, r);
-		return true;
-	default:
-		return ob_host_request(h, r, e);
-	}
+	return ob_request_check(h, r, e) && deed_of(r).carry_out(h, r, e);
 }
 
 bool ob_host_ask_as(ob_host *h, ob_role role, ob_request *r, ob_error *e)
@@ -275,5 +282,6 @@ bool ob_host_ask_as(ob_host *h, ob_role role, ob_request *r, ob_error *e)
 
 bool ob_host_request_remove(ob_host *h, uint32_t id, uint32_t generation)
 {
-	return request(h, &(ob_request){ .kind = OB_REQUEST_REMOVE, .id = id, .generation = generation });
+	ob_error e;
+	return ob_host_request(h, &(ob_request){ .kind = OB_REQUEST_REMOVE, .id = id, .generation = generation }, &e);
 }

@@ -198,6 +198,17 @@ void ob_request_put(ob_request *r, const ob_request_field *f, uint32_t i, double
 	}
 }
 
+uint32_t ob_request_put_numbers(ob_request *r, const double *value, uint32_t n)
+{
+	uint32_t at = 0;
+	for (const ob_request_row *row = ob_request_row_of(r->kind); row->kind == r->kind; row++)
+		for (const ob_request_field *f = row->field; f->name; f++)
+			for (uint32_t i = 0; i < f->count; i++, at++)
+				if (at < n && (value[at] != 0 || !f->optional))
+					ob_request_put(r, f, i, value[at]);
+	return at;
+}
+
 bool ob_request_check_bounds(const ob_request *r, const ob_request_row *row, ob_error *e)
 {
 	for (const ob_request_field *f = row->field; f->name; f++) {

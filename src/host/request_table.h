@@ -77,6 +77,12 @@ const ob_request_row *ob_request_row_of_control(uint32_t command);
 void ob_request_begin(ob_request *r, const ob_request_row *row);
 // Sets the i-th number of a field; one that its member cannot hold becomes the largest.
 void ob_request_put(ob_request *r, const ob_request_field *f, uint32_t i, double value);
+// Reads a field from words, which NULL ends, and returns the next one. NULL and e, which begins with `what`: they are wrong.
+typedef const char *const *ob_words;
+ob_words ob_request_read_field(ob_request *r, const ob_request_field *f, ob_words word, const char *what, ob_error *e);
+// Sets the numbers of all fields of the request's kind, as programs and scripts have them: in the order of the table. A zero leaves
+// an optional field as it is. Returns how many there are, whichever are given.
+uint32_t ob_request_put_numbers(ob_request *r, const double *value, uint32_t n);
 // Checks fields of a row that have bounds: e is as "rate: expected from 0 to 1000000, got -1".
 bool ob_request_check_bounds(const ob_request *r, const ob_request_row *row, ob_error *e);
 // Writes a row as a line of help has it: "push OBJECT X Y Z [POINT-X POINT-Y POINT-Z]".

@@ -3,28 +3,23 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "host/request_table.h"
+
 bool ob_script_request_read(const ob_script_post *post, ob_request *r)
 {
-	const ob_script_path *path = (const ob_script_path *)(const void *)(post + 1);
+	const void *const contents = post + 1;
+	const ob_script_path *path = contents;
+	const uint32_t numbers = post->used / sizeof(double);
+	ob_request_begin(r, ob_request_row_of(post->kind));
 	r->id = post->object, r->generation = post->generation;
-	if (post->kind == OB_SCRIPT_STATE && post->used == sizeof r->state) {
-		r->kind = OB_REQUEST_STATE;
-		memcpy(&r->state, post + 1, sizeof r->state);
-		return true;
-	}
-	if (post->kind == OB_SCRIPT_SURFACE && post->used == sizeof r->surface_velocity) {
-		r->kind = OB_REQUEST_SURFACE;
-		memcpy(&r->surface_velocity, post + 1, sizeof r->surface_velocity);
-		return true;
-	}
-	if (post->kind != OB_SCRIPT_PATH || post->used < sizeof *path)
-		return false;
+	if (r->kind != OB_REQUEST_PATH)
+		return post->used == numbers * sizeof(double) &&
+		       ob_request_put_numbers(r, contents, numbers) == numbers;
 	const size_t bytes = post->used - sizeof *path;
-	r->kind = OB_REQUEST_PATH;
+	if (post->used < sizeof *path || bytes > sizeof r->path.point)
+		return false;
 	r->path.points = (uint32_t)(bytes / sizeof *path->point);
 	r->path.loop = path->loop, r->path.turns = path->turns;
-	if (bytes > sizeof r->path.point)
-		return false;
 	memcpy(r->path.point, path->point, bytes);
 	return true;
 }

@@ -5,7 +5,7 @@
 #include "host/request.h"
 #include "table/table.h"
 
-// Makes a request, all zero before, from a script's post to steer its object. false: it makes no sense.
+// Makes a request from a script's post to steer its object. false: it makes no sense.
 bool ob_script_request_read(const ob_script_post *post, ob_request *r);
 // Stops the script of a cell after an invalid request at this line, with an error that explains it.
 void ob_script_request_refuse(ob_universe *u, uint32_t cell, uint32_t line, const char *why);

@@ -378,7 +378,7 @@ static int call_wake(lua_State *L)
 
 // ---- requests for the step's end: messages, creations, removals
 
-static ob_script_post *begin_post(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, uint32_t id,
+static ob_script_post *begin_post(lua_State *L, const ob_script_runner *r, ob_request_kind kind, uint32_t id,
 				  uint32_t generation)
 {
 	ob_script_cell *c = r->cell;
@@ -408,7 +408,7 @@ static void end_post(const ob_script_runner *r, ob_script_post *post, const ob_f
 }
 
 // Appends the contents of a post to the outbox.
-static void post(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, uint32_t id, uint32_t generation,
+static void post(lua_State *L, const ob_script_runner *r, ob_request_kind kind, uint32_t id, uint32_t generation,
 		 const void *contents, size_t size)
 {
 	ob_script_post *p = begin_post(L, r, kind, id, generation);
@@ -427,7 +427,7 @@ static int call_send(lua_State *L)
 	const ob_flat_object *to = luaL_testudata(L, 1, OB_FLAT_OBJECT);
 	if (!to)
 		ob_sandbox_fail(L, "send: expected an object to send to, as in send(find(\"lift\"), \"up\")");
-	ob_script_post *post = begin_post(L, r, OB_SCRIPT_MESSAGE, to->id, to->generation);
+	ob_script_post *post = begin_post(L, r, OB_REQUEST_MESSAGE, to->id, to->generation);
 	ob_flat f = rest_of(r->cell);
 	for (int i = 2; i <= values; i++)
 		ob_flat_put(L, i, &f, "send");
@@ -444,7 +444,7 @@ static int call_remove(lua_State *L)
 		return 0;
 	}
 	ob_flat none = rest_of(r->cell);
-	ob_script_post *post = begin_post(L, r, OB_SCRIPT_REMOVE, o->id, o->generation);
+	ob_script_post *post = begin_post(L, r, OB_REQUEST_REMOVE, o->id, o->generation);
 	end_post(r, post, &none);
 	return 0;
 }
@@ -488,7 +488,7 @@ static int call_create(lua_State *L)
 				kind);
 	if (!named)
 		snprintf(def->passport.name, sizeof def->passport.name, "%s#", kind); // the host appends its id
-	ob_script_post *post = begin_post(L, r, OB_SCRIPT_CREATE, 0, 0);
+	ob_script_post *post = begin_post(L, r, OB_REQUEST_ADD, 0, 0);
 	ob_flat f = rest_of(r->cell);
 	const ob_hull_corners *corners = r->scene.hulls ? &r->scene.hull_corners[0] : NULL;
 	const size_t corners_bytes = corners ? corners->count * sizeof *corners->at : 0;
@@ -520,8 +520,7 @@ static ob_script_runner *steered(lua_State *L, const char *call, bool or_static)
 	return r;
 }
 
-static void post_own(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, const void *contents,
-		     size_t size)
+static void post_own(lua_State *L, const ob_script_runner *r, ob_request_kind kind, const void *contents, size_t size)
 {
 	post(L, r, kind, r->turn->object, r->turn->generation, contents, size);
 }
@@ -530,7 +529,7 @@ static void post_own(lua_State *L, const ob_script_runner *r, ob_script_post_kin
 static int post_state(lua_State *L, const ob_script_runner *r, ob_vec3 v, ob_vec3 w)
 {
 	const ob_state s = { { { NAN, NAN, NAN }, { NAN, NAN, NAN, NAN } }, v, w };
-	post_own(L, r, OB_SCRIPT_STATE, &s, sizeof s);
+	post_own(L, r, OB_REQUEST_STATE, &s, sizeof s);
 	return 0;
 }
 
@@ -555,7 +554,7 @@ static int call_set_surface_velocity(lua_State *L)
 	const ob_script_runner *r = steered(L, "set_surface_velocity", true);
 	ob_vec3 v;
 	vector_at(L, 2, "set_surface_velocity", OB_SPEED_MOST, &v);
-	post_own(L, r, OB_SCRIPT_SURFACE, &v, sizeof v);
+	post_own(L, r, OB_REQUEST_SURFACE, &v, sizeof v);
 	return 0;
 }
 
@@ -580,7 +579,7 @@ static int call_set_path(lua_State *L)
 	ob_script_path *p = lua_newuserdatauv(L, sizeof *p + bytes, 0);
 	p->loop = path.loop, p->turns = turns;
 	memcpy(p->point, point, bytes);
-	post_own(L, r, OB_SCRIPT_PATH, p, sizeof *p + bytes);
+	post_own(L, r, OB_REQUEST_PATH, p, sizeof *p + bytes);
 	return 0;
 }
 
@@ -670,7 +669,7 @@ static int call_joint_load(lua_State *L)
 	return 6;
 }
 
-static void post_joint(lua_State *L, const ob_script_runner *r, ob_script_post_kind kind, const ob_joint_passport *j,
+static void post_joint(lua_State *L, const ob_script_runner *r, ob_request_kind kind, const ob_joint_passport *j,
 		       const void *contents, size_t size)
 {
 	post(L, r, kind, j->object[0], j->generation[0], contents, size);
@@ -686,7 +685,7 @@ static int call_motor(lua_State *L)
 	const ob_joint_passport *j = &r->data->joint[m.joint];
 	if (j->axis.motor == OB_MOTOR_NONE)
 		ob_sandbox_fail(L, "motor: joint \"%s\" has none", j->name);
-	post_joint(L, r, OB_SCRIPT_MOTOR, j, &m, sizeof m);
+	post_joint(L, r, OB_REQUEST_MOTOR, j, &m, sizeof m);
 	return 0;
 }
 
@@ -714,7 +713,7 @@ static int call_join(lua_State *L)
 	r->scene.joints = 0;
 	ob_sandbox_spend(L, 500 + ob_universe_ids(r->u) / NAMES_PER_INSTRUCTION);
 	ob_scene_call_joint(L);
-	post_joint(L, r, OB_SCRIPT_JOIN, &r->scene.joint[0], &r->scene.joint[0], sizeof r->scene.joint[0]);
+	post_joint(L, r, OB_REQUEST_JOIN, &r->scene.joint[0], &r->scene.joint[0], sizeof r->scene.joint[0]);
 	return 0;
 }
 
@@ -724,7 +723,7 @@ static int call_unjoin(lua_State *L)
 	const uint32_t joint = find_joint(L, r, "unjoin", true);
 	const ob_joint_passport *j = joint == UINT32_MAX ? NULL : &r->data->joint[joint];
 	if (j)
-		post_joint(L, r, OB_SCRIPT_UNJOIN, j, j, sizeof *j);
+		post_joint(L, r, OB_REQUEST_UNJOIN, j, j, sizeof *j);
 	return 0;
 }
 

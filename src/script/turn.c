@@ -35,7 +35,7 @@ void ob_script_stop_turn(ob_script_runner *r, ob_script_turn *t, const ob_error 
 void ob_script_leave(ob_script_runner *r)
 {
 	ob_script_cell *c = r->cell;
-	const ob_script_post post = { .kind = OB_SCRIPT_REMOVE,
+	const ob_script_post post = { .kind = OB_REQUEST_REMOVE,
 				      .object = r->turn->object,
 				      .generation = r->turn->generation };
 	if (c->outbox_bytes + sizeof post > OB_SCRIPT_OUTBOX_BYTES)

@@ -247,7 +247,7 @@ static void remove_object(ob_step_data *data, const ob_script_turn *from, ob_scr
 	ob_script_turn *to = cell ? &data->script_turn[cell - 1] : NULL;
 	if (to && to != from && to->generation == post->generation && !(to->flags & OB_SCRIPT_STOPPED)) {
 		to->flags |= OB_SCRIPT_LEAVING;
-		post->kind = OB_SCRIPT_MESSAGE, post->bytes = 0, post->generation = 0; // it has no receiver
+		post->kind = OB_REQUEST_MESSAGE, post->bytes = 0, post->generation = 0; // it has no receiver
 		return;
 	}
 	data->script_counts->requests++;
@@ -278,11 +278,11 @@ static bool post_all(const ob_sim *s, const ob_script_turn *from, ob_script_cell
 	for (uint32_t at = 0; at + sizeof(ob_script_post) <= c->outbox_bytes;) {
 		ob_script_post *post = (ob_script_post *)(void *)(c->outbox + at);
 		at += (uint32_t)sizeof *post + post->bytes;
-		if (post->kind == OB_SCRIPT_MESSAGE)
+		if (post->kind == OB_REQUEST_MESSAGE)
 			deliver(data, from, post);
-		else if (post->kind == OB_SCRIPT_REMOVE)
+		else if (post->kind == OB_REQUEST_REMOVE)
 			remove_object(data, from, post);
-		else if (post->kind == OB_SCRIPT_MOTOR)
+		else if (post->kind == OB_REQUEST_MOTOR)
 			wakes |= set_motor(s, post);
 		else
 			data->script_counts->requests++;

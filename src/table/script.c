@@ -83,7 +83,7 @@ bool ob_script_deliver(ob_universe *u, uint32_t id, const void *values, uint32_t
 	ob_script_turn *turn = &data->script_turn[data->script_of[id] - 1];
 	ob_script_cell *c = &data->script_cell[data->script_of[id] - 1];
 	const ob_script_post mail = {
-		.kind = OB_SCRIPT_MESSAGE, .bytes = (bytes + 7) / 8 * 8, .used = bytes, .object = UINT32_MAX
+		.kind = OB_REQUEST_MESSAGE, .bytes = (bytes + 7) / 8 * 8, .used = bytes, .object = UINT32_MAX
 	};
 	if (turn->flags & OB_SCRIPT_STOPPED)
 		return true;

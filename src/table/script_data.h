@@ -14,6 +14,8 @@
 
 #include <ob/universe.h>
 
+#include "table/request_kind.h"
+
 enum {
 	OB_SCRIPTS_MAX = 64, // texts of a universe
 	OB_SCRIPT_STATE_BYTES = 1024, // maximum of an object's state
@@ -72,25 +74,16 @@ typedef struct ob_script_cell {
 	unsigned char state[OB_SCRIPT_STATE_BYTES], inbox[OB_SCRIPT_INBOX_BYTES], outbox[OB_SCRIPT_OUTBOX_BYTES];
 } ob_script_cell;
 
-// Record of an outbox, one after the other; in an inbox, the same with the sender in place of the addressee. Contents:
-// the values of a message; nothing; an ob_object_def, the state of its script, and the corners of a hull; an
-// ob_script_motor; an ob_joint_passport; the same, of the joint that is to go; an ob_state, with NaN in parts that stay as
-// they are; an ob_script_path; an ob_vec3, m/s, body frame.
-typedef enum ob_script_post_kind {
-	OB_SCRIPT_MESSAGE,
-	OB_SCRIPT_REMOVE,
-	OB_SCRIPT_CREATE,
-	OB_SCRIPT_MOTOR,
-	OB_SCRIPT_JOIN,
-	OB_SCRIPT_UNJOIN,
-	OB_SCRIPT_STATE, // of the script's own object, which is kinematic; likewise:
-	OB_SCRIPT_PATH,
-	OB_SCRIPT_SURFACE, // or static
-	OB_SCRIPT_POST_KINDS
-} ob_script_post_kind;
-
+// Record of an outbox, one after the other; in an inbox, the same with the sender in place of the addressee. Contents by kind:
+//
+//   MESSAGE                values (scene/flat.h)
+//   ADD                    an ob_object_def, the state of its script, and the corners of a hull
+//   MOTOR                  an ob_script_motor
+//   JOIN, UNJOIN           an ob_joint_passport, of the joint that is to come or to go
+//   STATE, SURFACE, PATH   of the script's own object: the numbers of the request's fields (host/request_table.h), or an ob_script_path
+//   REMOVE                 nothing
 typedef struct ob_script_post {
-	uint32_t kind; // ob_script_post_kind
+	uint32_t kind; // ob_request_kind
 	uint32_t bytes; // length of the contents, in whole words of 8: `used` of them are valid
 	uint32_t used, line; // line: place of the request in the script
 	uint32_t object, generation; // addressee, or object to be removed

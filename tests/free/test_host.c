@@ -86,7 +86,8 @@ static void test_requests(ob_isolation isolation)
 	CHECK(h && reach(h, 5));
 	if (!h)
 		return;
-	CHECK(ob_host_request_add(h, &more, &e) && ob_host_request_remove(h, 1, 1));
+	CHECK(ob_host_request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = more }, &e) &&
+	      ob_host_request_remove(h, 1, 1));
 	bool done = false;
 	for (uint64_t step = 6; step < 2000 && !done; step += 20) {
 		CHECK(reach(h, step));

@@ -53,7 +53,7 @@ static void *come(void *argument)
 	ob_error e;
 	while (ob_host_get_deaths(n->h, deaths) == 0)
 		;
-	CHECK(ob_host_request_add(n->h, &n->def, &e));
+	CHECK(ob_host_request(n->h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = n->def }, &e));
 	return NULL;
 }
 

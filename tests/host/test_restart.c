@@ -185,10 +185,10 @@ static uint64_t end_of_requests(const ob_scene *s, bool kills, bool early, unsig
 			CHECK(ob_restart(h) && steps_of(h) <= step);
 			h->started = steps_of(h) > 0;
 		}
-		CHECK(ob_host_request_add(h, &d, &e));
+		CHECK(ob_host_request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = d }, &e));
 		if (!early)
 			ob_host_go(h, step); // a pause of its own
-		CHECK(ob_host_request_add(h, &near, &e));
+		CHECK(ob_host_request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = near }, &e));
 		if (there)
 			ob_host_request_remove(h, p.id, p.generation);
 		ob_host_go(h, step + 1);
@@ -307,7 +307,8 @@ static void test_frozen_newcomer(ob_isolation isolation)
 		CHECK(ob_host_wait(h, &e));
 		wild.state.pose.p.x += 2;
 		for (int i = 0; i < 3; i++) {
-			CHECK(ob_host_request_add(h, i < 2 ? &guest : &wild, &e));
+			CHECK(ob_host_request(
+				h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = *(i < 2 ? &guest : &wild) }, &e));
 			ob_host_go(h, step); // a pause of its own
 			CHECK(ob_host_wait(h, &e));
 		}

@@ -110,7 +110,8 @@ static void *ask(void *argument)
 {
 	asker *a = argument;
 	pause_ms(30);
-	bool ok = ob_host_request_add(a->h, &a->def, NULL) && ob_host_request_remove(a->h, 1, 1);
+	bool ok = ob_host_request(a->h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = a->def }, NULL) &&
+		  ob_host_request_remove(a->h, 1, 1);
 	for (int i = 0; i < 500; i++) { // removes no object, but makes the run pause at its next step
 		ok = ok && ob_host_request_remove(a->h, 12345, 1);
 		pause_us(i);
@@ -130,7 +131,7 @@ static void test_requests(ob_isolation isolation, uint32_t workers)
 	ob_host *h = start(&s, &c);
 	asker a = { h, ball("newcomer", 20, 20, 3) };
 	ob_object_def nonsense = ball("nonsense", NAN, 0, 0);
-	CHECK(!ob_host_request_add(h, &nonsense, NULL));
+	CHECK(!ob_host_request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = nonsense }, NULL));
 	CHECK(reach(h, 0));
 	pthread_create(&thread, NULL, ask, &a);
 	CHECK(reach(h, workers ? 40000 : 4000));
@@ -141,7 +142,8 @@ static void test_requests(ob_isolation isolation, uint32_t workers)
 	CHECK(entry.own_worker == !workers);
 	CHECK(!is_there(h, 1) && is_there(h, 2));
 	a.def = ball("second", 30, 0, 3); // gets the slot of ball 1
-	CHECK(ob_host_request_add(h, &a.def, NULL) && reach(h, steps_of(h) + 1));
+	CHECK(ob_host_request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = a.def }, NULL) &&
+	      reach(h, steps_of(h) + 1));
 	CHECK(ob_roster_find_name(ob_host_roster(h), "second", &entry) && entry.id == 1 && entry.generation == 2);
 	CHECK(ob_roster_copy(ob_host_roster(h), &entry, 1) == 4 && !strcmp(entry.name, "ground"));
 	ob_host_stop(h);

@@ -175,7 +175,7 @@ static outcome visit(bool killed)
 	go(h, 1);
 	h->restart.cost = 1e9; // no checkpoint from now on
 	ob_host_go(h, 3);
-	CHECK(ob_host_request_add(h, &guest, &e) && ob_host_wait(h, &e));
+	CHECK(ob_host_request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = guest }, &e) && ob_host_wait(h, &e));
 	if (killed && ob_universe_get_worker(ob_host_universe(h), 0, &info))
 		kill(info.pid, SIGKILL);
 	while (killed && !h->restart.requested)

@@ -54,7 +54,7 @@ static void create(run *r, uint64_t *seed)
 	d.state.pose.p.z += 1.5;
 	if (!(p->flags & OB_OBJECT_STATIC))
 		d.state.v = ob_splitmix_vector(seed, 3);
-	ob_host_request_add(r->h, &d, &r->e);
+	ob_host_request(r->h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = d }, &r->e);
 }
 
 static void remove_any(run *r, uint64_t *seed)

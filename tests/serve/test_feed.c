@@ -209,7 +209,7 @@ int main(void)
 	for (uint64_t step = 1; step <= 400; step++) {
 		ob_object_def newcomer = ball("newcomer", .1, .1, 2.5);
 		if (step == 100)
-			CHECK(ob_host_request_add(h, &newcomer, &e));
+			CHECK(ob_host_request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = newcomer }, &e));
 		if (step == 150)
 			CHECK(ob_host_request_remove(h, 5, 1) &&
 			      ob_host_request_remove(h, 6, 7)); // no object of generation 7 exists
