@@ -22,7 +22,7 @@ typedef struct sending {
 	const char *universe;
 	ob_universe *u;
 	const ob_request_row *row;
-	const char *const *word; // after the verb; NULL ends
+	ob_words word; // after the verb
 	ob_request request;
 } sending;
 
@@ -60,141 +60,12 @@ static bool find_target(sending *s, ob_error *e)
 					   : find_object(s, s->word[0], e);
 }
 
-// ---- fields: each takes some words, and returns the next; NULL and e: they are wrong
-
-typedef const char *const *words;
-
-static words read_numbers(sending *s, const ob_request_field *f, words word, ob_error *e)
-{
-	static const char *const some[] = { "", "a number", "", "three numbers after the object",
-					    "four numbers after the object" };
-	for (uint32_t i = 0; i < f->count; i++, word++) {
-		char *end;
-		const char *text = *word ? *word : "";
-		ob_request_put(&s->request, f, i, strtod(text, &end));
-		if (!*text || *end) {
-			ob_fail(e, "%s: expected %s, got \"%s\"", s->row->verb, some[f->count], text);
-			return NULL;
-		}
-	}
-	return word;
-}
-
-static bool read_whole(const sending *s, const ob_request_field *f, const char *word, uint64_t most, uint64_t *out,
-		       ob_error *e)
-{
-	char *end;
-	errno = 0;
-	*out = strtoull(word, &end, 10);
-	return (strspn(word, "0123456789") > 0 && !*end && !errno && *out <= most) ||
-	       ob_fail(e, "%s: expected %s, got \"%s\"", s->row->verb, f->unit, word);
-}
-
-// Appends text to a member of so many bytes, with the 0 that ends it.
-static bool append(const sending *s, char *to, size_t room, const char *text, ob_error *e)
-{
-	const size_t have = strlen(to);
-	return snprintf(to + have, room - have, "%s", text) < (int)(room - have) ||
-	       ob_fail(e, "%s: expected at most %zu bytes in all", s->row->verb, room - 1);
-}
-
-static words read_values(sending *s, words word, ob_error *e)
-{
-	ob_request *r = &s->request;
-	for (; *word; word++)
-		if (!ob_scene_put_value(*word, r->values, &r->bytes, sizeof r->values)) {
-			ob_fail(e, "message: at most %zu bytes can be sent", sizeof r->values);
-			return NULL;
-		}
-	return word;
-}
-
-// Reads a point of a path from one word: "T X Y Z", or "T X Y Z QW QX QY QZ", as the first one has it.
-static bool read_point(const char *word, ob_request_path *path, ob_error *e)
-{
-	enum { PLACED = 4, TURNED = 8 };
-	double x[TURNED] = { [PLACED] = 1 };
-	int n = 0;
-	const char *at = word;
-	for (char *end; n < TURNED; n++, at = end) {
-		x[n] = strtod(at, &end);
-		if (end == at)
-			break;
-	}
-	const bool turns = n == TURNED;
-	if (at[strspn(at, " ")] || (n != PLACED && !turns) || (path->points > 0 && turns != path->turns))
-		return ob_fail(e,
-			       "path: expected points as '1.5 0 0 2' or, each of them, '1.5 0 0 2 1 0 0 0', got \"%s\"",
-			       word);
-	if (path->points == OB_REQUEST_POINTS)
-		return ob_fail(e, "path: expected at most %d points", OB_REQUEST_POINTS);
-	path->turns = turns;
-	path->point[path->points++] = (ob_path_point){ x[0], ob_v3(x[1], x[2], x[3]), { x[4], x[5], x[6], x[7] } };
-	return true;
-}
-
-// Reads points up to the last word, or to the one before it that says "loop".
-static words read_points(sending *s, words word, ob_error *e)
-{
-	for (; *word && (word[1] || strcmp(*word, "loop") != 0); word++)
-		if (!read_point(*word, &s->request.path, e))
-			return NULL;
-	return word;
-}
-
-// Reads "NUMBER" as "=NUMBER" behind the name.
-static bool read_assigned(sending *s, const char *word, ob_error *e)
-{
-	char *end, *const to = (char *)s->request.values;
-	(void)strtod(word, &end);
-	if (!*word || *end)
-		return ob_fail(e, "%s: expected a number, got \"%s\"", s->row->verb, word);
-	return append(s, to, sizeof s->request.values, "=", e) && append(s, to, sizeof s->request.values, word, e);
-}
-
-static words read_field(sending *s, const ob_request_field *f, words word, ob_error *e)
-{
-	char *const to = (char *)&s->request + f->at;
-	uint64_t whole = 0;
-	bool fine = true;
-	switch (f->type) {
-	case OB_AS_WORDS:
-		return read_values(s, word, e);
-	case OB_AS_PATH:
-		return read_points(s, word, e);
-	case OB_AS_COLOUR:
-		fine = ob_scene_read_colour(*word, s->request.colour) ||
-		       ob_fail(e, "%s: expected \"#rrggbb\", got \"%s\"", f->name, *word);
-		break;
-	case OB_AS_ID:
-		fine = read_whole(s, f, *word, UINT32_MAX - 1, &whole, e);
-		ob_request_put(&s->request, f, 0, (double)whole);
-		break;
-	case OB_AS_WHOLE:
-		fine = read_whole(s, f, *word, UINT64_MAX, &whole, e);
-		memcpy(to, &whole, sizeof whole);
-		break;
-	case OB_AS_FLAG:
-		ob_request_put(&s->request, f, 0, 1);
-		break;
-	case OB_AS_TEXT: // one without a length is read where it is used
-		fine = f->count == 0 || append(s, to, f->count, *word, e);
-		break;
-	case OB_AS_ASSIGNED:
-		fine = read_assigned(s, *word, e);
-		break;
-	default:
-		return read_numbers(s, f, word, e);
-	}
-	return fine ? word + 1 : NULL;
-}
-
 static bool read_fields(sending *s, ob_error *e)
 {
-	words word = s->word + (s->row->to != OB_TO_RUN);
+	ob_words word = s->word + (s->row->to != OB_TO_RUN);
 	for (const ob_request_field *f = s->row->field; f->name && word; f++)
 		if (*word || !f->optional)
-			word = read_field(s, f, word, e);
+			word = ob_request_read_field(&s->request, f, word, s->row->verb, e);
 	return word;
 }
 

@@ -10,15 +10,15 @@
 #include "scene/object_limits.h"
 #include "shape/shape.h"
 
-enum { MEMBERS = 20, NAME = 16, NUMBERS = OB_COMMAND_BYTES_MAX / 2 }; // a number takes a byte, and one before it
+enum { MEMBERS = 20, NAME = 16 };
 
 typedef enum form { MISSING, NUMBER, LIST, WORD, FLAG } form;
 
-// A member of the command: its numbers or its word lie behind those of the members before.
+// A member of the command: its values lie in the text, each with a 0 that ends it.
 typedef struct member {
 	char name[NAME];
 	form form;
-	uint32_t first, count;
+	uint32_t first, bytes, count;
 	bool used;
 } member;
 
@@ -26,10 +26,9 @@ typedef struct reading {
 	ob_error *e;
 	bool failed;
 	int depth; // of objects and lists
-	uint32_t members, numbers, bytes;
+	uint32_t members, bytes;
 	member member[MEMBERS];
-	double number[NUMBERS];
-	char text[OB_COMMAND_BYTES_MAX]; // each word ends by 0
+	char text[OB_COMMAND_BYTES_MAX];
 } reading;
 
 static char fail(reading *r, const char *what, const char *field)
@@ -57,48 +56,37 @@ static char begin_member(reading *r, const char *name)
 	if (find_member(r, name))
 		return fail(r, "given twice", name);
 	member *m = &r->member[r->members++];
-	*m = (member){ .form = MISSING };
+	*m = (member){ .first = r->bytes };
 	memcpy(m->name, name, strlen(name));
 	return 0;
 }
 
-// Begins a value of the last member, or goes on with its list or its word.
-static member *take_value(reading *r, form now, uint32_t first)
+// Takes a value of the last member, or a part of it.
+static char take_value(reading *r, form form_now, const char *text, size_t size, bool ends)
 {
 	member *m = r->members ? &r->member[r->members - 1] : NULL;
-	if (!m || r->depth != (now == LIST ? 2 : 1) || (m->form != MISSING && m->form != now))
-		return NULL;
-	m->first = m->form == MISSING ? first : m->first;
-	m->form = now;
-	return m;
+	if (!m || r->depth != (form_now == LIST ? 2 : 1) || (m->form != MISSING && m->form != form_now))
+		return fail(r, "a value was not expected here", m ? m->name : NULL);
+	if (r->bytes + size >= sizeof r->text || memchr(text, 0, size))
+		return fail(r, "too long, or no text", m->name);
+	memcpy(r->text + r->bytes, text, size);
+	r->text[r->bytes + size] = 0;
+	r->bytes += (uint32_t)size + ends;
+	m->bytes = r->bytes - m->first;
+	m->form = form_now;
+	m->count += ends;
+	return 0;
 }
 
 static char take_number(reading *r, const char *text)
 {
-	member *m = take_value(r, r->depth == 2 ? LIST : NUMBER, r->numbers);
-	if (!m || r->numbers == NUMBERS)
-		return fail(r, "a number was not expected here", m ? m->name : NULL);
-	r->number[r->numbers++] = strtod(text, NULL);
-	m->count++;
-	return isfinite(r->number[r->numbers - 1]) ? 0 : fail(r, "out of range", m->name);
-}
-
-static char take_word(reading *r, const struct lejp_ctx *c, bool ends)
-{
-	member *m = take_value(r, WORD, r->bytes);
-	if (!m || r->bytes + c->npos >= sizeof r->text || memchr(c->buf, 0, c->npos))
-		return fail(r, "no text was expected here, or none as long", m ? m->name : NULL);
-	memcpy(r->text + r->bytes, c->buf, c->npos);
-	r->bytes += c->npos;
-	r->text[r->bytes] = 0;
-	r->bytes += ends;
-	return 0;
+	return isfinite(strtod(text, NULL)) ? take_value(r, r->depth == 2 ? LIST : NUMBER, text, strlen(text), true)
+					    : fail(r, "out of range", "a number");
 }
 
 static signed char take(struct lejp_ctx *c, char reason)
 {
 	reading *r = c->user;
-	member *m;
 	switch (reason) {
 	case LEJPCB_PAIR_NAME:
 		c->ipos = 0; // libwebsockets 4.1 counts lists that have ended, and takes five at most
@@ -118,13 +106,11 @@ static signed char take(struct lejp_ctx *c, char reason)
 		return take_number(r, c->buf);
 	case LEJPCB_VAL_STR_CHUNK:
 	case LEJPCB_VAL_STR_END:
-		return take_word(r, c, reason == LEJPCB_VAL_STR_END);
+		return take_value(r, WORD, c->buf, c->npos, reason == LEJPCB_VAL_STR_END);
 	case LEJPCB_VAL_TRUE:
+		return take_value(r, FLAG, "true", 4, true);
 	case LEJPCB_VAL_FALSE:
-		if (!(m = take_value(r, FLAG, 0)))
-			return fail(r, "true and false were not expected here", NULL);
-		m->count = reason == LEJPCB_VAL_TRUE;
-		return 0;
+		return take_value(r, FLAG, "false", 5, true);
 	case LEJPCB_VAL_NULL:
 		return fail(r, "null was not expected here", NULL);
 	default:
@@ -139,95 +125,64 @@ static bool refuse(reading *r, const ob_request_field *f, const char *what)
 	return fail(r, what, f->name) == 0;
 }
 
-// Reads numbers, as many as the field has; a colour is opaque.
-static bool put_numbers(reading *r, ob_request *q, const ob_request_field *f, const member *m)
+static form form_of(const ob_request_field *f)
 {
-	const bool id = f->type == OB_AS_ID, whole = id || f->type == OB_AS_WHOLE;
-	const uint32_t count = f->type == OB_AS_COLOUR ? 3 : f->count;
-	if (m->form != (count == 1 ? NUMBER : LIST) || m->count != count)
-		return refuse(r, f, "not as many numbers as expected");
-	const double *x = r->number + m->first;
-	if (whole && !(*x >= 0 && *x == floor(*x) && *x <= (id ? 0x1p32 - 1 : 0x1p53))) // exact
-		return refuse(r, f, id ? "expected a whole number below 2^32" : "expected a whole number, up to 2^53");
-	for (uint32_t i = 0; i < count; i++)
-		ob_request_put(q, f, i, x[i]);
-	return true;
+	switch (f->type) {
+	case OB_AS_FLAG:
+		return FLAG;
+	case OB_AS_TEXT:
+	case OB_AS_WORDS:
+	case OB_AS_SHAPE:
+		return WORD;
+	case OB_AS_PATH:
+		return LIST;
+	default:
+		return f->count == 1 ? NUMBER : LIST;
+	}
 }
 
-static bool put_attitude(reading *r, ob_request *q, const ob_request_field *f, const member *m)
+// Splits the text of a message at its blanks, and joins four numbers of a path each.
+static void divide(const ob_request_field *f, member *m, char *text)
 {
-	ob_quat a;
-	if (!put_numbers(r, q, f, m))
-		return false;
-	memcpy(&a, (char *)q + f->at, sizeof a);
-	const double square = a.w * a.w + a.x * a.x + a.y * a.y + a.z * a.z;
-	a = ob_quat_normalize(a);
-	memcpy((char *)q + f->at, &a, sizeof a);
+	char *const end = text + m->bytes;
+	uint32_t numbers = 0;
+	for (char *c = text; c < end; c++)
+		if (f->type == OB_AS_WORDS && (*c == ' ' || *c == '\t'))
+			*c = 0;
+		else if (f->type == OB_AS_PATH && !*c && ++numbers % 4 != 0)
+			*c = ' ';
+}
+
+// Attitudes of pages are rounded.
+static bool make_unit(reading *r, const ob_request_field *f, char *at)
+{
+	ob_quat q;
+	memcpy(&q, at, sizeof q);
+	const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+	q = ob_quat_normalize(q);
+	memcpy(at, &q, sizeof q);
 	return (square > .5 && square <= 4) || refuse(r, f, "expected a unit quaternion");
-}
-
-static bool put_path(reading *r, ob_request_path *path, const ob_request_field *f, const member *m)
-{
-	if (m->form != LIST || m->count == 0 || m->count % 4 != 0 || m->count > 4 * OB_REQUEST_POINTS)
-		return refuse(r, f, "expected a list of four numbers for each of 64 points at most: s, x, y, z");
-	for (const double *x = r->number + m->first; path->points < m->count / 4; x += 4)
-		path->point[path->points++] = (ob_path_point){ x[0], ob_v3(x[1], x[2], x[3]), ob_quat_identity() };
-	return true;
-}
-
-// Puts each word of the text into a message, as obsim send does.
-static bool put_words(reading *r, ob_request *q, const ob_request_field *f, char *text)
-{
-	char *rest = NULL;
-	for (char *word = strtok_r(text, " \t", &rest); word; word = strtok_r(NULL, " \t", &rest))
-		if (!ob_scene_put_value(word, q->values, &q->bytes, sizeof q->values))
-			return refuse(r, f, "too many words");
-	return q->bytes > 0 || refuse(r, f, "expected words");
-}
-
-// True for a shape that viewers may create: its size says all.
-static bool is_offered(ob_shape shape)
-{
-	return ob_shape_is_bounded(shape) && !ob_shape_is(shape, OB_HULLED);
-}
-
-static bool put_shape(reading *r, ob_request *q, const ob_request_field *f, const char *name)
-{
-	char text[128] = "expected one of";
-	q->def.passport.shape = (uint8_t)ob_shape_named(name);
-	if (is_offered((ob_shape)q->def.passport.shape))
-		return true;
-	for (int s = OB_SHAPE_NONE + 1; s < OB_SHAPE_KINDS; s++)
-		if (is_offered((ob_shape)s))
-			snprintf(text + strlen(text), sizeof text - strlen(text), " %s", ob_shape_name((ob_shape)s));
-	return refuse(r, f, text);
 }
 
 static bool put(reading *r, ob_request *q, const ob_request_field *f, member *m)
 {
-	char *const to = (char *)q + f->at, *const text = m->form == WORD ? r->text + m->first : NULL;
+	const char *word[OB_COMMAND_BYTES_MAX / 2 + 1], *text = r->text + m->first;
+	uint32_t n = 0;
+	const uint32_t wanted = f->type == OB_AS_COLOUR ? 3 : f->type == OB_AS_PATH ? (m->count + 3) / 4 * 4 : f->count;
 	m->used = true;
-	switch (f->type) {
-	case OB_AS_FLAG:
-		ob_request_put(q, f, 0, m->count);
-		return m->form == FLAG || refuse(r, f, "expected true or false");
-	case OB_AS_PATH:
-		return put_path(r, &q->path, f, m);
-	case OB_AS_ASSIGNED:
-		return (m->form == NUMBER &&
-			snprintf(to + strlen(to), OB_NAME_MAX, "=%.10g", r->number[m->first]) > 0) ||
-		       refuse(r, f, "expected a number");
-	case OB_AS_ATTITUDE:
-		return put_attitude(r, q, f, m);
-	case OB_AS_TEXT:
-		return (text && snprintf(to, f->count, "%s", text) < f->count) || refuse(r, f, "too long, or no text");
-	case OB_AS_SHAPE:
-		return text ? put_shape(r, q, f, text) : refuse(r, f, "expected a word");
-	case OB_AS_WORDS:
-		return text ? put_words(r, q, f, text) : refuse(r, f, "expected words");
-	default:
-		return put_numbers(r, q, f, m);
-	}
+	if (m->form != form_of(f) || (m->form == LIST && m->count != wanted))
+		return refuse(r, f,
+			      f->type == OB_AS_PATH ? "expected four numbers for each: s, x, y, z"
+						    : "not the kind of value, or not as many numbers as expected");
+	divide(f, m, r->text + m->first);
+	for (; text < r->text + m->first + m->bytes; text += strlen(text) + 1)
+		if (*text || f->type != OB_AS_WORDS)
+			word[n++] = text;
+	word[n] = NULL;
+	if (n == 0)
+		return refuse(r, f, "expected words");
+	return ob_request_read_field(q, f, word, f->name, r->e) &&
+	       (f->type != OB_AS_ATTITUDE || make_unit(r, f, (char *)q + f->at));
 }
 
 // ---- from fields to requests
@@ -349,7 +304,7 @@ bool ob_command_read(ob_command *c, const char *json, size_t size, ob_error *e)
 	struct lejp_ctx parser;
 	char text[OB_COMMAND_BYTES_MAX];
 	r.e = e, r.failed = false, r.depth = 0;
-	r.members = r.numbers = r.bytes = 0;
+	r.members = r.bytes = 0;
 	c->requests = 0;
 	if (size > OB_COMMAND_BYTES_MAX)
 		return ob_fail(e, "a command of %zu bytes: at most %d are read", size, OB_COMMAND_BYTES_MAX);
