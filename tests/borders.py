@@ -82,9 +82,9 @@ DUTIES = [
     ('map shared memory', r'\b(shm_open|mmap)\s*\(', r'src/table/', True),
     ('name a memory order', r'\b(memory_order_\w+|__atomic_\w+|__sync_\w+)', r'src/table/', True),
     # Simulators are started by host/spawn_*.c (processes through its fork_server); the rest are helpers of one module
-    # each.
+    # each; control/batch.c's steps several universes for a program.
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
-     r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|paper/viewer|ranks/mpi|serve/server)\.c$', True),
+     r'src/(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|control/batch|paper/viewer|ranks/mpi|serve/server)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
      r'src/(host/(spawn_\w+|fork_server|foreign)|render/sink_video|experiment/process|ranks/courier|lab/attempt|paper/attempt|record/recording|import/import|base/part)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),

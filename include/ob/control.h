@@ -47,6 +47,24 @@ bool ob_controller_step(ob_controller *c, uint64_t steps, ob_error *e);
 // The same after changes of motors and forces, as of ob_controller_set_motors and ob_controller_set_forces, in one exchange.
 bool ob_controller_step_with(ob_controller *c, uint64_t steps, const struct ob_change *motor, size_t motors,
 			     const struct ob_change *force, size_t forces, ob_error *e);
+// Part of one run in ob_controller_step_all.
+typedef struct ob_run_step {
+	ob_controller *controller;
+	const ob_universe *universe; // its universe, to read from
+	uint64_t snapshot; // restored first; 0: none
+	const struct ob_change *motor, *force; // [motors], [forces], as of ob_controller_step_with
+	size_t motors, forces;
+	const uint32_t *joint; // [joints]: read after the steps, as of ob_universe_get_joint_values
+	size_t joints;
+	double *values; // [joints][2]
+	ob_state_arrays states; // read after the steps, as of ob_universe_get_states
+	size_t objects; // rows of these arrays, 0: none is read; then the number of objects
+	bool failed; // written: true, and error, if this run could not do its part
+	ob_error error;
+} ob_run_step;
+// Steps n runs of different controllers, each to the bits that it reaches alone. threads: how many share them (1 to 257),
+// the caller's among them; they end before it returns. false and e: a run failed, the first is named; all others have stepped.
+bool ob_controller_step_all(ob_run_step *run, size_t n, uint64_t steps, unsigned threads, ob_error *e);
 // Lets the run go on by itself, at a pace of simulated time per wall-clock time (INFINITY: as fast as it can), until
 // paused or stepped. Other functions interrupt it for an instant.
 bool ob_controller_run(ob_controller *c, double pace, ob_error *e);

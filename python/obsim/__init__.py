@@ -13,6 +13,7 @@ A universe that another program runs is read by obsim.attach(name). Rows of arra
 u.name say which. Units are SI and radians, vectors are in the world frame (right-handed, z up), quaternions are w, x, y, z.
 Arrays are copies. Not thread-safe: use one thread at a time for each universe.
 """
+import concurrent.futures
 import ctypes
 import difflib
 import itertools
@@ -28,12 +29,17 @@ import numpy
 from obsim import _native
 from obsim._native import Error
 
-__all__ = ['Error', 'Joint', 'Object', 'Run', 'Universe', 'Unknown', 'attach', 'names', 'run']
+__all__ = ['Batch', 'Error', 'Joint', 'Object', 'Run', 'Universe', 'Unknown', 'attach', 'batch', 'names', 'run']
 
 CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
 CONTACT_EVENT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('step', 'u4'), ('begins', 'u4')])
 CHANGE = numpy.dtype([('id', 'u4'), ('generation', 'u4'), ('value', 'f8', 13)])
 POINT = numpy.dtype([('time', 'f8'), ('position', 'f8', 3), ('attitude', 'f8', 4)])
+RUN_STEP = numpy.dtype([*((name, 'u8') for name in ('controller', 'universe', 'snapshot', 'motor', 'force', 'motors', 'forces', 'joint',
+                                                    'joints', 'values')), ('states', 'u8', 6), ('objects', 'u8'), ('failed', '?'),
+                        ('error', 'S1024')], align=True)
+COLUMNS = {'id': (numpy.uint32, ()), 'generation': (numpy.uint32, ()), 'position': (float, (3,)), 'attitude': (float, (4,)),
+           'velocity': (float, (3,)), 'angular_velocity': (float, (3,))}
 _PRESENT, _STATIC, _FROZEN, _KINEMATIC, _SENSOR = 1, 2, 4, 8, 64
 _WORLD = 0xffffffff
 _SAME = object()
@@ -349,11 +355,9 @@ class Universe(_Strict):
     def states(self, *which):
         """Arrays by name, of one instant while the universe stands: id, generation, position, attitude, velocity,
         angular_velocity; all unless some are named."""
-        columns = {'id': (numpy.uint32, ()), 'generation': (numpy.uint32, ()), 'position': (float, (3,)), 'attitude': (float, (4,)),
-                   'velocity': (float, (3,)), 'angular_velocity': (float, (3,))}
         n = self._info().objects
         while True:
-            arrays = {name: self._column(name, (n, *columns[name][1]), columns[name][0]) for name in which or columns}
+            arrays = {name: self._column(name, (n, *COLUMNS[name][1]), COLUMNS[name][0]) for name in which or COLUMNS}
             pointers = _native.StateArrays(**{name: a.ctypes.data for name, a in arrays.items()})
             found = _native.library().ob_universe_get_states(self._u, ctypes.byref(pointers), n)
             if found <= n:
@@ -499,13 +503,7 @@ class Run(Universe):
         if targets or forces:
             self._step_with(min(n, 1), targets or {}, forces or {})
             n -= 1
-        piece = 1
-        while n > 0: # in pieces, so that Ctrl-C is heard
-            now = min(n, piece)
-            began = time.perf_counter()
-            self._call('ob_controller_step', now)
-            n -= now
-            piece = piece * 2 if time.perf_counter() - began < .1 else max(piece // 2, 1)
+        _in_pieces(n, lambda now: self._call('ob_controller_step', now))
         return None if read is None else self._read_joints(read)
 
     def _step_with(self, n, targets, forces):
@@ -721,6 +719,163 @@ class Run(Universe):
         self.close()
 
 
+class Batch(_Strict):
+    """Universes of one scene within this program, which threads step side by side. Arrays have a row for each universe.
+    b[0] is the first of them, as obsim.run returns it."""
+
+    def __init__(self, scene, n, threads, seeds, options, parameters):
+        self._threads = threads or len(os.sched_getaffinity(0))
+        how = [options or {}] * n if seeds is None else [{**(options or {}), 'seed': int(s)} for s in self._one_each(seeds, n)]
+        self._runs = self._each(lambda o: Run(scene, o, None, parameters, None, True), how)
+        self._attach()
+
+    @staticmethod
+    def _one_each(values, n):
+        if len(values) != n:
+            raise Error(f'expected one for each of {n} universes, got {len(values)}')
+        return values
+
+    def _each(self, function, *columns):
+        """Results of a function of each row, by the threads."""
+        with concurrent.futures.ThreadPoolExecutor(self._threads) as threads:
+            return list(threads.map(function, *columns))
+
+    def _attach(self):
+        self._base = numpy.zeros(len(self), RUN_STEP) # the rows of any call
+        self._base['controller'], self._base['universe'] = [r._controller for r in self._runs], [r._u for r in self._runs]
+        self._plan = None # names, and changes and joints of these
+
+    def __len__(self):
+        """Number of universes."""
+        return len(self._runs)
+
+    def __getitem__(self, k):
+        """Universe k."""
+        return self._runs[k]
+
+    def _call(self, rows, steps):
+        if not all(r._controller for r in self._runs):
+            raise Error('a universe of the batch is closed')
+        try:
+            _native.call('ob_controller_step_all', rows.ctypes.data, len(rows), steps, self._threads)
+        except Error:
+            self._plan = None # it may name what has gone
+            raise
+
+    def _look_up(self, targets, forces, read):
+        """Changes and numbers of joints for these names, in each universe."""
+        names_ = tuple(targets), tuple(forces), tuple(read)
+        if not self._plan or self._plan[0] != names_:
+            changes = numpy.zeros((len(self), len(targets) + len(forces)), CHANGE)
+            numbers = numpy.zeros((len(self), len(read)), numpy.uint32)
+            for r, change, number in zip(self._runs, changes, numbers):
+                joints = r.joints if targets or read else {}
+                number[:] = [joints[name]._number for name in read]
+                for c, name in zip(change, targets):
+                    c['id'], c['value'][0] = joints[name]._passport().object[0], joints[name]._number
+                for c, name in zip(change[len(targets):], forces):
+                    c['id'], c['generation'] = r[name]._id, r[name]._generation
+            self._plan = names_, changes, numbers
+        return self._plan[1:]
+
+    def step(self, n=1, targets=None, forces=None, read=()):
+        """Runs n steps of all. Before, motors get targets, {joint's name: one number, or one a universe}, and objects constant
+        forces, {object's name: (x, y, z), or one row a universe}, N. Returns values and rates of the joints that read names, an
+        array (universes, joints, 2)."""
+        targets, forces, read = targets or {}, forces or {}, tuple(read)
+        changes, numbers = self._look_up(targets, forces, read)
+        for k, target in enumerate(targets.values()):
+            changes['value'][:, k, 1] = _rows(target, len(self), 1)[:, 0]
+        for k, force in enumerate(forces.values()):
+            changes['value'][:, len(targets) + k, :3] = _rows(force, len(self), 3)
+        values = numpy.empty((len(self), len(read), 2))
+        rows, k = self._base.copy(), numpy.arange(len(self), dtype=numpy.uint64)
+        rows['motor'], rows['motors'], rows['forces'], rows['joints'] = _at(changes, k), len(targets), len(forces), len(read)
+        rows['force'] = rows['motor'] + len(targets) * CHANGE.itemsize
+        rows['joint'], rows['values'] = _at(numbers, k), _at(values, k)
+
+        def some(steps):
+            self._call(rows, steps)
+            rows['motors'] = rows['forces'] = 0
+        some(min(n, 1))
+        _in_pieces(n - 1, some)
+        return values
+
+    def states(self, *which):
+        """Arrays by name as those of Universe.states, with a first axis more."""
+        n, rows, k = len(self._runs[0]), self._base.copy(), numpy.arange(len(self), dtype=numpy.uint64)
+        arrays = {name: numpy.empty((len(self), n, *COLUMNS[name][1]), COLUMNS[name][0]) for name in which or COLUMNS}
+        for name, a in arrays.items():
+            rows['states'][:, list(COLUMNS).index(name)] = _at(a, k)
+        rows['objects'] = n
+        self._call(rows, 0)
+        if (rows['objects'] != n).any():
+            raise Error('these universes have different numbers of objects: read one by one, as b[0].position')
+        return arrays
+
+    id = property(lambda self: self.states('id')['id'], doc='Ids, shape (universes, objects).')
+    position = property(lambda self: self.states('position')['position'], doc='m, shape (universes, objects, 3).')
+    attitude = property(lambda self: self.states('attitude')['attitude'], doc='w, x, y, z, shape (universes, objects, 4).')
+    velocity = property(lambda self: self.states('velocity')['velocity'], doc='m/s, shape (universes, objects, 3).')
+    angular_velocity = property(lambda self: self.states('angular_velocity')['angular_velocity'],
+                                doc='rad/s, shape (universes, objects, 3).')
+    time = property(lambda self: numpy.array([r.time for r in self._runs]), doc='s, shape (universes,).')
+
+    def snapshot(self):
+        """Keeps all states in memory; returns their numbers, one a universe."""
+        return numpy.array([r.snapshot() for r in self._runs], numpy.uint64)
+
+    def restore(self, snapshots, mask=None):
+        """Puts states back, to the bit: of all, or of the universes for which the mask is true."""
+        rows = self._base.copy()
+        rows['snapshot'] = self._one_each(snapshots, len(self))
+        rows = rows if mask is None else rows[numpy.asarray(self._one_each(mask, len(self)), bool)]
+        self._call(rows, 0)
+
+    def forget(self, snapshots):
+        """Frees the memory of snapshots."""
+        for r, number in zip(self._runs, snapshots):
+            r.forget(int(number))
+
+    def reset(self, mask=None, seeds=None):
+        """Begins again: all, or the universes for which the mask is true, in the same states, or as the scene makes them of
+        seeds, one a universe. Snapshots of these universes are lost then."""
+        if seeds is None:
+            self.restore(numpy.array([r._start for r in self._runs], numpy.uint64), mask)
+            return
+        chosen = numpy.flatnonzero(numpy.ones(len(self)) if mask is None else self._one_each(mask, len(self)))
+        self._one_each(seeds, len(self))
+        self._each(lambda k: self._runs[k].reset(int(seeds[k])), chosen)
+        self._attach()
+
+    def close(self):
+        """Ends all; again has no effect."""
+        for r in self._runs:
+            r.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_what):
+        self.close()
+
+
+def _at(array, k):
+    """Addresses of rows k."""
+    return array.ctypes.data + k * numpy.uint64(array.strides[0])
+
+
+def _in_pieces(n, step):
+    """Makes n steps by several calls, so that Ctrl-C is heard between two."""
+    piece = 1
+    while n > 0:
+        now = min(n, piece)
+        began = time.perf_counter()
+        step(now)
+        n -= now
+        piece = piece * 2 if time.perf_counter() - began < .1 else max(piece // 2, 1)
+
+
 def _text(value):
     return {True: 'true', False: 'false'}[value] if isinstance(value, bool) else str(value)
 
@@ -742,3 +897,9 @@ def run(scene=None, options=None, program=None, resume=None, inside=False, **par
     'solver': 'jacobi'}. resume: a checkpoint file to go on from, in place of a scene. inside: the universe is in this program, whose thread is its only worker: steps are
     function calls; it has no processes, so nothing can be killed, and goes on by its steps alone."""
     return Run(scene, options, program, parameters, resume, inside)
+
+
+def batch(scene, n, /, threads=None, seeds=None, options=None, **parameters):
+    """Starts n universes of a scene within this program, each the same as one of obsim.run(scene, inside=True), to the bit.
+    threads that step them: one a core, if not told otherwise; seeds: one for each universe. The rest is as for obsim.run."""
+    return Batch(scene, n, threads, seeds, options, parameters)

@@ -106,6 +106,7 @@ _functions = {
     'ob_controller_close': (None, [_pointer]),
     'ob_controller_step': (ctypes.c_bool, [_pointer, _u64, _pointer]),
     'ob_controller_step_with': (ctypes.c_bool, [_pointer, _u64, _pointer, _size, _pointer, _size, _pointer]),
+    'ob_controller_step_all': (ctypes.c_bool, [_pointer, _size, _u64, ctypes.c_uint, _pointer]),
     'ob_controller_run': (ctypes.c_bool, [_pointer, ctypes.c_double, _pointer]),
     'ob_controller_pause': (ctypes.c_bool, [_pointer, _pointer]),
     'ob_controller_snapshot': (ctypes.c_bool, [_pointer, ctypes.POINTER(_u64), _pointer]),
