@@ -82,7 +82,10 @@ def _candidates():
 
 
 _pointer, _u32, _u64, _size = ctypes.c_void_p, ctypes.c_uint32, ctypes.c_uint64, ctypes.c_size_t
-_change = [_pointer, _pointer, _size, _pointer]
+# Requests with a number in src/control/packet.h: changes of many objects, whose values are the fields in the order of the table
+# of requests (docs/control.md)
+_changes = ('set_forces', 'kick', 'set_states', 'set_colours', 'remove', 'set_torques', 'push', 'drag', 'release', 'set_frictions', 'kill',
+            'set_motors', 'unjoin', 'set_surface_velocities')
 _functions = {
     'ob_universe_attach': (_pointer, [ctypes.c_char_p, _pointer]),
     'ob_universe_detach': (None, [_pointer]),
@@ -112,20 +115,7 @@ _functions = {
     'ob_controller_snapshot': (ctypes.c_bool, [_pointer, ctypes.POINTER(_u64), _pointer]),
     'ob_controller_restore': (ctypes.c_bool, [_pointer, _u64, _pointer]),
     'ob_controller_forget': (ctypes.c_bool, [_pointer, _u64, _pointer]),
-    'ob_controller_set_forces': (ctypes.c_bool, _change),
-    'ob_controller_kick': (ctypes.c_bool, _change),
-    'ob_controller_set_states': (ctypes.c_bool, _change),
-    'ob_controller_set_colours': (ctypes.c_bool, _change),
-    'ob_controller_remove': (ctypes.c_bool, _change),
-    'ob_controller_set_torques': (ctypes.c_bool, _change),
-    'ob_controller_push': (ctypes.c_bool, _change),
-    'ob_controller_drag': (ctypes.c_bool, _change),
-    'ob_controller_release': (ctypes.c_bool, _change),
-    'ob_controller_set_frictions': (ctypes.c_bool, _change),
-    'ob_controller_kill': (ctypes.c_bool, _change),
-    'ob_controller_set_motors': (ctypes.c_bool, _change),
-    'ob_controller_unjoin': (ctypes.c_bool, _change),
-    'ob_controller_set_surface_velocities': (ctypes.c_bool, _change),
+    **{'ob_controller_' + name: (ctypes.c_bool, [_pointer, _pointer, _size, _pointer]) for name in _changes},
     'ob_controller_set_path': (ctypes.c_bool, [_pointer, _u32, _pointer, _size, ctypes.c_bool, ctypes.c_bool, _pointer]),
     'ob_controller_reset': (ctypes.c_bool, [_pointer, ctypes.POINTER(_u64), _pointer, _size, _pointer]),
     'ob_controller_save': (ctypes.c_bool, [_pointer, ctypes.c_char_p, _pointer]),

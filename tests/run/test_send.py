@@ -1,6 +1,7 @@
 """obsim send: another program sends requests to a running universe."""
 
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -146,6 +147,13 @@ class Send(program.Case):
 		self.send(self.name, "motor", "rail", "fast", code=1, saying='expected a number, got "fast"')
 		self.send(self.name, "unjoin", "rail")
 		self.assertTrue(program.wait_until(lambda: program.call("send", self.name, "unjoin", "rail").returncode == 1))
+
+	def test_manual(self):
+		"""The manual has all requests."""
+		with open(os.environ["MANUAL"]) as f:
+			section = re.sub(r"\\f[BIR]", "", f.read().split(".SH SEND")[1].split(".SH ")[0])
+		for request in re.findall("^  obsim send NAME ([a-z]+)", program.call("send", "--help").stdout, re.M):
+			self.assertRegex(section, rf"\.B\w* .*\b{request}\b", request)
 
 	def test_silent(self):
 		"""Silent callers delay no request: all of them are still connected when another is answered."""
