@@ -103,6 +103,7 @@ class Object(_Strict):
 
     @property
     def id(self):
+        """Another object may have it later: see generation."""
         return self._id
 
     @property
@@ -118,6 +119,7 @@ class Object(_Strict):
 
     @property
     def exists(self):
+        """False once it has gone."""
         p = self._universe._passport(self._id)
         return bool(p) and p.generation == self._generation
 
@@ -226,6 +228,7 @@ class Object(_Strict):
         self._universe.send(self._id, *words)
 
     def remove(self):
+        """Removes it, and its joints."""
         self._universe.remove([self._id])
 
 
@@ -285,6 +288,7 @@ class Joint(_Strict):
         self._universe.set_motors([self], [target])
 
     def remove(self):
+        """Removes it; its objects stay."""
         self._universe.unjoin([self])
 
 
@@ -423,6 +427,7 @@ class Universe(_Strict):
         return self._find(key) is not None
 
     def _refuse(self, *_arguments, **_named):
+        """For universes of this program's own: obsim.run."""
         raise Error('this universe is read only: obsim.run starts one that can be changed')
 
     step = reset = set_states = set_forces = set_colours = kick = send = remove = create = snapshot = restore = _refuse
@@ -548,6 +553,7 @@ class Run(Universe):
         self._call('ob_controller_run', pace)
 
     def pause(self):
+        """Ends what go began, at the next step boundary."""
         self._call('ob_controller_pause')
 
     def reset(self, seed=None, **parameters):
@@ -689,6 +695,7 @@ class Run(Universe):
         self._change('ob_controller_set_colours', ids, (rgba, 4))
 
     def remove(self, ids):
+        """Removes objects, and their joints."""
         self._change('ob_controller_remove', ids)
 
     def create(self, text):

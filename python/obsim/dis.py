@@ -13,6 +13,7 @@ import socket
 import struct
 import sys
 import time
+from typing import Any, Optional, Sequence
 
 import numpy
 
@@ -31,7 +32,7 @@ MAJOR, FLATTENING = 6378137., 1 / 298.257223563 # WGS 84
 class Place:
     """Turns and moves the universe's frame to geocentric coordinates."""
 
-    def __init__(self, latitude=0., longitude=0., altitude=0.):
+    def __init__(self, latitude: float = 0., longitude: float = 0., altitude: float = 0.) -> None:
         a, o = numpy.radians([latitude, longitude])
         squared = FLATTENING * (2 - FLATTENING)
         normal = MAJOR / numpy.sqrt(1 - squared * numpy.sin(a) ** 2)
@@ -40,42 +41,47 @@ class Place:
         self.turn = numpy.stack([east, numpy.cross(up, east), up], axis=1)
         self.at = (normal + altitude) * up - [0, 0, squared * normal * numpy.sin(a)]
 
-    def position(self, p):
+    def position(self, p: numpy.ndarray) -> numpy.ndarray:
+        """Geocentric coordinates (m) of a point."""
         return self.at + p @ self.turn.T
 
-    def vector(self, v):
+    def vector(self, v: numpy.ndarray) -> numpy.ndarray:
+        """A vector in the geocentric frame."""
         return v @ self.turn.T
 
-    def angles(self, q):
+    def angles(self, q: numpy.ndarray) -> tuple[float, float, float]:
         """psi, theta, phi of an entity's frame (front, right, down) with the attitude q in the universe."""
         r = self.turn @ matrix(q) @ numpy.diag([1., -1, -1])
         return numpy.arctan2(r[1, 0], r[0, 0]), -numpy.arcsin(numpy.clip(r[2, 0], -1, 1)), numpy.arctan2(r[2, 1], r[2, 2])
 
 
-def matrix(q):
+def matrix(q: numpy.ndarray) -> numpy.ndarray:
+    """Rotation of a quaternion."""
     w, x, y, z = q
     return numpy.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
                         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
                         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
-def product(a, b):
+def product(a: numpy.ndarray, b: numpy.ndarray) -> numpy.ndarray:
+    """Quaternion a b."""
     return numpy.array([a[0] * b[0] - a[1:] @ b[1:], *(a[0] * b[1:] + b[0] * a[1:] + numpy.cross(a[1:], b[1:]))])
 
 
 class Entity:
     """An object as receivers know it."""
 
-    def __init__(self, name):
+    def __init__(self, name: str) -> None:
         self.name, self.sent = name, -numpy.inf
-        self.time = self.position = self.velocity = self.acceleration = self.attitude = self.spin = None
+        self.time = self.position = self.velocity = self.acceleration = self.attitude = self.spin = None # type: Any
 
-    def set(self, now, state, acceleration):
+    def set(self, now: float, state: Sequence[numpy.ndarray], acceleration: numpy.ndarray) -> None:
+        """Keeps what receivers are sent."""
         self.time, self.sent = now, time.monotonic()
         self.position, self.attitude, self.velocity, self.spin = state
         self.acceleration = acceleration
 
-    def is_off(self, now, state):
+    def is_off(self, now: float, state: Sequence[numpy.ndarray]) -> bool:
         """True if extrapolation is off by too much."""
         if self.time is None or now < self.time or time.monotonic() - self.sent > HEARTBEAT:
             return True
@@ -85,18 +91,19 @@ class Entity:
         axis = self.spin / (numpy.linalg.norm(self.spin) or 1)
         attitude = product(numpy.array([numpy.cos(angle / 2), *(numpy.sin(angle / 2) * axis)]), self.attitude)
         between = 2 * numpy.arccos(min(1, abs(attitude @ state[1])))
-        return numpy.linalg.norm(position - state[0]) > NEAR or between > ALIKE
+        return bool(numpy.linalg.norm(position - state[0]) > NEAR or between > ALIKE)
 
 
 class Sender:
     """Sends a universe's entities; look sends what is due now."""
 
-    def __init__(self, universe, address, exercise=1, place=None):
+    def __init__(self, universe: obsim.Universe, address: tuple[str, int], exercise: int = 1, place: Optional[Place] = None) -> None:
         self._u, self._address, self._exercise, self._place = universe, address, exercise, place or Place()
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._known, self._last = {}, None
+        self._known: dict[tuple[int, int], Entity] = {}
+        self._last: Any = None
 
-    def look(self):
+    def look(self) -> int:
         """Returns the number of PDUs sent."""
         now, states, sent = self._u.time, self._u.states(), 0
         objects = list(zip(states['id'].tolist(), states['generation'].tolist()))
@@ -117,7 +124,7 @@ class Sender:
                 sent += 1
         return sent
 
-    def _meet(self, id_, generation):
+    def _meet(self, id_: int, generation: int) -> Optional[Entity]:
         """The entity of a new object; None: it is none, or has gone since its state was read."""
         p = self._u._passport(id_)
         if not p or p.generation != generation or _native.library().ob_shape_name(p.shape) == b'plane':
@@ -125,7 +132,7 @@ class Sender:
         entity = self._known[id_, generation] = Entity(p.name.decode())
         return entity
 
-    def _send(self, id_, e, appearance):
+    def _send(self, id_: int, e: Entity, appearance: int) -> None:
         stamp = int(e.time % 3600 / 3600 * 2 ** 31) << 1 # relative
         place, marking = self._place, e.name.encode('ascii', 'replace')[:11]
         self._socket.sendto(PDU.pack(
@@ -134,11 +141,13 @@ class Sender:
             *place.angles(e.attitude), appearance, MODEL_RVW, bytes(15), *place.vector(e.acceleration),
             *(matrix(e.attitude).T @ e.spin * [1, -1, -1]), 1, marking, 0), self._address)
 
-    def close(self):
+    def close(self) -> None:
+        """Closes its socket."""
         self._socket.close()
 
 
-def main():
+def main() -> None:
+    """Sends the entities of a universe until it ends."""
     p = argparse.ArgumentParser(prog='python3 -m obsim.dis', description=__doc__.split('\n', 1)[0])
     p.add_argument('name', help='of the universe, as obsim top shows it')
     p.add_argument('--to', default=f'127.0.0.1:{PORT}', help='address and port (127.0.0.1:3000)')

@@ -4,6 +4,8 @@
     record.time, record.position        # s, shape (states,); m, shape (states, ids, 3)
     record.frame('position', 'velocity').query('name == "box#3"').plot('time', 'position_z')
 """
+from typing import Any
+
 import numpy
 
 COLUMNS = {'position': 'xyz', 'attitude': 'wxyz', 'velocity': 'xyz', 'angular_velocity': 'xyz', 'asleep': ''}
@@ -13,7 +15,7 @@ EVENTS = {1: 'came', 2: 'changed', 3: 'went'}
 class Record:
     """A record as arrays, read when they are asked for. Rows are recorded states, columns are ids; NaN: no such object then."""
 
-    def __init__(self, path):
+    def __init__(self, path: Any) -> None:
         import h5py # pylint: disable=import-outside-toplevel
         self._file = h5py.File(path, 'r')
         if self._file.attrs.get('format') not in ('obsim record', b'obsim record') or self._file.attrs['format_version'] != 2:
@@ -28,17 +30,17 @@ class Record:
     asleep = property(lambda self: self._file['asleep'][:], doc='1: asleep, 255: no such object; shape (states, ids).')
 
     @property
-    def name(self):
+    def name(self) -> list[str]:
         """Names of the last objects that had each id."""
         return [n.decode() for n in self._file['objects/name'][:]]
 
     @property
-    def settings(self):
+    def settings(self) -> dict[str, Any]:
         """Settings of the run, and facts of the file, by name."""
         both = {**self._file.attrs, **self._file['settings'].attrs}
         return {name: value.decode() if isinstance(value, bytes) else value for name, value in both.items()}
 
-    def frame(self, *which):
+    def frame(self, *which: str) -> Any:
         """A data frame with a line for each state and object that exists then: time, step, id, name, and columns of what is
         named: position (the default), attitude, velocity, angular_velocity, asleep."""
         import pandas # pylint: disable=import-outside-toplevel
@@ -52,18 +54,19 @@ class Record:
             columns.update({f'{quantity}_{c}': values[:, i] for i, c in enumerate(parts)} if parts else {quantity: values})
         return pandas.DataFrame(columns)
 
-    def events(self):
+    def events(self) -> Any:
         """A data frame of the objects that came, changed and went."""
         import pandas # pylint: disable=import-outside-toplevel
         e = self._file['events'][:]
         return pandas.DataFrame({'time': e['time'], 'step': e['step'], 'id': e['id'], 'generation': e['generation'],
                                  'name': [n.decode() for n in e['name']], 'what': [EVENTS[k] for k in e['kind']]})
 
-    def close(self):
+    def close(self) -> None:
+        """Closes the file."""
         self._file.close()
 
-    def __enter__(self):
+    def __enter__(self) -> 'Record':
         return self
 
-    def __exit__(self, *_what):
+    def __exit__(self, *_what: Any) -> None:
         self.close()
