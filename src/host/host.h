@@ -22,7 +22,7 @@
 #include "host/timeline.h"
 #include "ranks/ranks.h"
 #include "scene/scene.h"
-#include "settings/free.h"
+#include "settings/settings.h"
 #include "table/saved.h"
 
 // Saved run at a step boundary: all that it needs to go on, beside its scene and its settings. The arrays belong to

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/log.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
 #include "settings/length.h"
@@ -29,9 +30,9 @@ static const ob_field own_fields[] = {
 };
 #undef F
 
-enum { OWN_FIELDS = sizeof own_fields / sizeof *own_fields, FIELDS_MOST = OWN_FIELDS + OB_SETTINGS };
+enum { OWN_FIELDS = sizeof own_fields / sizeof *own_fields, FIELDS_MOST = OWN_FIELDS + 2 * OB_SETTINGS };
 
-// Lists the fields, and the setting of each; returns their number.
+// Lists the fields, some by two names, and the setting of each; returns their number.
 static size_t list_fields(ob_field field[FIELDS_MOST], ob_setting_id id[FIELDS_MOST])
 {
 	static const ob_field_kind kind[] = {
@@ -42,18 +43,20 @@ static size_t list_fields(ob_field field[FIELDS_MOST], ob_setting_id id[FIELDS_M
 	};
 	size_t n = OWN_FIELDS;
 	memcpy(field, own_fields, sizeof own_fields);
-	for (int i = 0; i < OB_SETTINGS; i++) {
-		const ob_setting *s = &ob_setting_table[i];
-		if (!(s->flags & OB_SETTING_SCENE))
+	for (int i = 0; i < 2 * OB_SETTINGS; i++) {
+		const ob_setting_id at = (ob_setting_id)(i / 2);
+		const ob_setting *s = &ob_setting_table[at];
+		const char *name = i % 2 ? ob_setting_former(s->name) : s->name;
+		if (!(s->flags & OB_SETTING_SCENE) || !name)
 			continue;
-		id[n] = (ob_setting_id)i;
+		id[n] = at;
 		field[n++] = (ob_field){
-			.name = s->name,
-			.kind = i == OB_SETTING_TOLERANCE ? OB_FIELD_LENGTH : kind[s->kind],
-			.offset = i == OB_SETTING_TOLERANCE ? offsetof(scene_fields, tolerance)
-							    : offsetof(scene_fields, asked) + s->offset,
+			.name = name,
+			.kind = at == OB_SETTING_TOLERANCE ? OB_FIELD_LENGTH : kind[s->kind],
+			.offset = at == OB_SETTING_TOLERANCE ? offsetof(scene_fields, tolerance)
+							     : offsetof(scene_fields, asked) + s->offset,
 			// object simulators need an iteration; 0 is the monolith's exact solver
-			.low = i == OB_SETTING_ITERATIONS ? 1 : s->least,
+			.low = at == OB_SETTING_ITERATIONS ? 1 : s->least,
 			.high = s->most,
 			.above = s->flags & OB_SETTING_ABOVE,
 			.choices = s->form,
@@ -116,6 +119,23 @@ bool ob_builder_resolve_tolerance(ob_builder *b, const char *path, ob_error *e)
 	return true;
 }
 
+// Notes the settings that are given (bits of fields).
+static void note_given(lua_State *L, ob_settings *asked, uint64_t given, const ob_field *field, const ob_setting_id *id,
+		       size_t count)
+{
+	for (size_t i = OWN_FIELDS; i < count; i++) {
+		const char *name = field[i].name, *now = ob_setting_table[id[i]].name;
+		if (!(given >> i & 1))
+			continue;
+		if (ob_setting_is_set(asked, id[i]))
+			ob_sandbox_fail(L, "scene.%s is now called scene.%s: expected one of them, got both", name,
+					now);
+		if (strcmp(name, now) != 0)
+			ob_log_note("scene.%s is now called scene.%s", name, now);
+		asked->given |= 1ull << id[i];
+	}
+}
+
 int ob_scene_call_scene(lua_State *L)
 {
 	ob_builder *b = ob_sandbox_user(L);
@@ -130,8 +150,7 @@ int ob_scene_call_scene(lua_State *L)
 		.title = s->title, .duration = s->duration, .seed = s->seed, .room = s->room, .gravity = s->run.gravity
 	};
 	const uint64_t given = ob_fields_read(L, 1, "scene", fields, count, &f);
-	for (size_t i = OWN_FIELDS; i < count; i++)
-		f.asked.given |= (given >> i & 1) << id[i];
+	note_given(L, &f.asked, given, fields, id, count);
 	if (f.title != s->title)
 		snprintf(s->title, sizeof s->title, "%s", f.title);
 	s->tour = f.tour;

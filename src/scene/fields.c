@@ -10,7 +10,6 @@
 #include <lauxlib.h>
 #include <ob/vec.h>
 
-#include "base/log.h"
 #include "base/number.h"
 #include "base/spelling.h"
 #include "elementary/elementary.h"
@@ -404,36 +403,10 @@ static void check_name(lua_State *L, const char *where, const ob_field *field, s
 				key);
 	}
 	const char *name = lua_tostring(L, -2);
-	const char *now = ob_setting_renamed(name);
-	for (size_t i = 0; i < count; i++) {
+	for (size_t i = 0; i < count; i++)
 		if (strcmp(field[i].name, name) == 0)
 			return;
-		if (now && strcmp(field[i].name, now) == 0) {
-			ob_log_note("%s.%s is now called %s.%s", where, name, where, now);
-			return;
-		}
-	}
 	fail_unknown(L, where, name, field, count);
-}
-
-// Pushes the field's value, which may have its former name; false: it is missing.
-static bool push_value(lua_State *L, int index, const char *where, const ob_field *field)
-{
-	const char *former = ob_setting_former(field->name);
-	lua_pushstring(L, field->name);
-	bool given = lua_rawget(L, index) != LUA_TNIL;
-	if (!former)
-		return given;
-	lua_pushstring(L, former);
-	if (lua_rawget(L, index) == LUA_TNIL) {
-		lua_pop(L, 1);
-		return given;
-	}
-	if (given)
-		ob_sandbox_fail(L, "%s.%s is now called %s.%s: expected one of them, got both", where, former, where,
-				field->name);
-	lua_remove(L, -2);
-	return true;
 }
 
 uint64_t ob_fields_read(lua_State *L, int index, const char *where, const ob_field *field, size_t count, void *to)
@@ -453,7 +426,8 @@ uint64_t ob_fields_read(lua_State *L, int index, const char *where, const ob_fie
 	uint64_t found = 0;
 	for (size_t i = 0; i < count; i++) {
 		reader r = { L, where, &field[i], (char *)to + field[i].offset };
-		bool given = push_value(L, index, where, &field[i]);
+		lua_pushstring(L, field[i].name);
+		bool given = lua_rawget(L, index) != LUA_TNIL;
 		if (given || field[i].required)
 			read_kind[field[i].kind](&r);
 		found |= (uint64_t)(given && i < 64) << i % 64;

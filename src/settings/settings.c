@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/number.h"
+#include "base/random.h"
 
 enum { SCENE = OB_SETTING_SCENE, OPTION = OB_SETTING_OPTION, ABOVE = OB_SETTING_ABOVE, OBJECTS = OB_SETTING_OBJECTS };
 
@@ -20,6 +21,21 @@ _Static_assert(offsetof(ob_settings, run) == 0, "offsets hold in ob_run_settings
 static const struct {
 	const char *former, *now;
 } renamed[] = { { "passes", "iterations" }, { "exchange", "solver" }, { "parts", "profile" } };
+
+ob_fault_kind ob_fault_draw(const ob_fault_plan *p, uint32_t among, uint32_t worker, uint64_t chance, uint64_t *random)
+{
+	const uint32_t kinds = p->kinds & among;
+	uint64_t state = p->seed;
+	state = ob_splitmix(&state) + worker;
+	state = ob_splitmix(&state) + chance;
+	if (!kinds || ob_splitmix_real(&state) >= p->probability)
+		return OB_FAULT_KINDS;
+	uint32_t nth = (uint32_t)(ob_splitmix(&state) % (uint32_t)__builtin_popcount(kinds)), kind = 0;
+	while (!(kinds >> kind & 1) || nth-- > 0)
+		kind++;
+	*random = state;
+	return (ob_fault_kind)kind;
+}
 
 ob_units ob_run_settings_units(const ob_run_settings *s)
 {

@@ -47,7 +47,7 @@
 
 #include <ob/motion.h>
 
-#include "settings/free.h"
+#include "settings/settings.h"
 #include "table/table.h"
 
 enum { OB_LEDGER_ACCOUNTS = 32, OB_FREE_GROUP = 64, OB_FREE_CHANGES = 16 };

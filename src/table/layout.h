@@ -179,7 +179,7 @@ enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
 static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT_PAGE, "trace");
 static_assert(sizeof(ob_run_settings) == 128, "run settings");
-static_assert(sizeof(ob_header) == 88 + 8 * OB_AREAS + OB_NAME_MAX + 16 + 128 + 8, "header");
+static_assert(sizeof(ob_header) == 88 + 8 * OB_AREAS + OB_NAME_MAX + 16 + sizeof(ob_run_settings) + 8, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 576, "control");
 static_assert(sizeof(ob_worker_cell) == 960, "worker cell");
