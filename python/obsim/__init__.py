@@ -760,6 +760,10 @@ class Batch(_Strict):
         """Universe k."""
         return self._runs[k]
 
+    def __iter__(self):
+        """All universes."""
+        return iter(self._runs)
+
     def _call(self, rows, steps):
         if not all(r._controller for r in self._runs):
             raise Error('a universe of the batch is closed')

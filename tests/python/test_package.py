@@ -10,6 +10,11 @@ import tempfile
 import unittest
 import zipfile
 
+try:
+    import gymnasium # pylint: disable=unused-import # obsim.gym needs it
+except ImportError:
+    import gymnasium_stand_in # pylint: disable=unused-import # installs itself
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODULES = ['obsim', *('obsim.' + p.stem for p in (ROOT / 'python/obsim').glob('*.py') if p.stem[0] != '_')]
 
@@ -29,9 +34,9 @@ class Package(unittest.TestCase):
             for what, x in vars(module).items():
                 if what[0] == '_' or getattr(x, '__module__', None) != name:
                     continue
-                parts = vars(x).items() if inspect.isclass(x) else ()
-                missing += [f'{name}.{what}.{part}' for part, y in parts if part[0] != '_' and not getattr(y, '__doc__', None)]
-                missing += [] if x.__doc__ else [f'{name}.{what}']
+                parts = vars(x) if inspect.isclass(x) else ()
+                missing += [f'{name}.{what}.{part}' for part in parts if part[0] != '_' and not inspect.getdoc(getattr(x, part))]
+                missing += [] if inspect.getdoc(x) else [f'{name}.{what}']
         self.assertEqual(missing, [])
 
     @unittest.skipUnless(shutil.which('stubtest'), 'needs mypy')
