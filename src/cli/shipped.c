@@ -8,7 +8,7 @@
 
 const char *ob_shipped_find(const char *name)
 {
-	static char path[PATH_MAX];
+	static _Thread_local char path[PATH_MAX];
 	static const char folder[] = "scenes/", ending[] = ".lua"; // as documents write a name
 	char file[NAME_MAX];
 	struct stat there;

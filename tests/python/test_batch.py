@@ -59,6 +59,12 @@ class Batch(unittest.TestCase):
         self.assertEqual(states['position'].shape, (n, 2, 3))
         self.assertEqual(len({p.tobytes() for p in states['position']}), n)
 
+    def test_names(self):
+        """Threads find scenes by name at the same time."""
+        for _ in range(10):
+            with obsim.batch('stack', 16, threads=8) as b:
+                self.assertEqual(b.position.shape, (16, 11, 3))
+
     def test_masks(self):
         n = 5
         b, mask = self.batch(n, threads=2), numpy.array([True, False, True, False, False])
