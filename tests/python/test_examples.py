@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""The examples in C, beside a run that Python leads: a controller, a logger, a second renderer. Exit 77 without NumPy."""
+"""The examples in C, beside a run that Python leads: a controller, a logger, a second renderer; and one in Python that learns.
+Exit 77 without NumPy."""
 import csv
 import os
+import runpy
 import subprocess
 import sys
 import tempfile
@@ -24,6 +26,13 @@ box { name = "box", size = { 1, 1, 1 }, at = { 3, 0, .5 }, colour = "#0000ff" }
 
 def example(name, *words, **more):
     return subprocess.Popen([os.path.join(os.environ['EXAMPLES'], name), *map(str, words)], stdout=subprocess.PIPE, **more)
+
+
+class Learning(unittest.TestCase):
+    def test_balance(self):
+        """The policy keeps up all poles, from starts that it has not seen."""
+        balance = runpy.run_path(os.path.join(os.path.dirname(__file__), '../../examples/balance.py'))
+        self.assertTrue(balance['main']())
 
 
 class Examples(unittest.TestCase):
