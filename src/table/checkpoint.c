@@ -76,15 +76,11 @@ static bool next_in_use(int fd, uint64_t from, uint64_t end, range *found)
 	return true;
 }
 
+static const char blank[OB_LAYOUT_PAGE];
+
 static bool is_blank(const char *page)
 {
-	uint64_t words[8], any = 0;
-	for (size_t at = 0; at < OB_LAYOUT_PAGE && !any; at += sizeof words) {
-		memcpy(words, page + at, sizeof words);
-		for (int i = 0; i < 8; i++)
-			any |= words[i];
-	}
-	return !any;
+	return memcmp(page, blank, sizeof blank) == 0;
 }
 
 static bool keep(ob_checkpoint *c, const ob_universe *u, range r, size_t *bytes)
@@ -159,14 +155,19 @@ bool ob_checkpoint_take(ob_checkpoint *c, const ob_universe *u)
 	return take_motions(c, u) && take_passports(c, u) && take_areas(c, u);
 }
 
-// Word by word, for readers in other threads or processes may read at the same time. from NULL = zeros.
-static void put_words(char *to, const char *from, size_t bytes)
+// Writes pages that differ, word by word, for readers in other threads or processes may read at the same time. from NULL =
+// zeros.
+static void put_pages(char *to, const char *from, size_t bytes)
 {
-	for (size_t i = 0; i < bytes; i += sizeof(uint64_t)) {
-		uint64_t word = 0;
-		if (from)
-			memcpy(&word, from + i, sizeof word);
-		__atomic_store_n((uint64_t *)(to + i), word, __ATOMIC_RELAXED);
+	for (size_t page = 0; page < bytes; page += OB_LAYOUT_PAGE) {
+		const char *then = from ? from + page : blank;
+		if (memcmp(to + page, then, OB_LAYOUT_PAGE) == 0)
+			continue;
+		for (size_t i = 0; i < OB_LAYOUT_PAGE; i += sizeof(uint64_t)) {
+			uint64_t word;
+			memcpy(&word, then + i, sizeof word);
+			__atomic_store_n((uint64_t *)(to + page + i), word, __ATOMIC_RELAXED);
+		}
 	}
 }
 
@@ -179,12 +180,12 @@ static void put_areas_back(const ob_checkpoint *c, const ob_universe *u)
 	for (uint64_t at = all.begin; next_in_use(c->fd, at, all.end, &r); at = r.end) {
 		for (; k < c->ranges && c->kept[k].begin < r.end; k++) {
 			const range *kept = &c->kept[k];
-			put_words(u->base + r.begin, NULL, kept->begin - r.begin);
-			put_words(u->base + kept->begin, from, kept->end - kept->begin);
+			put_pages(u->base + r.begin, NULL, kept->begin - r.begin);
+			put_pages(u->base + kept->begin, from, kept->end - kept->begin);
 			from += kept->end - kept->begin;
 			r.begin = kept->end;
 		}
-		put_words(u->base + r.begin, NULL, r.end - r.begin);
+		put_pages(u->base + r.begin, NULL, r.end - r.begin);
 	}
 }
 
