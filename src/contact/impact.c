@@ -35,10 +35,6 @@ typedef struct point_rows {
 	double rate; // kg: factor from a velocity to an impulse in an iteration, small enough to converge
 } point_rows;
 
-typedef struct change_of_velocity {
-	ob_vec3 v, w;
-} change_of_velocity;
-
 // J M^-1 J' of one point: normal, normal with friction, friction (11 12 22)
 typedef struct point_matrix {
 	double nn, nt[2], tt[3];
@@ -49,10 +45,12 @@ typedef struct impact_set {
 	uint32_t bodies, points;
 	int dims; // rows of a point: 3, or 1 without friction
 	point_rows *point;
-	change_of_velocity *change; // [bodies]
+	ob_impact_change *change; // [bodies]
 	double largest; // m/s: largest velocity of the points
 	double share; // factor of e: 1, or 0 for the plastic impact
 	point_matrix one; // for a set of one point
+	const ob_impact_links *links; // NULL: no joints
+	double *response; // [rows][rows]: J P M^-1 J', with the joints' share P; NULL without joints
 	const ob_impact_payer *payer; // NULL: no budget
 } impact_set;
 
@@ -148,7 +146,10 @@ static void set_rates(impact_set *s, uint32_t *count)
 static void set_matrix(impact_set *s)
 {
 	point_rows *r = s->point;
-	s->one = point_matrix_of(r);
+	const double *a = s->response;
+	s->one = !a             ? point_matrix_of(r)
+		 : s->dims == 1 ? (point_matrix){ .nn = a[0] }
+				: (point_matrix){ a[0], { a[1], a[2] }, { a[4], a[5], a[8] } };
 	r->rate = 1 / (s->one.nn + (s->dims == 3 ? s->one.tt[0] + s->one.tt[2] : 0));
 }
 
@@ -157,7 +158,7 @@ static void add_changes(const impact_set *s, const double *x)
 	memset(s->change, 0, s->bodies * sizeof *s->change);
 	for (uint32_t k = 0; k < s->points; k++) {
 		const point_rows *r = &s->point[k];
-		change_of_velocity *a = &s->change[r->a], *b = &s->change[r->b];
+		ob_impact_change *a = &s->change[r->a], *b = &s->change[r->b];
 		for (int i = 0; i < s->dims; i++) {
 			const double xi = x[k * (uint32_t)s->dims + (uint32_t)i];
 			if (r->mass_a > 0) {
@@ -169,6 +170,42 @@ static void add_changes(const impact_set *s, const double *x)
 				b->w = ob_madd(b->w, -xi, r->turn_b[i]);
 			}
 		}
+	}
+	if (s->links)
+		s->links->share(s->links->with, s->change);
+}
+
+// Velocity of a row that has begun at "before", by the changes of the bodies' velocities.
+static double velocity_of(const impact_set *s, uint32_t row, double before)
+{
+	const uint32_t dims = (uint32_t)s->dims, i = row % dims;
+	const point_rows *r = &s->point[row / dims];
+	const ob_impact_change *a = &s->change[r->a], *b = &s->change[r->b];
+	return before + ob_dot(r->along[i], ob_sub(a->v, b->v)) + ob_dot(r->about_a[i], a->w) -
+	       ob_dot(r->about_b[i], b->w);
+}
+
+// Velocity of a row that has begun at "before", by impulses x, from the responses to them.
+static double answer_of(const impact_set *s, uint32_t row, double before, const double *x)
+{
+	const uint32_t rows = s->points * (uint32_t)s->dims;
+	for (uint32_t j = 0; j < rows; j++)
+		before += s->response[row * rows + j] * x[j];
+	return before;
+}
+
+// Finds the response of all rows to each other with joints: a column by a unit impulse.
+static void find_response(impact_set *s, double *x)
+{
+	const uint32_t rows = s->points * (uint32_t)s->dims;
+	s->response = ob_allocate(rows * rows * sizeof *s->response);
+	memset(x, 0, rows * sizeof *x);
+	for (uint32_t j = 0; j < rows; j++) {
+		x[j] = 1;
+		add_changes(s, x);
+		x[j] = 0;
+		for (uint32_t i = 0; i < rows; i++)
+			s->response[i * rows + j] = velocity_of(s, i, 0);
 	}
 }
 
@@ -192,15 +229,15 @@ static void find_velocities(const impact_set *s, const double *x, double *u)
 		find_velocities_of_one(s, x, u);
 		return;
 	}
-	add_changes(s, x);
-	for (uint32_t k = 0; k < s->points; k++) {
-		const point_rows *r = &s->point[k];
-		const change_of_velocity *a = &s->change[r->a], *b = &s->change[r->b];
-		for (int i = 0; i < s->dims; i++)
-			u[k * (uint32_t)s->dims + (uint32_t)i] =
-				r->before[i] + ob_dot(r->along[i], ob_sub(a->v, b->v)) + ob_dot(r->about_a[i], a->w) -
-				ob_dot(r->about_b[i], b->w);
-		u[k * (uint32_t)s->dims] += s->share * r->e * r->before[0];
+	const uint32_t dims = (uint32_t)s->dims;
+	if (!s->response)
+		add_changes(s, x);
+	for (uint32_t i = 0; i < s->points * dims; i++) {
+		const point_rows *r = &s->point[i / dims];
+		const double before = r->before[i % dims];
+		u[i] = s->response ? answer_of(s, i, before, x) : velocity_of(s, i, before);
+		if (i % dims == 0)
+			u[i] += s->share * r->e * before;
 	}
 }
 
@@ -291,8 +328,9 @@ static void fill_matrix(const impact_set *s, newton_system *y)
 	y->n = (int)s->points * s->dims;
 	for (int i = 0; i < y->n; i++)
 		for (int j = 0; j <= i; j++)
-			y->a[i][j] = y->a[j][i] =
-				coupling(&s->point[i / s->dims], i % s->dims, &s->point[j / s->dims], j % s->dims);
+			y->a[i][j] = y->a[j][i] = s->response ? s->response[i * y->n + j]
+							      : coupling(&s->point[i / s->dims], i % s->dims,
+									 &s->point[j / s->dims], j % s->dims);
 }
 
 // Eliminates the first n rows and columns with row pivots. Returns false if they are singular.
@@ -644,17 +682,17 @@ static void gather_points(impact_set *s, const ob_impact_body *body, const ob_im
 }
 
 void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points,
-		     const ob_impact_payer *payer)
+		     const ob_impact_links *links, const ob_impact_payer *payer)
 {
 	enum { FEW = 8 };
 	struct {
 		point_rows point[FEW];
-		change_of_velocity change[2 * FEW];
+		ob_impact_change change[2 * FEW];
 		double row[6 * 3 * FEW];
 		uint32_t count[2 * FEW];
 	} few;
 	const bool many = points > FEW || bodies > 2 * FEW;
-	impact_set s = { .bodies = bodies, .point = few.point, .change = few.change, .payer = payer };
+	impact_set s = { .bodies = bodies, .point = few.point, .change = few.change, .links = links, .payer = payer };
 	double *row = few.row;
 	uint32_t *count = few.count;
 	if (many) {
@@ -666,6 +704,8 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 	gather_points(&s, body, point, points);
 	if (s.points && !pay(&s, 1, 0)) {
 		double *x = row, *u = x + 3 * points;
+		if (links)
+			find_response(&s, x);
 		if (s.points == 1)
 			set_matrix(&s);
 		else
@@ -677,6 +717,7 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 			body[i].v = ob_add(body[i].v, s.change[i].v);
 			body[i].w = ob_add(body[i].w, s.change[i].w);
 		}
+		free(s.response);
 	}
 	if (many) {
 		free(s.point);
@@ -693,7 +734,7 @@ bool ob_impact_part(ob_impact_body *body, uint32_t bodies, const ob_impact_point
 	const double rounding = 1e-12; // relative to the approach: remaining approach that counts as none
 	double left = approach;
 	for (int k = 0; k < REFLECTIONS && left > rounding * approach; k++) {
-		ob_impact_solve(body, bodies, point, points, NULL); // few points: no budget
+		ob_impact_solve(body, bodies, point, points, NULL, NULL); // few points: no budget
 		left = ob_impact_approach(body, point, points);
 	}
 	return left <= rounding * approach;

@@ -52,11 +52,22 @@ typedef struct ob_impact_payer {
 	void *with;
 } ob_impact_payer;
 
+typedef struct ob_impact_change {
+	ob_vec3 v, w; // m/s, rad/s
+} ob_impact_change;
+
+// Joints between the bodies of a set. share: adds the joints' share to changes of velocities, one for each body, that
+// impulses at points alone would make: a projection, linear, self-adjoint in the metric of the masses.
+typedef struct ob_impact_links {
+	void (*share)(void *with, ob_impact_change *change);
+	void *with;
+} ob_impact_links;
+
 // Changes the velocities of the bodies by one impact at all points that approach. Plastic points (e = 0) take part,
 // too, if the impact would close them. Others may approach afterwards. Momentum and angular momentum are conserved to
-// rounding, energy does not grow. payer: NULL: no budget.
+// rounding, energy does not grow. links: NULL: no joints. payer: NULL: no budget.
 void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_point *point, uint32_t points,
-		     const ob_impact_payer *payer);
+		     const ob_impact_links *links, const ob_impact_payer *payer);
 
 // Repeats ob_impact_solve until no point approaches, for few points. approach: m/s, from ob_impact_approach. Returns
 // false if some still do: the contact solver must separate them.

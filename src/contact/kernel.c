@@ -380,7 +380,9 @@ PER_KIND void leap(const ob_batch *b, ob_batch_kind kind, bool holds, lane_mask 
 #pragma GCC unroll 7
 	for (int i = 0; i < rows; i++)
 		if (in_use(kind, i))
-			open[i] = (b->inv_diag[i] > 0) & (i < OB_POINTS ? x[i] > 0 : i == 6 ? b->radius > 0 : is_load(sum));
+			open[i] = (b->inv_diag[i] > 0) & (i < OB_POINTS ? x[i] > 0
+							  : i == 6      ? b->radius > 0
+									: is_load(sum));
 	const lanes brought = slides ? 1 / lanes_max(sum, lanes_of(1e-300)) : none;
 #pragma GCC unroll 7
 	for (int i = 0; i < rows; i++) {
@@ -403,7 +405,8 @@ PER_KIND void leap(const ob_batch *b, ob_batch_kind kind, bool holds, lane_mask 
 		share = lanes_select(x[i] + d[i] < 0, lanes_min(share, -x[i] / d[i]), share);
 		more += d[i];
 	}
-	to &= is_load(sum) & (share > 0) & (share <= 1) & (lanes_abs(more) < INFINITY); // rows may contradict each other
+	to &= is_load(sum) & (share > 0) & (share <= 1) &
+	      (lanes_abs(more) < INFINITY); // rows may contradict each other
 	share = lanes_where(to, share);
 	for (int i = 0; i < OB_ROWS; i++) {
 		if (!in_use(kind, i) || (!slides && i >= rows))

@@ -215,6 +215,14 @@ static void update_row_pose(ob_island_work *w, uint32_t row)
 	memset(d, 0, sizeof(ob_body_row));
 }
 
+ob_vec3 ob_turn_between(ob_quat a, ob_quat b)
+{
+	ob_quat turn = ob_quat_mul(b, ob_quat_conjugate(a));
+	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+	double angle = 2 * ob_atan2(sin_half, fabs(turn.w)), scale = sin_half > 1e-12 ? angle / sin_half : 2;
+	return ob_scale(ob_v3(turn.x, turn.y, turn.z), turn.w < 0 ? -scale : scale);
+}
+
 // Ghosts move with the body that they stand for, by the same displacement.
 void ob_body_update_pose(ob_island_work *w, uint32_t row)
 {

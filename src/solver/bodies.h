@@ -14,6 +14,8 @@ static inline void ob_row_add(double *r, ob_vec3 linear, ob_vec3 angular)
 void ob_bodies_load(ob_solver *s, const ob_island_input *in);
 // Adds an empty row. Returns it.
 uint32_t ob_bodies_add_row(ob_island_work *w);
+// Rotation vector (rad, world) from attitude a to b, by less than half a turn.
+ob_vec3 ob_turn_between(ob_quat a, ob_quat b);
 // Applies the displacement row to the pose, and updates the gaps of contacts that were computed for the old pose. The
 // angular velocity turns with the body, so its energy stays.
 void ob_body_update_pose(ob_island_work *w, uint32_t row);

@@ -5,12 +5,12 @@
 #include <string.h>
 
 #include "base/allocate.h"
-#include "elementary/elementary.h"
 #include "shape/shape.h"
 #include "solver/bodies.h"
 #include "solver/budget.h"
 #include "solver/contacts.h"
 #include "solver/instant.h"
+#include "solver/machines.h"
 #include "solver/narrowphase.h"
 #include "solver/relative_speed.h"
 #include "solver/surfaces.h"
@@ -306,13 +306,6 @@ static bool moves(const ob_island_work *w, uint32_t row)
 	return row >= 1 && row <= w->bodies;
 }
 
-static uint32_t root_of(ob_impacts *x, uint32_t row)
-{
-	while (x->root[row] != row)
-		row = x->root[row] = x->root[x->root[row]];
-	return row;
-}
-
 static bool is_plastic(const ob_contact *contact)
 {
 	return contact->e == 0;
@@ -344,20 +337,19 @@ static uint32_t select_earliest(ob_island_work *w)
 	for (uint32_t k = 0; k < x->count; k++)
 		for (int side = 0; side < 2; side++) {
 			const ob_contact *c = &w->contact[x->pending[k].contact];
-			const uint32_t row = side ? c->b : c->a;
-			x->first[row] = INFINITY;
-			x->slot[row] = NONE;
+			x->first[x->machine[side ? c->b : c->a]] = INFINITY;
 		}
-	for (uint32_t k = 0; k < x->count; k++) {
-		const ob_contact *c = &w->contact[x->pending[k].contact];
-		x->first[c->a] = ob_min(x->first[c->a], x->pending[k].time);
-		x->first[c->b] = ob_min(x->first[c->b], x->pending[k].time);
-	}
+	for (uint32_t k = 0; k < x->count; k++)
+		for (int side = 0; side < 2; side++) {
+			const ob_contact *c = &w->contact[x->pending[k].contact];
+			double *first = &x->first[x->machine[side ? c->b : c->a]];
+			*first = ob_min(*first, x->pending[k].time);
+		}
 	for (uint32_t k = 0; k < x->count; k++) {
 		const ob_impact_instant i = x->pending[k];
 		const ob_contact *c = &w->contact[i.contact];
-		double first = ob_min(plastic, moves(w, c->a) ? x->first[c->a] : INFINITY);
-		first = ob_min(first, moves(w, c->b) ? x->first[c->b] : INFINITY);
+		double first = ob_min(plastic, moves(w, c->a) ? x->first[x->machine[c->a]] : INFINITY);
+		first = ob_min(first, moves(w, c->b) ? x->first[x->machine[c->b]] : INFINITY);
 		if (is_plastic(c))
 			first = ob_min(first, elastic);
 		if (!at_once_with(w, &i, first))
@@ -365,7 +357,7 @@ static uint32_t select_earliest(ob_island_work *w)
 		x->pending[k] = x->pending[selected];
 		x->pending[selected++] = i;
 		if (moves(w, c->a) && moves(w, c->b))
-			x->root[root_of(x, c->a)] = root_of(x, c->b);
+			ob_machines_join(x, c->a, c->b);
 	}
 	return selected;
 }
@@ -445,7 +437,7 @@ static uint32_t select_touching(ob_solver *s, uint32_t contact, double t, uint32
 	x->pending[x->count++] = x->pending[selected];
 	x->pending[selected] = i;
 	if (moves(w, c->a) && moves(w, c->b))
-		x->root[root_of(x, c->a)] = root_of(x, c->b);
+		ob_machines_join(x, c->a, c->b);
 	return selected + 1;
 }
 
@@ -486,10 +478,15 @@ static uint32_t join_touching(ob_solver *s, uint32_t selected)
 	return selected;
 }
 
+static bool in_set(const ob_impacts *x, uint32_t row)
+{
+	return x->slot[row] < x->bodies && x->row[x->slot[row]] == row;
+}
+
 static uint32_t body_of_set(ob_solver *s, ob_impacts *x, uint32_t row, double t)
 {
 	ob_island_work *w = &s->island;
-	if (x->slot[row] != NONE)
+	if (in_set(x, row))
 		return x->slot[row];
 	const uint32_t i = x->slot[row] = x->bodies++;
 	const ob_body *body = &w->body[row];
@@ -543,9 +540,24 @@ static void add_points(ob_solver *s, ob_impact_instant *i, double t)
 	i->set_points = x->points - i->first_point;
 }
 
-static bool in_set(const ob_impacts *x, uint32_t row)
+// Adds all bodies of the machines that are hit. Returns false if there are none.
+static bool add_machines(ob_solver *s, double t)
 {
-	return x->slot[row] < x->bodies && x->row[x->slot[row]] == row;
+	ob_island_work *w = &s->island;
+	ob_impacts *x = &w->impacts;
+	const uint32_t hit = x->bodies;
+	bool any = false;
+	if (!w->elastic || !w->joints.count)
+		return false;
+	for (uint32_t i = 0; i < hit; i++)
+		if (moves(w, x->row[i]) && w->body[x->row[i]].joints) {
+			(void)body_of_set(s, x, x->machine[x->row[i]], t);
+			any = true;
+		}
+	for (uint32_t row = 1; any && row <= w->bodies; row++)
+		if (in_set(x, x->machine[row]))
+			(void)body_of_set(s, x, row, t);
+	return any;
 }
 
 // Returns the body at the instant t, as the impact leaves it.
@@ -600,15 +612,6 @@ static bool set_hops(ob_solver *s, uint32_t chain, double t, const ob_impact_bod
 	return any;
 }
 
-// Rotation vector (rad, world) from attitude a to b, by less than half a turn.
-static ob_vec3 turn_between(ob_quat a, ob_quat b)
-{
-	ob_quat turn = ob_quat_mul(b, ob_quat_conjugate(a));
-	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
-	double angle = 2 * ob_atan2(sin_half, fabs(turn.w)), scale = sin_half > 1e-12 ? angle / sin_half : 2;
-	return ob_scale(ob_v3(turn.x, turn.y, turn.z), turn.w < 0 ? -scale : scale);
-}
-
 // Sets a body back from its state x after an impact to the partial substep's start.
 static void set_back(ob_solver *s, uint32_t row, ob_body_at x, double t)
 {
@@ -620,7 +623,7 @@ static void set_back(ob_solver *s, uint32_t row, ob_body_at x, double t)
 		ob_norm(ob_sub(x.v, ob_row_linear(v))) + body->radius * ob_norm(ob_sub(x.w, ob_row_angular(v)));
 	for (uint32_t k = 0; k < body->adjacent; k++) // until t it went at another speed
 		w->contact[w->adjacency[body->first_adjacent + k]].path += t * change;
-	ob_vec3 shift = ob_sub(x.p, body->p), turn = turn_between(body->q, x.q);
+	ob_vec3 shift = ob_sub(x.p, body->p), turn = ob_turn_between(body->q, x.q);
 	memcpy(d, (double[8]){ shift.x, shift.y, shift.z, turn.x, turn.y, turn.z }, sizeof *w->d);
 	ob_body_update_pose(w, row);
 	memcpy(v, (double[8]){ x.v.x, x.v.y, x.v.z, x.w.x, x.w.y, x.w.z }, sizeof *w->v);
@@ -727,7 +730,8 @@ static void solve_points(ob_solver *s)
 {
 	ob_impacts *x = &s->island.impacts;
 	const ob_impact_payer payer = { is_over, s };
-	ob_impact_solve(x->body, x->bodies, x->point, x->points, &payer);
+	const ob_impact_links links = { ob_machines_share, s };
+	ob_impact_solve(x->body, x->bodies, x->point, x->points, x->linked ? &links : NULL, &payer);
 }
 
 // Solves the impact of those contacts from "chain" on that have joined it. false: it is left to the contact solver.
@@ -736,13 +740,11 @@ static bool solve_joined(ob_solver *s, uint32_t chain, double t)
 	ob_island_work *w = &s->island;
 	ob_impacts *x = &w->impacts;
 	x->bodies = x->points = 0;
-	for (uint32_t k = chain; k != NONE; k = x->next[k]) {
-		x->slot[w->contact[x->pending[k].contact].a] = NONE;
-		x->slot[w->contact[x->pending[k].contact].b] = NONE;
-	}
+	x->instant = t, x->found = false;
 	for (uint32_t k = chain; k != NONE; k = x->next[k])
 		if (x->pending[k].joined)
 			add_points(s, &x->pending[k], t);
+	x->linked = add_machines(s, t);
 	if (x->points > OB_IMPACT_MOST_POINTS && leave_plastic(s, chain))
 		return false;
 	memcpy(x->before, x->body, x->bodies * sizeof *x->body);
@@ -799,6 +801,8 @@ static void solve_set(ob_solver *s, uint32_t chain)
 		memcpy(x->body, x->before, x->bodies * sizeof *x->body);
 		solve_points(s);
 	}
+	if (x->linked)
+		ob_machines_note_loads(w);
 	for (uint32_t i = 0; i < x->bodies; i++)
 		end_loads(w, x->row[i], t);
 	for (uint32_t i = 0; i < x->bodies; i++)
@@ -831,11 +835,11 @@ static void solve_selected(ob_solver *s, uint32_t selected)
 	uint32_t sets = 0;
 	for (uint32_t k = 0; k < selected; k++) {
 		const ob_contact *c = &w->contact[x->pending[k].contact];
-		x->head[root_of(x, moves(w, c->a) ? c->a : c->b)] = NONE;
+		x->head[ob_machines_set(x, moves(w, c->a) ? c->a : c->b)] = NONE;
 	}
 	for (uint32_t k = selected; k-- > 0;) {
 		const ob_contact *c = &w->contact[x->pending[k].contact];
-		uint32_t root = root_of(x, moves(w, c->a) ? c->a : c->b);
+		uint32_t root = ob_machines_set(x, moves(w, c->a) ? c->a : c->b);
 		if (x->head[root] == NONE)
 			x->set[sets++] = root;
 		x->next[k] = x->head[root];
@@ -845,8 +849,8 @@ static void solve_selected(ob_solver *s, uint32_t selected)
 		solve_set(s, x->head[x->set[i]]);
 	for (uint32_t k = 0; k < selected; k++) {
 		const ob_contact *c = &w->contact[x->pending[k].contact];
-		x->root[c->a] = c->a;
-		x->root[c->b] = c->b;
+		x->root[x->machine[c->a]] = x->machine[c->a];
+		x->root[x->machine[c->b]] = x->machine[c->b];
 	}
 }
 
@@ -865,6 +869,7 @@ static void reserve(ob_island_work *w)
 	}
 	if (w->rows > x->rows_max) {
 		x->rows_max = w->rows + w->rows / 2;
+		x->machine = ob_reallocate(x->machine, x->rows_max * sizeof *x->machine);
 		x->root = ob_reallocate(x->root, x->rows_max * sizeof *x->root);
 		x->first = ob_reallocate(x->first, x->rows_max * sizeof *x->first);
 		x->slot = ob_reallocate(x->slot, x->rows_max * sizeof *x->slot);
@@ -954,8 +959,7 @@ bool ob_impacts_resolve(ob_solver *s, bool first)
 		return false;
 	ob_set_drift(w);
 	reserve(w);
-	for (uint32_t row = 0; row < w->rows; row++)
-		w->impacts.root[row] = row;
+	ob_machines_find(w);
 	s->methods.read(s, w->v, 0);
 	look_at_all(s, first);
 	while (w->impacts.count && round < max_rounds && !ob_budget_spent(s)) {
@@ -979,6 +983,7 @@ void ob_impacts_finish(ob_impacts *x)
 	free(x->seen);
 	free(x->set);
 	free(x->point);
+	free(x->machine);
 	free(x->root);
 	free(x->first);
 	free(x->slot);

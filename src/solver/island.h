@@ -163,11 +163,15 @@ typedef struct ob_impacts {
 	uint32_t *next; // [contacts]: chains of pending impacts of one set
 	uint32_t *seen; // [contacts]: last round that has checked it
 	uint32_t *set; // [contacts]: roots of the sets of a round
-	uint32_t *root, *head; // [rows]: union-find over bodies; first pending impact of a set
-	double *first; // [rows], s: earliest of the body's pending impacts
+	uint32_t
+		*machine; // [rows]: the body that stands for all those that joints link, if any contact has restitution
+	uint32_t *root, *head; // [rows]: union-find over bodies that stand for machines; first pending impact of a set
+	double *first; // [rows], s: earliest of the pending impacts of the machine
 	uint32_t changes, *changed; // [rows]: bodies that were hit in a round
 	uint32_t *slot; // [rows]: index in the set that is solved
 	uint32_t bodies, points; // of that set
+	double instant; // s, from the partial substep's start: of that set
+	bool linked, found; // joints link bodies of it; their rows at the instant have been found
 	uint32_t *row; // [bodies]
 	ob_body_at *at; // [bodies]
 	ob_impact_body *body, *before; // [bodies]

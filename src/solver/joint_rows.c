@@ -261,6 +261,21 @@ void ob_joints_factor(ob_island_work *w)
 	ob_sparse_factor(&set->sparse);
 }
 
+void ob_joints_free_axes(ob_island_work *w)
+{
+	for (uint32_t i = 0; w->joints.axes && i < w->joints.count; i++) {
+		w->joints.joint[i].along.softness = 0;
+		ob_axis_disengage(&w->joints.joint[i]);
+	}
+}
+
+void ob_joints_find_free(ob_island_work *w, double time)
+{
+	ob_joints_free_axes(w);
+	ob_joints_find(w, time);
+	ob_joints_factor(w);
+}
+
 void ob_joints_find_responses(ob_island_work *w)
 {
 	ob_joint_set *set = &w->joints;

@@ -35,6 +35,10 @@ void ob_joint_find_rows(const ob_island_work *w, ob_held_joint *j);
 void ob_joints_set_inertias(const ob_island_work *w, ob_sparse_solver *t);
 // Finds the rows of all joints, whose ends have been found, and factors their equations.
 void ob_joints_factor(ob_island_work *w);
+// Lets go of all axes: nothing acts along them.
+void ob_joints_free_axes(ob_island_work *w);
+// Finds all joints and factors their equations, at the present poses and this time (s) of the run, with free axes.
+void ob_joints_find_free(ob_island_work *w, double time);
 // Finds the response of each axis, with all joints, by the factors.
 void ob_joints_find_responses(ob_island_work *w);
 // Velocity of a row (m/s, rad/s) at the velocities in rows.

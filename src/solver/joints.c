@@ -309,14 +309,6 @@ static void update_poses(ob_island_work *w)
 			ob_body_update_pose(w, row);
 }
 
-static void disengage_axes(ob_island_work *w)
-{
-	for (uint32_t i = 0; i < w->joints.count; i++) {
-		w->joints.joint[i].along.softness = 0;
-		ob_axis_disengage(&w->joints.joint[i]);
-	}
-}
-
 // Finds the rows, with those of axes that are beyond a limit. true: some have come.
 static bool find_with_limits(ob_island_work *w, double time)
 {
@@ -339,8 +331,7 @@ void ob_joints_project(ob_solver *s)
 	enum { ROUNDS = 16 };
 	ob_island_work *w = &s->island;
 	double before = INFINITY, none;
-	if (w->joints.axes)
-		disengage_axes(w);
+	ob_joints_free_axes(w);
 	for (int round = 0; w->joints.count && round < ROUNDS; round++) {
 		update_poses(w);
 		if (find_with_limits(w, w->joints.step_begin + w->time))
@@ -613,7 +604,7 @@ static void find_axes(ob_island_work *w, double time)
 	ob_joints_find(w, time);
 	if (!w->joints.axes)
 		return;
-	disengage_axes(w);
+	ob_joints_free_axes(w);
 	factor(w, 0);
 	ob_joints_find_responses(w);
 	enter_axes(w);
@@ -704,13 +695,10 @@ void ob_joints_begin(ob_solver *s)
 	if (!w->joints.count)
 		return;
 	update_poses(w);
-	if (w->joints.axes)
-		disengage_axes(w);
-	ob_joints_find(w, begin);
-	ob_joints_factor(w);
+	ob_joints_find_free(w, begin);
 	set_targets(w);
 	ob_joint_loads_put_back(&w->joints); // drops a try that was too long
-	ob_joints_solve(w, w->v); // impacts know no joints
+	ob_joints_solve(w, w->v); // plastic impacts know no joints
 	ob_joint_loads_keep(&w->joints);
 	for (uint32_t row = 1; row <= w->bodies; row++)
 		if (w->body[row].joints)
@@ -761,10 +749,7 @@ void ob_joints_find_rest(ob_solver *s)
 	if (!w->joints.count)
 		return;
 	update_poses(w);
-	if (w->joints.axes)
-		disengage_axes(w);
-	ob_joints_find(w, w->joints.now);
-	ob_joints_factor(w);
+	ob_joints_find_free(w, w->joints.now);
 	clear_sums(w);
 	for (uint32_t i = 0; i < w->joints.count; i++)
 		memset(w->joints.joint[i].target, 0, sizeof w->joints.joint[i].target);

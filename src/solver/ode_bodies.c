@@ -55,10 +55,7 @@ void ob_ode_bodies_move(ob_solver *s, uint32_t row, double smooth)
 		    &state, j, l, w->h))
 		s->calls.fail(s->calls.with, body->id);
 	// The displacement row takes ODE's step, so that the gaps follow.
-	ob_quat turn = ob_quat_mul(state.pose.q, ob_quat_conjugate(before.q));
-	double sin_half = sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
-	double angle = 2 * ob_atan2(sin_half, turn.w), scale = sin_half > 1e-12 ? angle / sin_half : 2;
-	ob_row_add(w->d[row], ob_sub(state.pose.p, before.p), ob_scale(ob_v3(turn.x, turn.y, turn.z), scale));
+	ob_row_add(w->d[row], ob_sub(state.pose.p, before.p), ob_turn_between(before.q, state.pose.q));
 	memset(w->u[row], 0, sizeof(ob_body_row));
 	ob_row_add(w->u[row], state.v, state.w);
 	ob_body_update_pose(w, row);

@@ -40,7 +40,7 @@ static void add_point(hit *h, uint32_t a, uint32_t b, ob_vec3 at, ob_vec3 normal
 static void solve(hit *h)
 {
 	memcpy(h->after, h->before, sizeof h->after);
-	ob_impact_solve(h->after, h->bodies, h->point, h->points, NULL);
+	ob_impact_solve(h->after, h->bodies, h->point, h->points, NULL, NULL);
 }
 
 static double energy_of(const hit *h, const ob_impact_body *x)
@@ -327,9 +327,9 @@ static void test_payer(void)
 			(ob_impact_point){ .b = 1, .normal = { 0, 0, 1 }, .arm_a = at, .arm_b = at, .mu = .3, .e = .5 };
 	}
 	purse rich = { .left = UINT64_MAX }, poor = { .left = 0 };
-	ob_impact_solve(unpaid, 2, point, SIDE * SIDE, NULL);
-	ob_impact_solve(paid, 2, point, SIDE * SIDE, &(ob_impact_payer){ pay, &rich });
-	ob_impact_solve(cut, 2, point, SIDE * SIDE, &(ob_impact_payer){ pay, &poor });
+	ob_impact_solve(unpaid, 2, point, SIDE * SIDE, NULL, NULL);
+	ob_impact_solve(paid, 2, point, SIDE * SIDE, NULL, &(ob_impact_payer){ pay, &rich });
+	ob_impact_solve(cut, 2, point, SIDE * SIDE, NULL, &(ob_impact_payer){ pay, &poor });
 	CHECK(memcmp(unpaid, paid, sizeof paid) == 0);
 	CHECK(rich.work >= (uint64_t)rich.calls * SIDE * SIDE && rich.calls > 100);
 	CHECK(poor.calls < 10);

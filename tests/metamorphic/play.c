@@ -68,6 +68,8 @@ static void add_body(ob_world *w, player *p, uint32_t i)
 	o.passport->restitution = b->restitution;
 	o.passport->surface_velocity = b->running;
 	*o.state = b->state;
+	if (b->passes)
+		o.passport->flags |= ((1u << OB_GROUPS) - 1) << OB_OBJECT_PASSES;
 	if (hull) {
 		const ob_mat3 r = ob_quat_matrix(p->frame[i]);
 		o.state->pose.q = ob_quat_mul(b->state.pose.q, p->frame[i]);

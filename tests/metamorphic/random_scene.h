@@ -48,6 +48,7 @@ typedef struct scene_body {
 	uint32_t points;
 	ob_vec3 point[SCENE_POINTS]; // m, points of a hull, about its centre of mass; its state is that of this frame
 	uint32_t fixed; // 1 + number of the body to which it is fixed; 0: none, as in all that are drawn
+	bool passes; // it touches nothing
 } scene_body;
 
 typedef struct random_scene {

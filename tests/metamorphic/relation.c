@@ -389,6 +389,7 @@ static bool add_fixed_pebble(random_scene *s, uint64_t *seed)
 	if (!add_pebbles(s, 1, seed))
 		return false;
 	s->body[s->bodies - 1].fixed = on + 1;
+	s->body[s->bodies - 1].passes = true;
 	return true;
 }
 
