@@ -177,9 +177,9 @@ static void kill_a_worker(const ob_universe *u, ob_controller *c)
 	ob_change of = { .id = 1 };
 	while (of.id < BALLS && !ob_universe_get_home(u, of.id, &worker))
 		of.id++;
-	CHECK(of.id == BALLS || ob_controller_kill(c, &of, 1, &e));
 	ob_universe_info before, now;
 	ob_universe_get_info(u, &before);
+	CHECK(of.id == BALLS || ob_controller_kill(c, &of, 1, &e));
 	for (int i = 0; i < 100 * WAIT_S && of.id < BALLS; i++) {
 		ob_universe_get_info(u, &now);
 		if (now.deaths > before.deaths)
