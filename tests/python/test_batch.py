@@ -137,10 +137,11 @@ class Batch(unittest.TestCase):
             action = k % 10
             end = b.step(2, targets={'rail': .3 + .01 * action}, read=JOINTS).tobytes()
             self.assertEqual(ends.setdefault(action, end), end)
-            if k in (200, 2499):
+            if k % 25 == 0:
                 memory.append(resident())
         self.assertEqual(len(set(ends.values())), 10)
-        self.assertLess((memory[1] - memory[0]) * resource.getpagesize(), 1 << 20)
+        early, late = numpy.median(memory[8:40]), numpy.median(memory[-32:]) # one look alone is off by a megabyte
+        self.assertLess((late - early) * resource.getpagesize(), 1 << 20)
 
 
 if __name__ == '__main__':
