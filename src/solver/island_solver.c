@@ -148,8 +148,7 @@ static bool fly(ob_solver *s)
 	ob_solver_enter(s, OB_PROFILE_MOVE);
 	if (ob_joints_fly(s) || w->substeps >= OB_MAX_SUBSTEPS)
 		return true;
-	const uint32_t needed = ob_joints_substeps(s);
-	w->substeps = needed < OB_MAX_SUBSTEPS ? needed : OB_MAX_SUBSTEPS;
+	w->substeps = ob_joints_substeps(s);
 	return false;
 }
 

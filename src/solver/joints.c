@@ -666,13 +666,13 @@ uint32_t ob_joints_substeps(const ob_solver *s)
 	const double swing = set->stiffness * s->settings->step_length;
 	uint32_t n = usual;
 	if (set->failed)
-		return 2 * s->island.substeps;
+		return s->island.substeps < OB_MAX_SUBSTEPS / 2 ? 2 * s->island.substeps : OB_MAX_SUBSTEPS;
 	while (n < MOST_BLOCKS * usual && block_rate * n < swing * usual)
 		n *= 2;
 	if (block_rate * n < swing * usual)
 		for (n *= 2; n < OB_MAX_SUBSTEPS && flight_rate * n < swing;)
 			n *= 2;
-	return n;
+	return n < OB_MAX_SUBSTEPS ? n : OB_MAX_SUBSTEPS;
 }
 
 // ---- among contacts

@@ -20,7 +20,7 @@
 // Moves an island without pairs through the whole step. Returns false if it needs more substeps: then
 // ob_joints_substeps() of them.
 bool ob_joints_fly(ob_solver *s);
-// Number of substeps that the joints need, by the forces of the last flight.
+// Number of substeps that the joints need, by the forces of the last flight: at most OB_MAX_SUBSTEPS.
 uint32_t ob_joints_substeps(const ob_solver *s);
 
 // Moves bodies with joints to the midpoint of the partial substep, and finds the rows there. Before the iterations.

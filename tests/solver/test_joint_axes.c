@@ -366,8 +366,22 @@ static void test_put_aside(void)
 	mechanism_destroy(m);
 }
 
+// A pendulum that no number of substeps can follow asks for no more than there may be.
+static void test_too_fast(void)
+{
+	mechanism *m = mechanism_pendulum(M_PI / 2);
+	m->motion[0].w.y = 1e5, m->motion[0].v = ob_cross(m->motion[0].w, m->motion[0].p);
+	for (int i = 0; i < 3; i++) {
+		mechanism_step(m);
+		CHECK(m->motion[0].substeps <= OB_MAX_SUBSTEPS);
+	}
+	CHECK(m->motion[0].substeps == OB_MAX_SUBSTEPS);
+	mechanism_destroy(m);
+}
+
 int main(void)
 {
+	test_too_fast();
 	test_put_aside();
 	test_armature();
 	test_armature_of_hinge();
