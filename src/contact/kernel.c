@@ -405,8 +405,8 @@ PER_KIND void leap(const ob_batch *b, ob_batch_kind kind, bool holds, lane_mask 
 		share = lanes_select(x[i] + d[i] < 0, lanes_min(share, -x[i] / d[i]), share);
 		more += d[i];
 	}
-	to &= is_load(sum) & (share > 0) & (share <= 1) &
-	      (lanes_abs(more) < INFINITY); // rows may contradict each other
+	// Rows may contradict each other.
+	to &= is_load(sum) & (share > 0) & (share <= 1) & (lanes_abs(more) < INFINITY);
 	share = lanes_where(to, share);
 	for (int i = 0; i < OB_ROWS; i++) {
 		if (!in_use(kind, i) || (!slides && i >= rows))

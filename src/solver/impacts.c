@@ -801,8 +801,7 @@ static void solve_set(ob_solver *s, uint32_t chain)
 		memcpy(x->body, x->before, x->bodies * sizeof *x->body);
 		solve_points(s);
 	}
-	if (x->linked)
-		ob_machines_note_loads(w);
+	ob_machines_note_loads(w);
 	for (uint32_t i = 0; i < x->bodies; i++)
 		end_loads(w, x->row[i], t);
 	for (uint32_t i = 0; i < x->bodies; i++)

@@ -163,8 +163,7 @@ typedef struct ob_impacts {
 	uint32_t *next; // [contacts]: chains of pending impacts of one set
 	uint32_t *seen; // [contacts]: last round that has checked it
 	uint32_t *set; // [contacts]: roots of the sets of a round
-	uint32_t
-		*machine; // [rows]: the body that stands for all those that joints link, if any contact has restitution
+	uint32_t *machine; // [rows]: the body that stands for all that joints link, where hits may rebound
 	uint32_t *root, *head; // [rows]: union-find over bodies that stand for machines; first pending impact of a set
 	double *first; // [rows], s: earliest of the pending impacts of the machine
 	uint32_t changes, *changed; // [rows]: bodies that were hit in a round

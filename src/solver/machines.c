@@ -19,7 +19,9 @@ void ob_machines_find(ob_island_work *w)
 	ob_impacts *x = &w->impacts;
 	for (uint32_t row = 0; row < w->rows; row++)
 		x->root[row] = x->machine[row] = row, x->slot[row] = OB_NO_SLOT;
-	for (uint32_t i = 0; w->elastic && i < w->joints.count; i++) {
+	if (!w->elastic || !w->joints.count)
+		return;
+	for (uint32_t i = 0; i < w->joints.count; i++) {
 		const ob_held_joint *j = &w->joints.joint[i];
 		if (j->parent != OB_SPARSE_FIXED)
 			x->machine[root_of(x->machine, 1 + j->child)] = root_of(x->machine, 1 + j->parent);
@@ -83,6 +85,8 @@ void ob_machines_share(void *solver, ob_impact_change *change)
 
 void ob_machines_note_loads(ob_island_work *w)
 {
+	if (!w->impacts.found) // no point approached
+		return;
 	ob_joints_add_share(w, 1);
 	ob_joint_loads_keep(&w->joints);
 }

@@ -18,7 +18,7 @@ void ob_machines_join(ob_impacts *x, uint32_t a, uint32_t b);
 uint32_t ob_machines_set(ob_impacts *x, uint32_t row);
 // Adds the joints' share to changes of velocities in the set (ob_impact_links). solver: ob_solver.
 void ob_machines_share(void *solver, ob_impact_change *change);
-// Adds the joints' share of the set that was solved last to their loads.
+// Adds the joints' share of the set that was solved last, if they had one, to their loads.
 void ob_machines_note_loads(ob_island_work *w);
 
 #endif

@@ -76,7 +76,7 @@ static void test_neighbours(void)
 	}
 }
 
-// What a request does not say stays as it is.
+// Fields that a request does not name stay as they are.
 static void test_defaults(void)
 {
 	ob_request r;
