@@ -40,7 +40,7 @@ ARROWS = {
     'step': 'terrain baseline exchange cluster schedule solver contact shape motion elementary table settings base',
     'free': 'step solver contact shape motion table settings base exchange/results.h',
     'fmu': 'base',
-    'scene': 'terrain fmu hull mesh settings shape motion elementary base',
+    'scene': 'measure terrain fmu hull mesh settings shape motion elementary base',
     'script': 'terrain fmu scene table settings shape motion base',
     'host': 'terrain control free step script scene hull shape table settings ode base ranks exchange/results.h',
     'checkpoint': 'host scene table settings base',

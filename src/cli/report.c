@@ -56,6 +56,45 @@ static void write_script_error(const ob_script_error *e, ob_json *j)
 	ob_json_close(j);
 }
 
+static void write_expectation(const ob_expectation *x, ob_json *j)
+{
+	ob_json_open(j, NULL);
+	ob_json_string(j, "name", x->name);
+	ob_json_number(j, "value", x->value);
+	ob_json_number(j, "below", x->limit);
+	ob_json_string(j, "unit", x->unit);
+	ob_json_string(j, "source", x->source);
+	ob_json_true(j, "met", ob_expectation_is_met(x));
+	ob_json_close(j);
+}
+
+bool ob_report_missed_expectation(const ob_report *r)
+{
+	const ob_expected *x = r->expected;
+	bool missed = x && *x->failed;
+	for (uint32_t i = 0; x && x->ended && i < x->count; i++)
+		missed |= !ob_expectation_is_met(&x->expectation[i]);
+	return missed;
+}
+
+// A line for each expectation, and one for a failure.
+static void print_expected(const ob_expected *x, FILE *f)
+{
+	if (x && x->count && !x->ended)
+		fputs("  expected     not judged: that takes all of the run, and --set measure=step\n", f);
+	for (uint32_t i = 0; x && x->ended && i < x->count; i++) {
+		const ob_expectation *one = &x->expectation[i];
+		const char *unit = strcmp(one->unit, "1") == 0 ? "" : one->unit, *space = *unit ? " " : "";
+		fprintf(f, "  %-12s %s %.3g%s%s", i ? "" : "expected", one->name, one->value, space, unit);
+		if (!isnan(one->limit))
+			fprintf(f, ", at most %g%s%s: %s", one->limit, space, unit,
+				ob_expectation_is_met(one) ? "met" : "MISSED");
+		fprintf(f, *one->source ? " (%s)\n" : "\n", one->source);
+	}
+	if (x && *x->failed)
+		fprintf(f, "  failed       %s\n", x->failed);
+}
+
 void ob_report_write_members(const ob_report *r, ob_json *j)
 {
 	for (int i = 0; i < FIELDS; i++) {
@@ -72,6 +111,13 @@ void ob_report_write_members(const ob_report *r, ob_json *j)
 		ob_json_open_list(j, "death_list");
 		for (uint32_t i = 0; i < r->deaths_told; i++)
 			write_death(&r->death[i], j);
+		ob_json_close_list(j);
+	}
+	if (r->expected && r->expected->ended) {
+		ob_json_string(j, "failed", r->expected->failed);
+		ob_json_open_list(j, "expectations");
+		for (uint32_t i = 0; i < r->expected->count; i++)
+			write_expectation(&r->expected->expectation[i], j);
 		ob_json_close_list(j);
 	}
 	if (r->script_errors_told) {
@@ -479,5 +525,6 @@ void ob_report_print(const ob_report *r, bool full, FILE *f)
 	print_run(r, f);
 	(full ? print_full : print_short)(r, f);
 	print_exceptions(r, f);
+	print_expected(r->expected, f);
 	fprintf(f, "  state        %s\n", r->state_hash);
 }

@@ -9,6 +9,7 @@
 
 #include "cli/request.h"
 #include "experiment/json.h"
+#include "scene/expect.h"
 #include "table/table.h"
 
 // Members of a report that are in its JSON, in this order: texts of so many bytes, counts, and real numbers, which are NaN if
@@ -81,6 +82,7 @@ typedef struct ob_report {
 	uint32_t deaths_told; // number of entries in death
 	ob_script_error script_error[OB_SCRIPT_ERRORS_KEPT]; // the first of them, by step and object
 	uint32_t script_errors_told; // number of entries in script_error
+	const ob_expected *expected; // what the scene expects, and what came; NULL: it says nothing
 } ob_report;
 
 void ob_report_write_json(const ob_report *r, FILE *f);
@@ -96,6 +98,8 @@ void ob_report_count(ob_report *r, const ob_counters *c, bool timed);
 // Fills the figures of faults.
 void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS], uint32_t overwritten);
 
+// True if an expectation of the scene was not met.
+bool ob_report_missed_expectation(const ob_report *r);
 // True if a tolerance is set or the default, and an island's error stayed above it.
 bool ob_report_missed_tolerance(const ob_report *r);
 // True if the errors of motion of every second are within the tolerance, by estimate, or no tolerance is set.

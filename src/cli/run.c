@@ -41,6 +41,7 @@ typedef struct run {
 	uint64_t every, kept; // every: steps between checkpoints; kept: step of the last one; UINT64_MAX = none yet
 	uint64_t frames;
 	bool whole; // it came to its end
+	bool misjudged; // a function of the scene's expectations failed
 	double begun; // s
 	double own_cpu, drawing_cpu; // CPU time of this thread (s): when stepping began; while it drew
 	ob_timeline_sums trace;
@@ -74,6 +75,18 @@ static uint64_t next_boundary(const run *r)
 	return next;
 }
 
+// Lets the scene look at the newest snapshot, and at the last one once more. Each step must be there, from the start.
+static bool look(run *r, ob_error *e)
+{
+	ob_expected *x = r->scene->expected;
+	const double step = r->request.run.step_length;
+	if (!x || r->request.asked.measure != OB_MEASURE_STEPS || r->first > 0 || r->ranks.rank > 0)
+		return true;
+	r->misjudged = !ob_expected_look(x, &r->now, step, e) ||
+		       (r->now.step >= r->steps && !ob_expected_end(x, &r->now, step, e));
+	return !r->misjudged;
+}
+
 // Uses the newest snapshot while the universe steps on.
 static bool use_snapshot(run *r, ob_error *e)
 {
@@ -82,6 +95,8 @@ static bool use_snapshot(run *r, ob_error *e)
 	uint64_t begin = ob_clock_ns();
 	if (r->request.asked.measure == OB_MEASURE_STEPS || ends) {
 		if (!ob_observer_measure(&r->observer, &r->now, r->host, e))
+			return false;
+		if (!look(r, e))
 			return false;
 		ob_host_trace(r->host, OB_TRACE_MEASURE, begin, 0);
 	}
@@ -287,6 +302,7 @@ static void name_report(const run *r, const char *outcome, ob_report *p)
 		.checkpoint_bytes = r->checkpoint_sums.bytes,
 		.checkpoint_s = q->checkpoint ? r->checkpoint_sums.held_s : NAN,
 	};
+	p->expected = r->scene->expected;
 	snprintf(p->scene, sizeof p->scene, "%s", q->scene);
 	snprintf(p->outcome, sizeof p->outcome, "%s", outcome);
 	snprintf(p->arch, sizeof p->arch, "%.15s", ob_setting_print(&q->run, OB_SETTING_ARCHITECTURE).text);
@@ -493,6 +509,8 @@ static int carry_out(run *r)
 	warn_of_coarse_tolerance(r);
 	if (interrupted)
 		code = ob_command_fail(OB_EXIT_FAILED, "interrupted: the files hold what was done so far");
+	else if (!done && r->misjudged)
+		code = ob_command_fail(OB_EXIT_USAGE, e.text);
 	else if (!done)
 		code = ob_command_fail(ob_host_broke_invariant(r->host) ? OB_EXIT_BROKEN : OB_EXIT_FAILED, e.text);
 	r->whole = done && closed;
@@ -514,7 +532,8 @@ static int carry_out(run *r)
 		warn_of_unbounded_motion(report);
 		code = OB_EXIT_FAILED;
 	}
-	return r->request.strict && report->scripts_stopped && code == OB_EXIT_OK ? OB_EXIT_FAILED : code;
+	const bool wrong = report->scripts_stopped > 0 || ob_report_missed_expectation(report);
+	return r->request.strict && wrong && code == OB_EXIT_OK ? OB_EXIT_FAILED : code;
 }
 
 // Reads the scene of the run, and merges it with the request. NULL and e on failure.

@@ -69,19 +69,7 @@ ob_state ob_look_end(const ob_case_run_state *t, const ob_joint_passport *j, int
 
 double ob_look_parted(const ob_case_run_state *t)
 {
-	double most = 0;
-	for (uint32_t i = 0; i < t->world->joints; i++) {
-		const ob_joint_passport *j = &t->world->joint[i];
-		ob_vec3 at[2];
-		for (int side = 0; side < 2; side++) {
-			const ob_pose body = ob_look_end(t, j, side).pose;
-			const ob_mat3 r = ob_quat_matrix(body.q);
-			at[side] = ob_add(body.p, ob_rotate(&r, j->frame[side].p));
-		}
-		if (j->kind != OB_JOINT_SLIDER)
-			most = fmax(most, ob_norm(ob_sub(at[0], at[1])));
-	}
-	return most;
+	return ob_measure_gap(&t->now);
 }
 
 double ob_look_gravity(const ob_case_run_state *t)

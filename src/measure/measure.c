@@ -566,3 +566,26 @@ void ob_measure_separation(const ob_snapshot *s, ob_separation *out, bool (*stop
 	if (out->pairs)
 		out->mean_m = sum / (double)out->pairs;
 }
+
+// Place of a joint on its object at this side, in the world.
+static ob_vec3 place_of_joint(const ob_snapshot *s, const ob_joint_passport *j, int side)
+{
+	if (j->object[side] == OB_JOINT_WORLD)
+		return j->frame[side].p;
+	const ob_pose body = ob_snapshot_state(s, j->object[side]).pose;
+	const ob_mat3 r = ob_quat_matrix(body.q);
+	return ob_add(body.p, ob_rotate(&r, j->frame[side].p));
+}
+
+double ob_measure_gap(const ob_snapshot *s)
+{
+	double most = 0;
+	for (uint32_t i = 0; i < s->joints; i++) {
+		const ob_joint_passport *j = &s->joint[i];
+		const bool parts =
+			j->kind == OB_JOINT_SLIDER || j->kind == OB_JOINT_DISTANCE || j->kind == OB_JOINT_APART;
+		if (!parts && ob_snapshot_has_joint(s, i) && !(j->flags & OB_JOINT_BROKEN))
+			most = fmax(most, ob_norm(ob_sub(place_of_joint(s, j, 0), place_of_joint(s, j, 1))));
+	}
+	return most;
+}

@@ -84,6 +84,9 @@ bool ob_measure_penetration_unless(const ob_snapshot *s, ob_penetration *out, bo
 bool ob_measure_depths(const ob_snapshot *s, double *each, ob_penetration *out, bool (*stop)(void *context),
 		       void *context, ob_error *e);
 
+// Largest distance (m) of the two places of a joint that must be one: of all but sliders and distances.
+double ob_measure_gap(const ob_snapshot *s);
+
 typedef struct ob_separation {
 	double max_m, mean_m; // over contacts with an impulse; 0 if they touch or penetrate
 	size_t pairs;

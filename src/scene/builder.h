@@ -120,12 +120,17 @@ int ob_scene_call_controls(lua_State *L);
 int ob_scene_call_random(lua_State *L);
 int ob_scene_call_random_rotation(lua_State *L);
 int ob_scene_call_joint(lua_State *L); // upvalue 1: the kind
+int ob_scene_call_case(lua_State *L);
+int ob_scene_call_expect(lua_State *L);
+int ob_scene_call_watch(lua_State *L);
 int ob_scene_call_random_integer(lua_State *L); // math.random
 
 // The shortest rotation from +z to the unit vector n.
 ob_quat ob_scene_turn_to(ob_vec3 n);
-// Adds an object of this shape from the table at the bottom of the stack.
-void ob_scene_add(lua_State *L, ob_shape shape);
+// Adds an object of this shape from the table at the bottom of the stack; pushes its name. Returns 1.
+int ob_scene_add(lua_State *L, ob_shape shape);
+// Text after "name=" in the last -D of that name, which the scene has from now on; NULL: there is none.
+const char *ob_builder_defined(lua_State *L, ob_builder *b, const char *name);
 // Finds or adds the hull of these points; objects with the same points and moments share it. inertia: m^2, principal
 // moments per kilogram; NAN: a homogeneous body's. It stays where it is until the next hull is added.
 const ob_hull *ob_builder_hull(lua_State *L, ob_builder *b, const ob_points *p, ob_vec3 inertia);

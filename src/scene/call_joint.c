@@ -366,5 +366,6 @@ int ob_scene_call_joint(lua_State *L)
 	set_strength(L, kind, &d, &j);
 	set_name(L, b, kind, d.name, &j);
 	add(L, b, kind, &j);
-	return 0;
+	lua_pushstring(L, j.name);
+	return 1;
 }

@@ -184,7 +184,8 @@ typedef struct body {
 		F(mesh_rotation, .kind = OB_FIELD_ROTATION)
 
 static const ob_field body_fields[] = { PLACE, MOVING, SURFACE, LOOKS };
-static const ob_field endless_fields[] = { F(normal, .kind = OB_FIELD_DIRECTION), PLACE, SURFACE };
+static const ob_field endless_fields[] = { F(normal, .kind = OB_FIELD_DIRECTION), F(q, .kind = OB_FIELD_QUATERNION),
+					   PLACE, SURFACE };
 static const ob_field points_field =
 	F(points, .kind = OB_FIELD_POINTS, .low = -OB_LENGTH_MOST, .high = OB_LENGTH_MOST, .required = true);
 static const ob_field ground_fields[] = {
@@ -530,8 +531,13 @@ static void read_shape(lua_State *L, ob_shape shape, body *d)
 	ob_field field[MOST];
 	size_t n = 0;
 	if (ob_shape_is(shape, OB_UNBOUNDED)) {
+		const uint64_t given = ob_fields_read(L, 1, kind->name, endless_fields,
+						      sizeof endless_fields / sizeof *endless_fields, d);
 		d->fixed = true;
-		ob_fields_read(L, 1, kind->name, endless_fields, sizeof endless_fields / sizeof *endless_fields, d);
+		if (given & 1 && !isnan(d->q.w))
+			refuse_together(L, kind->name, "normal", "q");
+		if (isnan(d->q.w))
+			d->q = ob_scene_turn_to(d->normal);
 		return;
 	}
 	for (size_t k = 0; k < OB_SHAPE_KEYS && kind->key[k].name; k++)
@@ -560,7 +566,14 @@ static ob_vec3 size_of(ob_shape shape, const body *d)
 	return ob_v3(size[0], size[1], size[2]);
 }
 
-void ob_scene_add(lua_State *L, ob_shape shape)
+// Pushes the name of an object, as the result of its call.
+static int give_name(lua_State *L, const ob_object_def *o)
+{
+	lua_pushstring(L, o->passport.name);
+	return 1;
+}
+
+int ob_scene_add(lua_State *L, ob_shape shape)
 {
 	unsigned char state_bytes[STATE_BYTES];
 	body d = nothing;
@@ -568,9 +581,7 @@ void ob_scene_add(lua_State *L, ob_shape shape)
 	read_shape(L, shape, &d);
 	if (ob_shape_is(shape, OB_HULLED))
 		d.hull = ob_builder_hull(L, ob_sandbox_user(L), &d.points, ob_scale(d.inertia, 1 / d.mass));
-	if (ob_shape_is(shape, OB_UNBOUNDED))
-		d.q = ob_scene_turn_to(d.normal);
-	add(L, ob_shape_name(shape), shape, size_of(shape, &d), &d);
+	return give_name(L, add(L, ob_shape_name(shape), shape, size_of(shape, &d), &d));
 }
 
 // compound { parts = { { size = {...}, at = {...} }, { points = {...} } }, ... }
@@ -590,8 +601,7 @@ int ob_scene_call_compound(lua_State *L)
 		ob_sandbox_fail(L, "compound.density: expected none where its parts have one");
 	if (isnan(d.mass) && !isnan(density))
 		d.density = density;
-	add(L, "compound", OB_SHAPE_HULL, ob_hull_size(d.hull), &d);
-	return 0;
+	return give_name(L, add(L, "compound", OB_SHAPE_HULL, ob_hull_size(d.hull), &d));
 }
 
 // Adds an object of a terrain, which is made of the table at index 1.
@@ -641,5 +651,5 @@ int ob_scene_call_ground(lua_State *L)
 	const ob_object_def *o = add(L, "ground", OB_SHAPE_PLANE, ob_v3(0, 0, 0), &d);
 	memcpy(look->ground_colour, o->passport.colour, sizeof look->ground_colour);
 	look->grid = d.grid && ob_passport_pattern(&o->passport) == OB_PATTERN_PLAIN;
-	return 0;
+	return give_name(L, o);
 }

@@ -48,6 +48,12 @@ static void remember(lua_State *L, ob_builder *b, const char *name)
 	snprintf(b->param[b->params++], OB_NAME_MAX, "%s", name);
 }
 
+const char *ob_builder_defined(lua_State *L, ob_builder *b, const char *name)
+{
+	remember(L, b, name);
+	return defined(b->options, name);
+}
+
 static const char *check_name(lua_State *L)
 {
 	size_t size;
@@ -200,8 +206,7 @@ int ob_scene_call_param(lua_State *L)
 	int type = lua_type(L, 2);
 	if (type != LUA_TNUMBER && type != LUA_TSTRING && type != LUA_TBOOLEAN)
 		ob_fields_fail(L, "param", name, "a default that is a number, text, true or false", 2);
-	remember(L, b, name);
-	const char *text = defined(b->options, name);
+	const char *text = ob_builder_defined(L, b, name);
 	if (type == LUA_TNUMBER)
 		take_number(L, name, text);
 	else if (type == LUA_TSTRING)

@@ -17,6 +17,7 @@
 #include "scene/sandbox.h"
 #include "scene/scene.h"
 #include "scene/text.h"
+#include "scene/vector.h"
 #include "settings/length.h"
 #include "settings/settings.h"
 
@@ -158,7 +159,10 @@ static bool list(lua_State *L, size_t count, double *out)
 static void read_vector(const reader *r)
 {
 	double x[3];
-	bool good = list(r->L, 3, x);
+	const ob_vec3 *v = ob_vector_at(r->L, -1);
+	bool good = v || list(r->L, 3, x);
+	if (v)
+		x[0] = v->x, x[1] = v->y, x[2] = v->z;
 	for (int i = 0; i < 3 && good; i++)
 		good = fits(r->field, x[i]);
 	if (!good)
@@ -219,6 +223,11 @@ static void read_direction(const reader *r)
 static void read_quaternion(const reader *r)
 {
 	double x[4];
+	const ob_quat *q = ob_rotation_at(r->L, -1);
+	if (q) {
+		*(ob_quat *)r->to = *q;
+		return;
+	}
 	if (!list(r->L, 4, x) || !make_unit(x, 4))
 		fail(r, "a quaternion {w, x, y, z} that is not {0, 0, 0, 0}");
 	*(ob_quat *)r->to = (ob_quat){ x[0], x[1], x[2], x[3] };

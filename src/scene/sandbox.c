@@ -66,7 +66,16 @@ static ob_sandbox *sandbox_of(lua_State *L)
 
 void *ob_sandbox_user(lua_State *L)
 {
-	return sandbox_of(L)->user;
+	void *user = sandbox_of(L)->user;
+	if (!user)
+		ob_sandbox_fail(L,
+				"this is called while a scene is read, not afterwards: call it outside the function");
+	return user;
+}
+
+void ob_sandbox_release_user(ob_sandbox *s)
+{
+	s->user = NULL;
 }
 
 int ob_sandbox_line(lua_State *L)
@@ -470,6 +479,8 @@ bool ob_sandbox_call(ob_sandbox *s, int arguments, ob_error *e)
 	lua_pushcfunction(L, note_line);
 	lua_insert(L, handler);
 	s->instructions = 0;
+	s->begun = ob_clock_thread_cpu();
+	s->deadline = s->limit.seconds < INFINITY ? ob_clock_wall() + s->limit.seconds : INFINITY;
 	s->exhausted = false;
 	s->made = s->outside;
 	const int status = call_counted(s, arguments, handler);

@@ -39,6 +39,8 @@ ob_sandbox *ob_sandbox_create(const char *path, lua_CFunction open, void *user, 
 ob_sandbox *ob_sandbox_create_limited(const char *path, const ob_sandbox_limits *limits, lua_CFunction open, void *user,
 				      ob_error *e);
 void ob_sandbox_destroy(ob_sandbox *s); // NULL is allowed
+// Takes the user away: calls that need it are errors of the text from now on.
+void ob_sandbox_release_user(ob_sandbox *s);
 
 // Offers f to the scene as a global (library = NULL) or as a field of a library ("math").
 bool ob_sandbox_offer(ob_sandbox *s, const char *library, const char *name, lua_CFunction f, ob_error *e);

@@ -7,7 +7,9 @@
 #include "base/budget.h"
 #include "base/file.h"
 #include "scene/builder.h"
+#include "scene/expect.h"
 #include "scene/sandbox.h"
+#include "scene/vector.h"
 #include "shape/shape.h"
 
 #define FILE_MAX ((size_t)4 << 20) // bytes of a scene file
@@ -37,8 +39,7 @@ static void blank_start(char *text, size_t size)
 // Upvalue 1 is the shape.
 static int call_shape(lua_State *L)
 {
-	ob_scene_add(L, (ob_shape)lua_tointeger(L, lua_upvalueindex(1)));
-	return 0;
+	return ob_scene_add(L, (ob_shape)lua_tointeger(L, lua_upvalueindex(1)));
 }
 
 // Opens the library, and offers a call for each shape and for each kind of joint.
@@ -58,6 +59,7 @@ static int open_library(lua_State *L)
 		lua_pushcclosure(L, ob_scene_call_joint, 1);
 		lua_setfield(L, -2, ob_joint_kind_name(kind));
 	}
+	ob_vector_open(L);
 	return 0;
 }
 
@@ -80,6 +82,9 @@ static bool offer_calls(ob_sandbox *s, ob_error *e)
 		{ NULL, "script", ob_scene_call_script },
 		{ NULL, "param", ob_scene_call_param },
 		{ NULL, "controls", ob_scene_call_controls },
+		{ NULL, "case", ob_scene_call_case },
+		{ NULL, "expect", ob_scene_call_expect },
+		{ NULL, "watch", ob_scene_call_watch },
 		{ NULL, "random", ob_scene_call_random },
 		{ NULL, "random_rotation", ob_scene_call_random_rotation },
 		{ "math", "random", ob_scene_call_random_integer },
@@ -114,19 +119,27 @@ static void set_defaults(ob_scene *s, const char *path, const ob_scene_options *
 	s->look.sun = ob_scale(sun, 1 / ob_norm(sun));
 }
 
-static bool run(ob_builder *b, const char *path, char *text, size_t size, ob_error *e)
+// The sandbox lives on where functions of expectations are called in it.
+static bool run(ob_builder *b, char *text, size_t size, ob_error *e)
 {
+	ob_scene *s = b->scene;
 	blank_start(text, size);
-	ob_sandbox *sandbox = ob_sandbox_create(path, open_library, b, e);
+	ob_sandbox *sandbox = ob_sandbox_create(s->path, open_library, b, e);
 	bool good = sandbox && offer_calls(sandbox, e) && ob_sandbox_run(sandbox, text, size, e);
-	ob_sandbox_destroy(sandbox);
+	if (good && s->expected) {
+		ob_sandbox_release_user(sandbox);
+		s->expected->sandbox = sandbox;
+		s->expected->scene = s;
+	} else {
+		ob_sandbox_destroy(sandbox);
+	}
 	return good;
 }
 
 static bool build(ob_builder *b, const char *path, ob_error *e)
 {
 	ob_scene *s = b->scene;
-	if (!run(b, path, s->text, s->text_size, e) || !ob_builder_check_defines(b, path, e))
+	if (!run(b, s->text, s->text_size, e) || !ob_builder_check_defines(b, path, e))
 		return false;
 	if (s->objects == 0 && s->joints == 0)
 		return ob_fail(e, "%s:1: expected at least one object (box, sphere, ground ...)", path);
@@ -147,7 +160,9 @@ static ob_scene *make_scene(const char *path, char *text, size_t size, const ob_
 	ob_builder *b = calloc(1, sizeof *b);
 	ob_scene *s = calloc(1, sizeof *s);
 	bool good = false;
-	if (b && s) {
+	if (s)
+		s->path = strdup(path);
+	if (b && s && s->path) {
 		s->text = text;
 		s->text_size = size;
 		b->scene = s;
@@ -200,6 +215,8 @@ void ob_scene_free(ob_scene *s)
 		return;
 	for (uint32_t i = 0; i < s->objects; i++)
 		free(s->object[i].path), free(s->object[i].force);
+	ob_expected_free(s->expected);
+	free(s->path);
 	free(s->object);
 	free(s->joint);
 	free(s->hull);

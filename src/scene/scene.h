@@ -80,7 +80,10 @@ typedef struct ob_control_def {
 enum { OB_SCENE_MESHES_MAX = 255 }; // limit of passports
 #define OB_SCENE_MESH_BYTES (64u << 20) // of all meshes
 
+typedef struct ob_expected ob_expected;
+
 typedef struct ob_scene {
+	char *path; // as it was given, for messages
 	char title[128];
 	bool tour; // viewers are led through it (src/serve/page/tour.js)
 	ob_run_settings run; // before the command line's settings (ob_run_settings_resolve)
@@ -110,6 +113,7 @@ typedef struct ob_scene {
 	uint32_t params, controls;
 	ob_param_def *param; // [params]
 	ob_control_def *control; // [controls]
+	ob_expected *expected; // expectations for its run (scene/expect.h); NULL: there are none
 	char *text; // text of its file: ob_scene_load_text makes the same scene from it
 	size_t text_size;
 } ob_scene;

@@ -1,0 +1,3 @@
+-- expect: expect: expected a function(run), got nothing
+ground {}
+expect { "way", below = 1 }

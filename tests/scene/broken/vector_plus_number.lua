@@ -1,0 +1,3 @@
+-- expect: vector: expected a vector, got a number
+ground {}
+local v = vector(1, 2, 3) + 1

@@ -1,0 +1,3 @@
+-- expect: watch: expected a function(run), got 3
+ground {}
+watch(3)
