@@ -4,7 +4,7 @@
 measure   runs all experiments on an otherwise idle machine (a quarter of an hour) and stores the results, with commit and machine, in
           docs/notebook/data/figures.json
 write     renders tables, sentences and diagrams from that file into the documents, between <!-- figures: NAME --> and
-          <!-- end -->, and into docs/images (draw_plot of a build with tests: build*/tools/draw_plot, or --draw PROGRAM)
+          <!-- end -->, and into docs/images (by the script of report pages, in chromium)
 check     lists differences between documents or diagrams and the file, blocks that a document lacks, and figures of README.md
           outside of its block; exit 1 if there are any
 """
@@ -13,6 +13,7 @@ import math
 import os
 import pathlib
 import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -298,21 +299,25 @@ TITLES = {'growth': 'CPU per body and simulated second, by the number of bodies'
 
 
 def diagrams(data):
-    """{file: description for draw_plot}"""
+    """{file: description, as in a report's page}"""
     where = f"falling boxes, 3 s while they land; {data['machine']['cores']} cores, commit {data['machine']['commit'][:7]}"
     styles = {'one ODE world': 0, 'threads': 2, 'processes': 5, 'a process per object': 7}
-    head = 'title {}\nsubtitle {}\nx log {}\ny log CPU per body and simulated second (µs)\n'
     least, most = ([f"{number(pick(p['depth_mm'] for p in data['growth'][name]))}" for name in ('threads', 'one ODE world')] for pick in (min, max))
     depth = f'overlaps of {least[0]} to {most[0]} mm, in one world {least[1]} to {most[1]} mm'
-    growth_text = head.format(TITLES['growth'], f"{where}; medians of {data['machine']['runs']}; {depth}", 'bodies')
-    for name, curve in data['growth'].items():
-        growth_text += f'series {styles[name]} {name}\n'
-        growth_text += ''.join(f"point {p['n']} {p['cpu_us']:.6g} {p['low']:.6g} {p['high']:.6g}\n" for p in curve)
-    price_text = head.format(TITLES['price'], '100 ' + where + f"; medians of {data['machine']['seeds']} seeds", 'deepest penetration (mm)')
-    for name, what in ('one ODE world', 'one ODE world, by its steps'), ('threads', 'threads, by their tolerance'): # processes: the same points
-        price_text += f'series {styles[name]} {what}\n'
-        price_text += ''.join(f"point {middle(p, 'depth_mm'):.6g} {middle(p, 'cpu_us'):.6g} 0 0 {p['setting']}\n" for p in data['price'][name])
-    return {'docs/images/cost-objects.svg': growth_text, 'docs/images/cost-error.svg': price_text}
+    six = lambda v: float(f'{v:.6g}')
+
+    def diagram(name, subtitle, x, series):
+        return {'name': name, 'title': TITLES[name], 'subtitle': subtitle, 'x': {'label': x, 'scale': 'log'}, 'marks': [],
+                'y': {'label': 'CPU per body and simulated second (µs)', 'scale': 'log'},
+                'series': [{'title': title, 'style': styles[name], 'line': True, 'hollow': False, 'points': points} for name, title, points in series]}
+
+    growth = diagram('growth', f"{where}; medians of {data['machine']['runs']}; {depth}", 'bodies', [
+        (name, name, [{'x': p['n'], 'y': six(p['cpu_us']), 'low': six(p['low']), 'high': six(p['high'])} for p in curve])
+        for name, curve in data['growth'].items()])
+    price = diagram('price', '100 ' + where + f"; medians of {data['machine']['seeds']} seeds", 'deepest penetration (mm)', [
+        (name, what, [{'x': six(middle(p, 'depth_mm')), 'y': six(middle(p, 'cpu_us')), 'label': p['setting']} for p in data['price'][name]])
+        for name, what in (('one ODE world', 'one ODE world, by its steps'), ('threads', 'threads, by their tolerance'))]) # processes: the same points
+    return {'docs/images/cost-objects.svg': growth, 'docs/images/cost-error.svg': price}
 
 
 def blocks(data):
@@ -326,18 +331,37 @@ def rendered(text, made):
                   lambda m: m.group(1) + '\n' + made[m.group(2)] + '\n' + m.group(3), text, flags=re.S)
 
 
-def draw(program, description):
-    return subprocess.run([program], input=description, capture_output=True, text=True, check=True).stdout
+def draw(description):
+    """SVG of a diagram, with its description."""
+    text, script = json.dumps(description, ensure_ascii=False).replace('<', '\\u003c'), (ROOT / 'src/experiment/chart.js').read_text(encoding='utf-8')
+    with tempfile.TemporaryDirectory() as folder:
+        page = pathlib.Path(folder) / 'page.html'
+        page.write_text(f'<!DOCTYPE html><meta charset="utf-8"><figure><script class="chart" type="application/json">{text}</script></figure>'
+                        f'<script>{script}</script>', encoding='utf-8')
+        done = subprocess.run([shutil.which('chromium'), '--headless', '--no-sandbox', '--disable-gpu', '--dump-dom', page.as_uri()],
+                              capture_output=True, text=True, check=True)
+    svg = re.search(r'<svg.*?</svg>', done.stdout, re.S)[0]
+    return svg.replace('</svg>', '<metadata>' + text.replace('&', '&amp;') + '</metadata>\n</svg>\n')
 
 
-def wanted(program):
-    """(path, its text by the data) of all documents and diagrams."""
+def described(path):
+    """Description in a diagram's file."""
+    found = path.exists() and re.search(r'<metadata>(.*?)</metadata>', path.read_text(encoding='utf-8'), re.S)
+    return json.loads(found[1].replace('&amp;', '&')) if found else None
+
+
+def stale():
+    """(path, function that renders it) of documents and diagrams that differ from the data. Fonts differ among machines, so a diagram
+    is compared by its description."""
     data = json.loads(DATA.read_text(encoding='utf-8'))
     made = blocks(data)
     for path in DOCUMENTS:
-        yield path, rendered(path.read_text(encoding='utf-8'), made)
+        old = path.read_text(encoding='utf-8')
+        if (text := rendered(old, made)) != old:
+            yield path, lambda text=text: text
     for name, description in diagrams(data).items():
-        yield ROOT / name, draw(program, description)
+        if described(ROOT / name) != description:
+            yield ROOT / name, lambda description=description: draw(description)
 
 
 NEEDED = {'README.md': ['verdict'], 'docs/notebook/figures.md': ['summary', 'verdict', 'compare', 'error_falling']}
@@ -356,27 +380,21 @@ def faults():
 def main():
     global OBSIM
     words = sys.argv[1:]
-    program = None
-    if '--draw' in words:
-        i = words.index('--draw')
-        program = words[i + 1]
-        del words[i:i + 2]
     if len(words) == 2 and words[0] == 'measure':
         OBSIM = os.path.abspath(words[1])
         data = {e.__name__: e() for e in EXPERIMENTS}
         DATA.write_text(json.dumps(data, indent=1, ensure_ascii=False) + '\n', encoding='utf-8')
         return 0
-    program = program or next((str(p) for p in sorted(ROOT.glob('build*/tools/draw_plot'))), None)
-    if words not in (['write'], ['check']) or not program:
+    if words not in (['write'], ['check']):
         sys.exit(__doc__)
     wrong = 0
     for fault in faults() if words == ['check'] else ():
         print(fault)
         wrong = 1
-    for path, text in wanted(program):
+    for path, text in stale():
         if words == ['write']:
-            path.write_text(text, encoding='utf-8')
-        elif not path.exists() or path.read_text(encoding='utf-8') != text:
+            path.write_text(text(), encoding='utf-8')
+        else:
             print(f'{path.relative_to(ROOT)} differs from {DATA.relative_to(ROOT)}: python3 bench/figures.py write')
             wrong = 1
     return wrong

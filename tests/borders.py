@@ -46,18 +46,17 @@ ARROWS = {
     'checkpoint': 'host scene table settings base',
     'measure': 'terrain shape motion base',
     'reference': 'shape motion base',
-    'plot': 'base',
-    'experiment': 'plot reference ranks base',
-    'compare': 'experiment plot reference settings base',
+    'experiment': 'reference ranks base',
+    'compare': 'experiment reference settings base',
     'world': 'terrain hull shape motion elementary base',
     'engine': 'host scene world step ode table settings measure shape motion base',
-    'lab': 'reference engine world plot experiment settings measure shape motion base',
+    'lab': 'reference engine world experiment settings measure shape motion base',
     'render': 'measure mesh scene shape motion base',
     'record': 'measure mesh scene table settings shape motion base',
-    'paper': 'host measure render reference plot experiment scene table settings ranks base',
+    'paper': 'host measure render reference experiment scene table settings ranks base',
     'serve': 'record measure mesh host scene table settings shape motion base',
     'import': 'hull shape motion base',
-    'cli': 'import control shape free/free.h free/schedule.h serve checkpoint host render record lab paper compare measure scene reference plot experiment table settings base ranks',
+    'cli': 'import control shape free/free.h free/schedule.h serve checkpoint host render record lab paper compare measure scene reference experiment table settings base ranks',
 }
 BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h', 'sync_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
          'paper': ['paper_texts.h'],
@@ -71,7 +70,7 @@ DUTIES = [
     ('include qhull', r'#\s*include\s*<(libqhull|qhull)', r'src/hull/', True),
     ('include libwebsockets', r'#\s*include\s*<libwebsockets', r'src/serve/', True),
     ('include HDF5', r'#\s*include\s*<(hdf5\w*/)?(hdf5|H5)\w*\.h', r'src/record/', True),
-    ('include cairo', r'#\s*include\s*<cairo', r'src/plot/', True),
+    ('include cairo', r'#\s*include\s*<cairo', r'src/render/', True),
     ('include tinygltf', r'#\s*include\s*[<"]tiny_gltf', r'src/mesh/', True),
     ('include libjpeg', r'#\s*include\s*<jpeglib', r'src/mesh/', True),
     ('include libzip or expat', r'#\s*include\s*<(zip|expat)\.h', r'src/fmu/', True),
@@ -242,8 +241,8 @@ PLANTED = [
     ('src/motion/g.h', '\n\n#include "motion/h.h"\n', 3),
     ('src/motion/h.h', '#include "motion/g.h"\n', None),
     ('src/base/b.c', '\n' * (FILE_LINES + 1), FILE_LINES + 1),
-    *((f'src/plot/{i}.c', 'int i; // a line\n' * FILE_LINES, None) for i in range(FOLDER_LINES // FILE_LINES)),
-    ('src/plot/more.c', 'int i;\n', None),
+    *((f'src/terrain/{i}.c', 'int i; // a line\n' * FILE_LINES, None) for i in range(FOLDER_LINES // FILE_LINES)),
+    ('src/terrain/more.c', 'int i;\n', None),
 ]
 ALLOWED = [
     ('src/motion/p.h', '#include <stdint.h>\n'),
@@ -272,7 +271,7 @@ def prove():
             (root / name).parent.mkdir(parents=True, exist_ok=True)
             (root / name).write_text(text, encoding='utf-8')
         seen = [':'.join(line.split(':')[:2]) for line in check(root)]
-    expected = [f'{name}:{number}' for name, _, number in PLANTED if number] + ['src/plot:1']
+    expected = [f'{name}:{number}' for name, _, number in PLANTED if number] + ['src/terrain:1']
     return sorted(set(seen) ^ set(expected)) + sorted({place for place in seen if seen.count(place) > 1})
 
 

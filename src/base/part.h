@@ -2,7 +2,7 @@
 // does not use is neither mapped nor required.
 //
 //   program: ob_part_load("cairo")  ---->  obsim-cairo.so: the code that calls the library, and one table of functions,
-//            part->png(...)         ---->  exported as OB_PART_ENTRY
+//            part->strip(...)        ---->  exported as OB_PART_ENTRY
 //
 // A module lies beside the program, in lib/obsim below the prefix where the program is installed, or at the root of the
 // build tree that holds the program. A library finds its modules likewise. It holds copies of the static functions that it needs, so these keep no state.
@@ -22,7 +22,7 @@ typedef struct ob_part_head {
 	size_t bytes;
 } ob_part_head;
 
-// Defines the table of a module: OB_PART(ob_plot_part) = { OB_PART_HEAD(ob_plot_part), .png = draw };
+// Defines the table of a module: OB_PART(ob_caption_part) = { OB_PART_HEAD(ob_caption_part), .strip = paint_strip };
 #define OB_PART(type) \
 	extern __attribute__((visibility("default"))) const type OB_PART_ENTRY; \
 	const type OB_PART_ENTRY

@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 #include "cli/strip.h"
-#include "plot/caption.h"
+#include "render/caption.h"
 #include "table/table.h"
 
 ob_frame_clock ob_frame_clock_make(double duration, double fps, double step, uint64_t first)
@@ -221,7 +221,7 @@ bool ob_capture_show(ob_capture *c, const ob_snapshot *prev, const ob_snapshot *
 		if (c->title) {
 			char time[32];
 			snprintf(time, sizeof time, "%.2f s", t);
-			if (!ob_plot_caption(c->rgba, c->width, c->height, c->title, time, e))
+			if (!ob_caption(c->rgba, c->width, c->height, c->title, time, e))
 				return false;
 		}
 		if (c->strip && !ob_worker_strip_paint(c->strip, now, c->rgba, c->width, c->height, e))

@@ -10,7 +10,6 @@
 #include "cli/terminal.h"
 #include "cli/version.h"
 #include "compare/compare.h"
-#include "plot/plot.h"
 #include "ranks/ranks.h"
 #include "render/render.h"
 
@@ -111,7 +110,7 @@ static bool prepare(ob_comparison *c, const ob_arguments *a, ob_error *e)
 	bool fine = pass_on(c, a, e);
 	for (uint32_t i = 0; fine && i < c->points; i++)
 		fine = load_point(&c->point[i], a, e);
-	fine = fine && (!c->drawn || (ob_render_check(e) && ob_plot_check(e)));
+	fine = fine && (!c->drawn || ob_render_check(e));
 	return fine && ob_comparison_plan(c, e);
 }
 

@@ -13,7 +13,6 @@
 #include "cli/version.h"
 #include "compare/compare.h"
 #include "compare/sync.h"
-#include "plot/plot.h"
 #include "ranks/ranks.h"
 #include "shape/shape.h"
 
@@ -98,7 +97,6 @@ static bool prepare(ob_sync_comparison *c, const ob_arguments *a, ob_error *e)
 		check(a, e) && (points || ob_fail(e, "out of memory")) &&
 		ob_number_count("seeds", a->value[OB_OPTION_SEEDS], 1, OB_COMPARE_RUNS, &seeds, e) &&
 		ob_comparison_read_points(points, a->value[OB_OPTION_VARY], e) &&
-		(!a->value[OB_OPTION_OUT] || ob_plot_check(e)) &&
 		(a->defines <= OB_SYNC_DEFINES || ob_fail(e, "more than %d parameters of the scene", OB_SYNC_DEFINES));
 	const bool timed = !a->value[OB_OPTION_SEEDS] && ob_ranks_started().ranks < 2; // ranks would not stop alike
 	*c = (ob_sync_comparison){ .scene = a->operand,

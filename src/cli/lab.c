@@ -14,7 +14,6 @@
 #include "lab/lab.h"
 #include "lab/report.h"
 #include "lab/tables.h"
-#include "plot/plot.h"
 #include "ranks/ranks.h"
 
 // Request of the command line
@@ -142,8 +141,7 @@ static bool read_request(request *r, const ob_arguments *a, ob_error *e)
 		    ob_number_real("limit", a->value[OB_OPTION_LIMIT], 0, 1e6, &r->limit, e);
 	r->plan.repeats = (uint32_t)repeats;
 	return fine && check(r, a, e) &&
-	       (r->list ||
-		(check_engines(&r->plan.engines, engines && strcmp(engines, "all") != 0, e) && ob_plot_check(e)));
+	       (r->list || check_engines(&r->plan.engines, engines && strcmp(engines, "all") != 0, e));
 }
 
 static bool is_asked(const ob_lab_plan *p, const ob_result *r)

@@ -9,7 +9,6 @@
 #include "paper/claims.h"
 #include "paper/paper.h"
 #include "paper/report.h"
-#include "plot/plot.h"
 #include "ranks/ranks.h"
 #include "render/render.h"
 
@@ -69,7 +68,7 @@ int ob_command_paper(const ob_arguments *a)
 	}
 	if (!ob_number_count("objects", a->value[OB_OPTION_OBJECTS], 1, OBJECTS_MAX, &objects, &e) ||
 	    !ob_number_count("repeats", a->value[OB_OPTION_REPEATS], 1, OB_PAPER_EXPERIMENTS_MAX, &experiments, &e) ||
-	    !ob_render_check(&e) || !ob_plot_check(&e))
+	    !ob_render_check(&e))
 		return ob_command_fail(OB_EXIT_USAGE, e.text);
 	plan.objects = (uint32_t)objects;
 	plan.experiments = (uint32_t)experiments;

@@ -14,7 +14,7 @@
 #include "cli/quantity.h"
 #include "cli/shipped.h"
 #include "cli/version.h"
-#include "plot/plot.h"
+#include "render/caption.h"
 #include "settings/length.h"
 
 enum { WORKERS_MAX = 65536, SIZE_MIN = 16, SIZE_MAX_PIXELS = 16384 };
@@ -263,7 +263,7 @@ static bool read_frames(ob_frames_request *f, const ob_arguments *a, const ob_se
 	if (f->video && (f->width % 2 || f->height % 2))
 		return ob_fail(e, "--size %dx%d: a video needs an even width and height", f->width, f->height);
 	return read_overlay(f, a->value[OB_OPTION_OVERLAY], e) && (!f->wanted || ob_render_check(e)) &&
-	       (!f->video || ob_video_check(e)) && (!(f->caption || f->simulators) || ob_plot_check(e));
+	       (!f->video || ob_video_check(e)) && (!(f->caption || f->simulators) || ob_caption_check(e));
 }
 
 static bool read_workers(ob_run_request *r, const ob_arguments *a, ob_error *e)

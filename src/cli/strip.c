@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
-#include "plot/caption.h"
+#include "render/caption.h"
 #include "table/free.h"
 #include "table/table.h"
 
@@ -146,5 +146,5 @@ bool ob_worker_strip_paint(ob_worker_strip *s, const ob_snapshot *now, uint8_t *
 	look_at_workers(s);
 	fill_rows(s, now);
 	fill_places(s, now);
-	return ob_plot_strip(rgba, width, height, &s->strip, e);
+	return ob_caption_strip(rgba, width, height, &s->strip, e);
 }

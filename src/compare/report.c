@@ -12,14 +12,15 @@
 
 // ---- diagrams
 
-static ob_chart *begin_chart(const ob_comparison *c, const char *define)
+// define: of one point of a sweep; "" for none.
+static ob_chart *begin_chart(const ob_comparison *c, const char *name, const char *define)
 {
 	ob_chart *d = ob_chart_new();
 	char runs[64];
 	ob_comparison_print_runs(c, runs, sizeof runs);
-	if (d)
-		snprintf(d->subtitle, sizeof d->subtitle, "%.150s %s%.150s; %s, medians; %.60s", c->scene, define,
-			 c->options, runs, c->records.commit);
+	snprintf(d->name, sizeof d->name, "%.20s%s%.70s", name, *define ? "-" : "", define);
+	snprintf(d->subtitle, sizeof d->subtitle, "%.150s %s%.150s; %s, medians; %.60s", c->scene, define, c->options,
+		 runs, c->records.commit);
 	return d;
 }
 
@@ -30,30 +31,25 @@ static int list_configurations(ob_chart *d, const ob_comparison *c, const ob_swe
 	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
 		if (!ob_comparison_is_done(c, p, w))
 			continue;
-		snprintf(d->category_text[n], sizeof *d->category_text, "%s%s%s", ob_configuration_table[w].title,
+		snprintf(d->category[n], sizeof *d->category, "%s%s%s", ob_configuration_table[w].title,
 			 ob_configuration_table[w].other_narrow ? ", " : "",
 			 ob_configuration_table[w].other_narrow ? c->other : "");
-		d->category[n] = d->category_text[n];
 		id[n++] = w;
 	}
-	d->plot.y.scale = OB_SCALE_CATEGORY;
-	d->plot.y.categories = (size_t)n;
-	d->plot.y.category = d->category;
-	d->plot.height = 130 + 42 * n;
+	d->categories = (size_t)n;
+	d->height = 130 + 42 * n;
 	return n;
 }
 
 static ob_chart *chart_cost(const ob_comparison *c, const ob_sweep_point *p)
 {
 	int id[OB_CONFIGURATIONS];
-	ob_chart *d = begin_chart(c, p->define);
-	if (!d)
-		return NULL;
+	ob_chart *d = begin_chart(c, "cost", p->define);
 	int n = list_configurations(d, c, p, id);
 	bool interval = false, several = false;
 	snprintf(d->title, sizeof d->title, "Cost of a step per body, %" PRIu32 " objects", p->objects);
-	snprintf(d->x_label, sizeof d->x_label, "CPU per body and step (µs)");
-	d->plot.x.scale = OB_SCALE_LOG;
+	snprintf(d->x.label, sizeof d->x.label, "CPU per body and step (µs)");
+	d->x.scale = OB_SCALE_LOG;
 	for (int i = 0; i < n; i++) { // the interval as a line behind the marker
 		ob_spread x = ob_comparison_spread(c, p, id[i], OB_COMPARE_COST);
 		interval |= x.interval;
@@ -84,13 +80,11 @@ static ob_chart *chart_latency(const ob_comparison *c, const ob_sweep_point *p)
 	static const ob_compare_metric metrics[] = { OB_COMPARE_P50, OB_COMPARE_P90, OB_COMPARE_P99,
 						     OB_COMPARE_LONGEST };
 	int id[OB_CONFIGURATIONS];
-	ob_chart *d = begin_chart(c, p->define);
-	if (!d)
-		return NULL;
+	ob_chart *d = begin_chart(c, "latency", p->define);
 	int n = list_configurations(d, c, p, id);
 	snprintf(d->title, sizeof d->title, "How long a step takes, %" PRIu32 " objects", p->objects);
-	snprintf(d->x_label, sizeof d->x_label, "wall-clock time of a step (ms)");
-	d->plot.x.scale = OB_SCALE_LOG;
+	snprintf(d->x.label, sizeof d->x.label, "wall-clock time of a step (ms)");
+	d->x.scale = OB_SCALE_LOG;
 	for (int k = 0; k < 4; k++) {
 		const char *title = ob_compare_metric_table[metrics[k]].title;
 		ob_chart_begin(d, k, false, title)->line = false;
@@ -110,13 +104,13 @@ static ob_chart *chart_growth(const ob_comparison *c)
 	bool grows = false;
 	for (uint32_t i = 1; i < c->points; i++)
 		grows |= c->point[i].objects != c->point[0].objects;
-	ob_chart *d = grows ? begin_chart(c, "") : NULL;
-	if (!d)
+	if (!grows)
 		return NULL;
+	ob_chart *d = begin_chart(c, "growth", "");
 	snprintf(d->title, sizeof d->title, "Cost of a step per body over the number of objects");
-	snprintf(d->x_label, sizeof d->x_label, "objects");
-	snprintf(d->y_label, sizeof d->y_label, "CPU per body and step (µs)");
-	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
+	snprintf(d->x.label, sizeof d->x.label, "objects");
+	snprintf(d->y.label, sizeof d->y.label, "CPU per body and step (µs)");
+	d->x.scale = d->y.scale = OB_SCALE_LOG;
 	for (int w = 0; w < OB_CONFIGURATION_MONOLITH_OTHER; w++) {
 		ob_chart_begin(d, w, false, ob_configuration_table[w].title);
 		for (uint32_t i = 0; i < c->points; i++) {
@@ -126,38 +120,15 @@ static ob_chart *chart_growth(const ob_comparison *c)
 				continue;
 			snprintf(hint, sizeof hint, "%s, %" PRIu32 " objects: %.3g µs", ob_configuration_table[w].title,
 				 c->point[i].objects, 1e6 * x.median);
-			ob_plot_point *at = ob_chart_add(d, c->point[i].objects, 1e6 * x.median, "", hint);
-			at->low = isnan(x.low) ? 0 : 1e6 * x.low;
-			at->high = isnan(x.low) ? 0 : 1e6 * x.high;
+			ob_chart_point *at = ob_chart_add(d, c->point[i].objects, 1e6 * x.median, "", hint);
+			at->low = 1e6 * x.low;
+			at->high = 1e6 * x.high;
 		}
 	}
 	return d;
 }
 
 // ---- the page
-
-static void write_style(ob_page *p, const void *with)
-{
-	ob_page_style(p);
-}
-
-static void write_paragraph(ob_page *p, const char *text)
-{
-	if (!*text)
-		return;
-	ob_page_markup(p, "<p>");
-	ob_page_text(p, text);
-	ob_page_markup(p, "</p>\n");
-}
-
-static void write_figure(ob_page *p, ob_chart *d)
-{
-	if (!d)
-		return;
-	ob_page_markup(p, "<figure>\n");
-	ob_chart_html(d, p);
-	ob_page_markup(p, "</figure>\n");
-}
 
 static const ob_sweep_point *last_point(const ob_comparison *c)
 {
@@ -172,8 +143,8 @@ static void write_answer(ob_page *p, const void *with)
 	ob_page_markup(p, "<p class=\"lead\"><strong>");
 	ob_page_text(p, *v.headline ? v.headline : "Not measured.");
 	ob_page_markup(p, "</strong></p>\n");
-	write_paragraph(p, v.answer);
-	write_paragraph(p, v.architecture);
+	ob_page_paragraph(p, "", v.answer);
+	ob_page_paragraph(p, "", v.architecture);
 }
 
 static void write_card(ob_page *p, const ob_comparison *c, ob_configuration_id id, const char *text)
@@ -218,7 +189,7 @@ static void write_setting(ob_page *p, const void *with)
 
 static void write_growth(ob_page *p, const void *with)
 {
-	write_figure(p, chart_growth(with));
+	ob_chart_html(chart_growth(with), p, "");
 }
 
 static void write_left_out(ob_page *p, const ob_comparison *c, const ob_sweep_point *at)
@@ -242,17 +213,18 @@ static void write_point(ob_page *p, const ob_comparison *c, const ob_sweep_point
 	ob_page_text(p, at->define);
 	ob_page_markup(p, "</h2>\n");
 	if (at != last_point(c)) { // its answer is at the top
-		write_paragraph(p, v.headline);
-		write_paragraph(p, v.answer);
-		write_paragraph(p, v.architecture);
+		ob_page_paragraph(p, "", v.headline);
+		ob_page_paragraph(p, "", v.answer);
+		ob_page_paragraph(p, "", v.architecture);
 	}
-	write_paragraph(p, v.narrow);
-	write_paragraph(p, v.sum);
-	write_paragraph(p, ob_comparison_agrees(c, at)
-				   ? "All object simulators with the same narrow phase ended in the same bits."
-				   : "The object simulators did NOT end in the same bits.");
-	write_figure(p, chart_cost(c, at));
-	write_figure(p, chart_latency(c, at));
+	ob_page_paragraph(p, "", v.narrow);
+	ob_page_paragraph(p, "", v.sum);
+	ob_page_paragraph(p, "",
+			  ob_comparison_agrees(c, at)
+				  ? "All object simulators with the same narrow phase ended in the same bits."
+				  : "The object simulators did NOT end in the same bits.");
+	ob_chart_html(chart_cost(c, at), p, "");
+	ob_chart_html(chart_latency(c, at), p, "");
 	ob_table *t = ob_comparison_table(c, at, true);
 	if (t)
 		ob_table_html(t, p);
@@ -283,16 +255,6 @@ static void write_meanings(ob_page *p, const void *with)
 	ob_page_markup(p, "</dl>\n");
 }
 
-static void write_page(FILE *f, const void *with)
-{
-	static const ob_page_slot slots[] = { { "style", write_style },      { "answer", write_answer },
-					      { "cards", write_cards },      { "setting", write_setting },
-					      { "growth", write_growth },    { "points", write_points },
-					      { "meanings", write_meanings } };
-	ob_page page = { f };
-	ob_page_fill(&page, text_compare_html, slots, sizeof slots / sizeof *slots, with);
-}
-
 static void write_json(FILE *f, const void *with)
 {
 	ob_comparison_write_json(with, f);
@@ -300,13 +262,10 @@ static void write_json(FILE *f, const void *with)
 
 bool ob_comparison_write_folder(const ob_comparison *c, const char *folder, ob_error *e)
 {
-	bool fine = ob_folder_write(folder, "report.html", write_page, c, e) &&
-		    ob_folder_write(folder, "results.json", write_json, c, e) &&
-		    ob_chart_write(chart_growth(c), folder, "growth", e);
-	for (uint32_t i = 0; fine && i < c->points; i++) {
-		const ob_sweep_point *p = &c->point[i];
-		fine = ob_chart_write_point(chart_cost(c, p), folder, "cost", p->define, e) &&
-		       ob_chart_write_point(chart_latency(c, p), folder, "latency", p->define, e);
-	}
-	return fine;
+	static const ob_page_slot slots[] = { { "answer", write_answer },   { "cards", write_cards },
+					      { "setting", write_setting }, { "growth", write_growth },
+					      { "points", write_points },   { "meanings", write_meanings } };
+	const ob_report report = { "obsim: thread or process, one world or many simulators", "", text_compare_html,
+				   slots, sizeof slots / sizeof *slots };
+	return ob_report_write(&report, folder, c, e) && ob_folder_write(folder, "results.json", write_json, c, e);
 }

@@ -101,12 +101,10 @@ void ob_sync_print(const ob_sync_comparison *c, FILE *f, size_t width)
 // ---- diagrams
 
 // p: NULL for all points.
-static ob_chart *begin_chart(const ob_sync_comparison *c, const ob_sync_point *p, const char *title, const char *x,
-			     const char *y)
+static ob_chart *begin_chart(const ob_sync_comparison *c, const ob_sync_point *p, const char *name, const char *title,
+			     const char *x, const char *y)
 {
 	ob_chart *d = ob_chart_new();
-	if (!d)
-		return NULL;
 	size_t n = (size_t)snprintf(d->subtitle, sizeof d->subtitle, "%.150s", c->scene);
 	if (p)
 		snprintf(d->subtitle + n, sizeof d->subtitle - n,
@@ -114,10 +112,11 @@ static ob_chart *begin_chart(const ob_sync_comparison *c, const ob_sync_point *p
 			 c->records.commit);
 	else
 		snprintf(d->subtitle + n, sizeof d->subtitle - n, ", means over seeds; %.60s", c->records.commit);
+	snprintf(d->name, sizeof d->name, "%s", name);
 	snprintf(d->title, sizeof d->title, "%s", title);
-	snprintf(d->x_label, sizeof d->x_label, "%s", x);
-	snprintf(d->y_label, sizeof d->y_label, "%s", y);
-	d->plot.x.scale = d->plot.y.scale = OB_SCALE_LOG;
+	snprintf(d->x.label, sizeof d->x.label, "%s", x);
+	snprintf(d->y.label, sizeof d->y.label, "%s", y);
+	d->x.scale = d->y.scale = OB_SCALE_LOG;
 	return d;
 }
 
@@ -128,9 +127,8 @@ static void add_point(ob_chart *d, double x, ob_estimate y, double scale, const 
 	if (isnan(x) || isnan(y.value))
 		return;
 	snprintf(hint, sizeof hint, "%s: %.3g, %.3g", of, x, scale * y.value);
-	ob_plot_point *at = ob_chart_add(d, x, scale * y.value, "", hint);
-	if (!isnan(y.low))
-		at->low = scale * y.low, at->high = scale * y.high;
+	ob_chart_point *at = ob_chart_add(d, x, scale * y.value, "", hint);
+	at->low = scale * y.low, at->high = scale * y.high;
 }
 
 // Adds a curve of a coupling's configurations with two threads over the lag.
@@ -147,9 +145,9 @@ static void add_lags(ob_chart *d, const ob_sync_comparison *c, const ob_sync_poi
 
 static ob_chart *chart_error(const ob_sync_comparison *c, const ob_sync_point *p)
 {
-	ob_chart *d = begin_chart(c, p, "Worst penetration over the lag, two threads", "lag × speed / size",
+	ob_chart *d = begin_chart(c, p, "error", "Worst penetration over the lag, two threads", "lag × speed / size",
 				  "worst penetration / size");
-	for (int k = OB_SYNC_LEDGER; d && k < OB_SYNC_COUPLINGS; k++) {
+	for (int k = OB_SYNC_LEDGER; k < OB_SYNC_COUPLINGS; k++) {
 		const ob_line order = ob_sync_order(c, p, k);
 		char name[128];
 		snprintf(name, sizeof name, isnan(order.slope) ? "%s" : "%s: slope %.2f", coupling_title[k],
@@ -162,11 +160,9 @@ static ob_chart *chart_error(const ob_sync_comparison *c, const ob_sync_point *p
 
 static ob_chart *chart_energy(const ob_sync_comparison *c, const ob_sync_point *p)
 {
-	ob_chart *d = begin_chart(c, p, "Energy over the lag, two threads", "lag × speed / size",
+	ob_chart *d = begin_chart(c, p, "energy", "Energy over the lag, two threads", "lag × speed / size",
 				  "energy / energy at the start");
-	if (!d)
-		return NULL;
-	d->plot.y.scale = OB_SCALE_LINEAR;
+	d->y.scale = OB_SCALE_LINEAR;
 	ob_chart_begin(d, OB_SYNC_LEDGER - 1, false, "ledger: gained");
 	add_lags(d, c, p, OB_SYNC_LEDGER, OB_SYNC_ENERGY);
 	ob_chart_begin(d, OB_SYNC_LEDGER - 1, true, "ledger: by late mail");
@@ -179,10 +175,8 @@ static ob_chart *chart_energy(const ob_sync_comparison *c, const ob_sync_point *
 // Worst penetration over the rate of steps, with the ledger on two threads and no injected lag; lockstep beside it.
 static ob_chart *chart_rates(const ob_sync_comparison *c, const ob_sync_point *p)
 {
-	ob_chart *d = begin_chart(c, p, "Worst penetration over the rate of steps, two threads",
+	ob_chart *d = begin_chart(c, p, "rate", "Worst penetration over the rate of steps, two threads",
 				  "steps of a simulator in a second (Hz)", "worst penetration (mm)");
-	if (!d)
-		return NULL;
 	const ob_line order = ob_sync_order_of_step(c, p);
 	const double exact = 1e3 * ob_sync_estimate(c, p, 0, OB_SYNC_WORST).value;
 	char name[128];
@@ -196,9 +190,9 @@ static ob_chart *chart_rates(const ob_sync_comparison *c, const ob_sync_point *p
 					  ob_sync_table[w].title);
 		}
 	if (exact > 0) {
-		snprintf(d->mark_label, sizeof d->mark_label, "lockstep %.2g mm", exact);
-		d->mark[0] = (ob_plot_mark){ .at = exact, .label = d->mark_label };
-		d->plot.marks = 1;
+		d->mark[0] = (ob_chart_mark){ .at = exact };
+		snprintf(d->mark[0].label, sizeof d->mark[0].label, "lockstep %.2g mm", exact);
+		d->marks = 1;
 	}
 	return d;
 }
@@ -206,9 +200,9 @@ static ob_chart *chart_rates(const ob_sync_comparison *c, const ob_sync_point *p
 // CPU over the worst penetration, without injected lags.
 static ob_chart *chart_cost(const ob_sync_comparison *c, const ob_sync_point *p)
 {
-	ob_chart *d = begin_chart(c, p, "CPU over the worst penetration, no injected lag", "worst penetration (mm)",
-				  "CPU per body and simulated second (ms)");
-	for (int k = 0; d && k < OB_SYNC_COUPLINGS; k++) {
+	ob_chart *d = begin_chart(c, p, "cost", "CPU over the worst penetration, no injected lag",
+				  "worst penetration (mm)", "CPU per body and simulated second (ms)");
+	for (int k = 0; k < OB_SYNC_COUPLINGS; k++) {
 		ob_chart_begin(d, k, false, coupling_title[k])->line = false;
 		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++)
 			if ((int)ob_sync_table[w].coupling == k && ob_sync_table[w].delay == 0 &&
@@ -220,10 +214,13 @@ static ob_chart *chart_cost(const ob_sync_comparison *c, const ob_sync_point *p)
 }
 
 // A metric over the number of simulators, if that varies.
-static ob_chart *chart_objects(const ob_sync_comparison *c, ob_sync_metric up, const char *title, const char *y)
+static ob_chart *chart_objects(const ob_sync_comparison *c, ob_sync_metric up, const char *name, const char *title,
+			       const char *y)
 {
-	ob_chart *d = c->points > 1 ? begin_chart(c, NULL, title, "simulators", y) : NULL;
-	for (int w = 0, style = 0; d && w < OB_SYNC_CONFIGURATIONS; w++) {
+	if (c->points < 2)
+		return NULL;
+	ob_chart *d = begin_chart(c, NULL, name, title, "simulators", y);
+	for (int w = 0, style = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 		if (!ob_sync_table[w].swept)
 			continue;
 		ob_chart_begin(d, style++, false, ob_sync_table[w].title);
@@ -236,36 +233,24 @@ static ob_chart *chart_objects(const ob_sync_comparison *c, ob_sync_metric up, c
 
 static ob_chart *chart_objects_cpu(const ob_sync_comparison *c)
 {
-	return chart_objects(c, OB_SYNC_CPU, "CPU over the number of simulators",
+	return chart_objects(c, OB_SYNC_CPU, "objects-cpu", "CPU over the number of simulators",
 			     "CPU per body and simulated second (ms)");
 }
 
 static ob_chart *chart_objects_error(const ob_sync_comparison *c)
 {
-	return chart_objects(c, OB_SYNC_WORST, "Worst penetration over the number of simulators",
+	return chart_objects(c, OB_SYNC_WORST, "objects-error", "Worst penetration over the number of simulators",
 			     "worst penetration (mm)");
 }
 
 // ---- the page
-
-static void write_style(ob_page *p, const void *with)
-{
-	ob_page_style(p);
-}
-
-static void write_paragraph(ob_page *p, const char *class, const char *text)
-{
-	ob_page_markup(p, "<p class=\"%s\">", class);
-	ob_page_text(p, text);
-	ob_page_markup(p, "</p>\n");
-}
 
 static void write_recommendation(ob_page *p, const void *with)
 {
 	const ob_sync_comparison *c = with;
 	char text[2048];
 	ob_sync_recommend(c, ob_sync_main_point(c), text, sizeof text);
-	write_paragraph(p, "lead", text);
+	ob_page_paragraph(p, "lead", text);
 }
 
 static void write_hypotheses(ob_page *p, const void *with)
@@ -299,20 +284,6 @@ static void write_setting(ob_page *p, const void *with)
 	ob_page_term(p, "Runs", text);
 }
 
-// caption: may be "".
-static void write_figure(ob_page *p, ob_chart *d, const char *caption)
-{
-	if (d && d->points) {
-		ob_page_markup(p, "<figure>\n");
-		ob_chart_html(d, p);
-		ob_page_markup(p, "<figcaption>");
-		ob_page_text(p, caption);
-		ob_page_markup(p, "</figcaption>\n</figure>\n");
-	} else {
-		ob_chart_free(d);
-	}
-}
-
 static void write_slopes(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
 {
 	ob_page_markup(p, "<ul>\n");
@@ -328,15 +299,15 @@ static void write_slopes(ob_page *p, const ob_sync_comparison *c, const ob_sync_
 
 static void write_diagrams(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
 {
-	write_figure(p, chart_error(c, at),
-		     "Bars: intervals of 95 % (Student). The first point of each curve has no injected "
-		     "lag. A slope is that over the injected lags alone.");
+	ob_chart_html(chart_error(c, at), p,
+		      "Bars: intervals of 95 % (Student). The first point of each curve has no injected "
+		      "lag. A slope is that over the injected lags alone.");
 	write_slopes(p, c, at);
-	write_figure(p, chart_rates(c, at), "Bars: intervals of 95 % (Student). No injected lag.");
-	write_figure(p, chart_energy(c, at),
-		     "Bars: intervals of 95 % (Student). Gained: the most above the start, 0 if never. "
-		     "By late mail: its work, at the end of the run.");
-	write_figure(p, chart_cost(c, at), "Bars: intervals of 95 % of the CPU (Student).");
+	ob_chart_html(chart_rates(c, at), p, "Bars: intervals of 95 % (Student). No injected lag.");
+	ob_chart_html(chart_energy(c, at), p,
+		      "Bars: intervals of 95 % (Student). Gained: the most above the start, 0 if never. "
+		      "By late mail: its work, at the end of the run.");
+	ob_chart_html(chart_cost(c, at), p, "Bars: intervals of 95 % of the CPU (Student).");
 }
 
 static void write_point(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
@@ -357,11 +328,11 @@ static void write_point(ob_page *p, const ob_sync_comparison *c, const ob_sync_p
 		write_diagrams(p, c, at);
 	} else {
 		ob_sync_recommend(c, at, text, sizeof text);
-		write_paragraph(p, "note", text);
+		ob_page_paragraph(p, "note", text);
 	}
 	for (const ob_record *r; (r = next_failure(c, at, &from));) {
 		snprintf(text, sizeof text, "%s failed: %s", r->configuration, r->reason);
-		write_paragraph(p, "note", text);
+		ob_page_paragraph(p, "note", text);
 	}
 	ob_page_markup(p, "</section>\n");
 }
@@ -373,8 +344,8 @@ static void write_points(ob_page *p, const void *with)
 	write_point(p, c, ob_sync_main_point(c));
 	if (c->points > 1)
 		ob_page_markup(p, "<h3>Number of simulators</h3>\n");
-	write_figure(p, chart_objects_cpu(c), caption);
-	write_figure(p, chart_objects_error(c), caption);
+	ob_chart_html(chart_objects_cpu(c), p, caption);
+	ob_chart_html(chart_objects_error(c), p, caption);
 	for (uint32_t i = 0; i < c->points; i++)
 		if (&c->point[i] != ob_sync_main_point(c))
 			write_point(p, c, &c->point[i]);
@@ -423,27 +394,18 @@ static void write_meanings(ob_page *p, const void *with)
 		ob_page_term(p, ob_sync_metrics[m].title, ob_sync_metrics[m].meaning);
 }
 
-static void write_page(FILE *f, const void *with)
-{
-	static const ob_page_slot slots[] = {
-		{ "style", write_style },           { "recommendation", write_recommendation },
-		{ "hypotheses", write_hypotheses }, { "setting", write_setting },
-		{ "points", write_points },         { "rate", write_rate },
-		{ "jitter", write_jitter },         { "threats", write_threats },
-		{ "meanings", write_meanings }
-	};
-	ob_page page = { f };
-	ob_page_fill(&page, text_sync_html, slots, sizeof slots / sizeof *slots, with);
-}
-
 bool ob_sync_write_folder(const ob_sync_comparison *c, const char *folder, ob_error *e)
 {
-	bool fine = ob_folder_write(folder, "report.html", write_page, c, e);
-	const ob_sync_point *p = ob_sync_main_point(c);
-	return fine && ob_chart_write(chart_error(c, p), folder, "error", e) &&
-	       ob_chart_write(chart_energy(c, p), folder, "energy", e) &&
-	       ob_chart_write(chart_rates(c, p), folder, "rate", e) &&
-	       ob_chart_write(chart_cost(c, p), folder, "cost", e) &&
-	       ob_chart_write(chart_objects_cpu(c), folder, "objects-cpu", e) &&
-	       ob_chart_write(chart_objects_error(c), folder, "objects-error", e);
+	static const ob_page_slot slots[] = { { "recommendation", write_recommendation },
+					      { "hypotheses", write_hypotheses },
+					      { "setting", write_setting },
+					      { "points", write_points },
+					      { "rate", write_rate },
+					      { "jitter", write_jitter },
+					      { "threats", write_threats },
+					      { "meanings", write_meanings } };
+	const ob_report report = { "obsim: lockstep or free running",
+				   "tbody td:first-child, tbody th { white-space: nowrap }\n", text_sync_html, slots,
+				   sizeof slots / sizeof *slots };
+	return ob_report_write(&report, folder, c, e);
 }

@@ -1,134 +1,145 @@
 #include "experiment/chart.h"
 
-#include <ctype.h>
-#include <errno.h>
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
 
 #include "base/allocate.h"
-
-enum { PATH = 4096 };
-#define PNG_ZOOM 2
+#include "experiment/json.h"
 
 ob_chart *ob_chart_new(void)
 {
 	ob_chart *c = calloc(1, sizeof *c);
 	if (!c)
-		return NULL;
-	c->plot.series = c->series;
-	c->plot.mark = c->mark;
-	c->plot.title = c->title;
-	c->plot.subtitle = c->subtitle;
-	c->plot.x.label = c->x_label;
-	c->plot.y.label = c->y_label;
+		abort();
 	return c;
 }
 
 void ob_chart_free(ob_chart *c)
 {
-	if (!c)
-		return;
-	free(c->point);
-	free(c->text);
+	if (c)
+		free(c->point);
 	free(c);
 }
 
 static void drop_empty(ob_chart *c)
 {
-	if (c->plot.series_count && !c->series[c->plot.series_count - 1].count)
-		c->plot.series_count--;
+	if (c->series_count && !c->series[c->series_count - 1].count)
+		c->series_count--;
 }
 
-ob_plot_series *ob_chart_begin(ob_chart *c, int style, bool hollow, const char *title)
+ob_chart_series *ob_chart_begin(ob_chart *c, int style, bool hollow, const char *title)
 {
 	drop_empty(c);
-	size_t i = c->plot.series_count < OB_CHART_SERIES ? c->plot.series_count++ : OB_CHART_SERIES - 1;
-	snprintf(c->series_title[i], sizeof c->series_title[i], "%s", title);
-	c->series[i] = (ob_plot_series){
-		.title = *title ? c->series_title[i] : NULL, .style = style, .hollow = hollow, .line = true
-	};
-	c->first[i] = c->points;
-	return &c->series[i];
+	ob_chart_series *s = &c->series[c->series_count < OB_CHART_SERIES ? c->series_count++ : OB_CHART_SERIES - 1];
+	*s = (ob_chart_series){ .style = style, .hollow = hollow, .line = true, .first = c->points };
+	snprintf(s->title, sizeof s->title, "%s", title);
+	return s;
 }
 
-static bool make_room(ob_chart *c)
+ob_chart_point *ob_chart_add(ob_chart *c, double x, double y, const char *label, const char *hint)
 {
-	if (c->points < c->points_max)
-		return true;
-	size_t max = c->points_max ? 2 * c->points_max : 64;
-	if (!OB_GROW(c->point, max) || !OB_GROW(c->text, max))
-		return false;
-	c->points_max = max;
-	return true;
-}
-
-ob_plot_point *ob_chart_add(ob_chart *c, double x, double y, const char *label, const char *hint)
-{
-	static ob_plot_point spare;
-	if (!c->plot.series_count || !make_room(c))
+	static ob_chart_point spare;
+	if (!c->series_count || !OB_MAKE_ROOM(c->point, c->points, c->points_max))
 		return &spare;
-	ob_chart_text *text = &c->text[c->points];
-	snprintf(text->label, sizeof text->label, "%s", label);
-	snprintf(text->hint, sizeof text->hint, "%s", hint);
-	ob_plot_point *p = &c->point[c->points++];
-	// any text marks that there is one, until its address is known
-	*p = (ob_plot_point){ .x = x, .y = y, .label = *label ? "" : NULL, .hint = *hint ? "" : NULL };
-	c->series[c->plot.series_count - 1].count++;
+	ob_chart_point *p = &c->point[c->points++];
+	*p = (ob_chart_point){ .x = x, .y = y, .low = NAN, .high = NAN };
+	snprintf(p->label, sizeof p->label, "%s", label);
+	snprintf(p->hint, sizeof p->hint, "%s", hint);
+	c->series[c->series_count - 1].count++;
 	return p;
 }
 
-const ob_plot *ob_chart_plot(ob_chart *c)
+// ---- its description
+
+static void put_axis(ob_json *j, const char *key, const ob_chart_axis *a)
 {
-	if (!c || !c->points)
-		return NULL;
-	drop_empty(c);
-	for (size_t i = 0; i < c->points; i++) {
-		if (c->point[i].label)
-			c->point[i].label = c->text[i].label;
-		if (c->point[i].hint)
-			c->point[i].hint = c->text[i].hint;
+	static const char *const scales[] = { "linear", "log", "log2" };
+	ob_json_open(j, key);
+	ob_json_string(j, "label", a->label);
+	ob_json_string(j, "scale", scales[a->scale]);
+	ob_json_close(j);
+}
+
+static void put_text(ob_json *j, const char *key, const char *text)
+{
+	if (*text)
+		ob_json_string(j, key, text);
+}
+
+static void put_point(ob_json *j, const ob_chart_point *p)
+{
+	ob_json_open(j, NULL);
+	ob_json_number(j, "x", p->x);
+	ob_json_number(j, "y", p->y);
+	if (isfinite(p->low) && isfinite(p->high)) {
+		ob_json_number(j, "low", p->low);
+		ob_json_number(j, "high", p->high);
 	}
-	for (size_t i = 0; i < c->plot.series_count; i++)
-		c->series[i].point = c->point + c->first[i];
-	return &c->plot;
+	if (p->failed)
+		ob_json_true(j, "failed", true);
+	put_text(j, "label", p->label);
+	put_text(j, "hint", p->hint);
+	ob_json_close(j);
 }
 
-bool ob_chart_write(ob_chart *c, const char *dir, const char *name, ob_error *e)
+static void put_series(ob_json *j, const ob_chart *c, const ob_chart_series *s)
 {
-	char path[PATH];
-	const ob_plot *plot = ob_chart_plot(c);
-	bool fine = true;
-	if (plot && snprintf(path, sizeof path, "%s/plots/%s.svg", dir, name) >= PATH)
-		fine = ob_fail(e, "the name of the folder is too long: %s", dir);
-	if (plot && fine) {
-		snprintf(path, sizeof path, "%s/plots", dir);
-		fine = !mkdir(path, 0777) || errno == EEXIST || ob_fail(e, "cannot make the folder %s: %m", path);
-		snprintf(path, sizeof path, "%s/plots/%s.svg", dir, name);
-		fine = fine && ob_plot_svg(plot, path, e);
-		snprintf(path, sizeof path, "%s/plots/%s.png", dir, name);
-		fine = fine && ob_plot_png(plot, path, PNG_ZOOM, e);
+	ob_json_open(j, NULL);
+	put_text(j, "title", s->title);
+	ob_json_number(j, "style", s->style);
+	ob_json_true(j, "line", s->line);
+	ob_json_true(j, "hollow", s->hollow);
+	ob_json_open_list(j, "points");
+	for (size_t i = s->first; i < s->first + s->count; i++)
+		put_point(j, &c->point[i]);
+	ob_json_close_list(j);
+	ob_json_close(j);
+}
+
+static void put_chart(ob_json *j, const ob_chart *c)
+{
+	ob_json_open(j, NULL);
+	ob_json_string(j, "name", c->name);
+	ob_json_string(j, "title", c->title);
+	ob_json_string(j, "subtitle", c->subtitle);
+	ob_json_number(j, "width", c->width);
+	ob_json_number(j, "height", c->height);
+	put_axis(j, "x", &c->x);
+	put_axis(j, "y", &c->y);
+	if (c->categories)
+		ob_json_open_list(j, "category");
+	for (size_t i = 0; i < c->categories; i++)
+		ob_json_string(j, NULL, c->category[i]);
+	if (c->categories)
+		ob_json_close_list(j);
+	ob_json_open_list(j, "marks");
+	for (size_t i = 0; i < c->marks; i++) {
+		ob_json_open(j, NULL);
+		ob_json_number(j, "at", c->mark[i].at);
+		ob_json_string(j, "label", c->mark[i].label);
+		ob_json_true(j, "vertical", c->mark[i].vertical);
+		ob_json_true(j, "tinted", c->mark[i].tinted);
+		ob_json_close(j);
 	}
-	ob_chart_free(c);
-	return fine;
+	ob_json_close_list(j);
+	ob_json_open_list(j, "series");
+	for (size_t i = 0; i < c->series_count; i++)
+		put_series(j, c, &c->series[i]);
+	ob_json_close_list(j);
+	ob_json_close(j);
 }
 
-bool ob_chart_write_point(ob_chart *c, const char *dir, const char *of, const char *define, ob_error *e)
+void ob_chart_html(ob_chart *c, ob_page *p, const char *caption)
 {
-	char name[160];
-	snprintf(name, sizeof name, "%s%s%s", of, *define ? "-" : "", define);
-	for (char *at = name; *at; at++)
-		if (!isalnum((unsigned char)*at) && !strchr(".-", *at))
-			*at = '-';
-	return ob_chart_write(c, dir, name, e);
-}
-
-void ob_chart_html(ob_chart *c, ob_page *p)
-{
-	const ob_plot *plot = ob_chart_plot(c);
-	char *svg = plot ? ob_plot_svg_text(plot, NULL) : NULL;
-	if (svg)
-		fputs(svg, p->out);
-	free(svg);
+	if (c && c->points) {
+		ob_json j = { .f = p->out, .script = true };
+		drop_empty(c);
+		ob_page_markup(p, "<figure>\n<script class=\"chart\" type=\"application/json\">");
+		put_chart(&j, c);
+		ob_page_markup(p, "</script>\n");
+		if (*caption)
+			ob_page_markup(p, "<figcaption>%s</figcaption>\n", caption);
+		ob_page_markup(p, "</figure>\n");
+	}
 	ob_chart_free(c);
 }

@@ -7,14 +7,15 @@
 
 #include "base/utf8.h"
 
-static void put_string(FILE *f, const char *text)
+static void put_string(const ob_json *j, const char *text)
 {
+	FILE *f = j->f;
 	fputc('"', f);
 	for (const char *s = text; *s;) {
 		size_t n = ob_utf8_length(s);
 		if (*s == '"' || *s == '\\')
 			fprintf(f, "\\%c", *s);
-		else if (n == 0 || (unsigned char)*s < 0x20 || *s == 0x7f)
+		else if (n == 0 || (unsigned char)*s < 0x20 || *s == 0x7f || (j->script && *s == '<'))
 			fprintf(f, "\\u%04x", (unsigned char)*s);
 		else
 			fwrite(s, 1, n, f);
@@ -23,14 +24,20 @@ static void put_string(FILE *f, const char *text)
 	fputc('"', f);
 }
 
+static void begin_line(const ob_json *j)
+{
+	if (!j->script)
+		fprintf(j->f, "\n%*s", 2 * j->depth, "");
+}
+
 static void begin(ob_json *j, const char *key)
 {
 	if (j->filled)
 		fputc(',', j->f);
 	if (j->depth > 0)
-		fprintf(j->f, "\n%*s", 2 * j->depth, "");
+		begin_line(j);
 	if (key) {
-		put_string(j->f, key);
+		put_string(j, key);
 		fputs(": ", j->f);
 	}
 	j->filled = true;
@@ -48,9 +55,9 @@ void ob_json_close(ob_json *j)
 {
 	j->depth--;
 	if (j->filled)
-		fprintf(j->f, "\n%*s", 2 * j->depth, "");
+		begin_line(j);
 	fputc('}', j->f);
-	if (j->depth == 0)
+	if (j->depth == 0 && !j->script)
 		fputc('\n', j->f);
 	j->filled = true;
 }
@@ -67,7 +74,7 @@ void ob_json_close_list(ob_json *j)
 {
 	j->depth--;
 	if (j->filled)
-		fprintf(j->f, "\n%*s", 2 * j->depth, "");
+		begin_line(j);
 	fputc(']', j->f);
 	j->filled = true;
 }
@@ -75,7 +82,7 @@ void ob_json_close_list(ob_json *j)
 void ob_json_string(ob_json *j, const char *key, const char *value)
 {
 	begin(j, key);
-	put_string(j->f, value);
+	put_string(j, value);
 }
 
 void ob_json_number(ob_json *j, const char *key, double value)

@@ -11,6 +11,7 @@ typedef struct ob_json {
 	FILE *f;
 	int depth;
 	bool filled; // the open object has a member
+	bool script; // for within a page: on one line, and without "<"
 } ob_json;
 
 // Opens an object. key NULL: the outermost object, or a member of a list. Two spaces a level, one member a line.

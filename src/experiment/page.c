@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "experiment/folder.h"
 #include "page_texts.h"
 
 void ob_page_fill(ob_page *p, const char *template, const ob_page_slot *slot, size_t slots, const void *with)
@@ -24,9 +25,43 @@ void ob_page_fill(ob_page *p, const char *template, const ob_page_slot *slot, si
 	fputs(template, p->out);
 }
 
-void ob_page_style(ob_page *p)
+typedef struct report {
+	const ob_report *of;
+	const void *with;
+} report;
+
+static void write_title(ob_page *p, const void *with)
 {
-	fputs(text_page_css, p->out);
+	ob_page_text(p, ((const report *)with)->of->title);
+}
+
+static void write_style(ob_page *p, const void *with)
+{
+	fprintf(p->out, "%s%s", text_page_css, ((const report *)with)->of->style);
+}
+
+static void write_body(ob_page *p, const void *with)
+{
+	const report *r = with;
+	ob_page_fill(p, r->of->body, r->of->slot, r->of->slots, r->with);
+}
+
+static void write_script(ob_page *p, const void *with)
+{
+	fputs(text_chart_js, p->out);
+}
+
+static void write_report(FILE *f, const void *with)
+{
+	static const ob_page_slot slots[] = {
+		{ "title", write_title }, { "style", write_style }, { "body", write_body }, { "script", write_script }
+	};
+	ob_page_fill(&(ob_page){ f }, text_page_html, slots, sizeof slots / sizeof *slots, with);
+}
+
+bool ob_report_write(const ob_report *r, const char *folder, const void *with, ob_error *e)
+{
+	return ob_folder_write(folder, "report.html", write_report, &(report){ r, with }, e);
 }
 
 void ob_page_markup(ob_page *p, const char *format, ...)
@@ -57,6 +92,15 @@ void ob_page_text(ob_page *p, const char *text)
 			fputc(*text, p->out);
 		}
 	}
+}
+
+void ob_page_paragraph(ob_page *p, const char *class, const char *text)
+{
+	if (!*text)
+		return;
+	ob_page_markup(p, *class ? "<p class=\"%s\">" : "<p>", class);
+	ob_page_text(p, text);
+	ob_page_markup(p, "</p>\n");
 }
 
 void ob_page_term(ob_page *p, const char *name, const char *text)

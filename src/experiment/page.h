@@ -1,10 +1,13 @@
-// HTML output of all reports: templates with slots, escaped texts, readable numbers, one style. One thread at a time
-// per page.
+// HTML output of all reports: templates with slots, escaped texts, readable numbers, one style and one script, which draws
+// the diagrams. A page needs no other file and no network. One thread at a time per page.
 #ifndef OB_EXPERIMENT_PAGE_H
 #define OB_EXPERIMENT_PAGE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
+
+#include <ob/error.h>
 
 typedef struct ob_page {
 	FILE *out;
@@ -17,12 +20,22 @@ typedef struct ob_page_slot {
 } ob_page_slot;
 
 void ob_page_fill(ob_page *p, const char *template, const ob_page_slot *slot, size_t slots, const void *with);
-// Writes the style sheet of all reports, for between <style> and </style>: light and dark, screen and paper.
-void ob_page_style(ob_page *p);
+
+typedef struct ob_report {
+	const char *title, *style; // style: more of it, "" = none
+	const char *body; // a template
+	const ob_page_slot *slot;
+	size_t slots;
+} ob_report;
+
+// Writes DIR/report.html, which replaces one that is there.
+bool ob_report_write(const ob_report *r, const char *folder, const void *with, ob_error *e);
 
 // printf of markup; the arguments must not need escaping.
 void ob_page_markup(ob_page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void ob_page_text(ob_page *p, const char *text);
+// A paragraph; "" writes none. class: "" = none
+void ob_page_paragraph(ob_page *p, const char *class, const char *text);
 // Term of a list, and what it means; the name must not need escaping.
 void ob_page_term(ob_page *p, const char *name, const char *text);
 

@@ -24,7 +24,7 @@ static bool takes_part(const ob_chart *c, const ob_lab_analysis *d, const ob_cas
 	for (size_t i = 0; of && i < d->results->count; i++)
 		if (d->results->result[i].of == of && d->results->result[i].engine == k)
 			return true;
-	for (size_t i = 0; !of && i < c->plot.series_count; i++)
+	for (size_t i = 0; !of && i < c->series_count; i++)
 		if (c->series[i].count && c->series[i].style == ob_lab_analysis_style(d, k))
 			return true;
 	return false;
@@ -124,7 +124,7 @@ static void add_result(ob_chart *chart, const ob_result *r, double x)
 		 ob_lab_analysis_is_obsim(r->engine) && !r->engine->free && !(r->settings.tolerance > 0) ? " substeps"
 													 : "",
 		 r->settings.iterations, ob_result_cost(r) * 1e6, is_failed(r) ? failed : error);
-	ob_plot_point *p = ob_chart_add(chart, x, is_failed(r) ? NAN : r->outcome.figure[0], label, hint);
+	ob_chart_point *p = ob_chart_add(chart, x, is_failed(r) ? NAN : r->outcome.figure[0], label, hint);
 	p->failed = is_failed(r);
 }
 
@@ -144,9 +144,9 @@ static void mark_target(ob_chart *chart, const ob_case *c)
 	if (!ob_lab_analysis_has_target(c, 0))
 		return;
 	ob_page_print_quantity(target, sizeof target, c->figure[0].target, c->figure[0].unit);
-	snprintf(chart->mark_label, sizeof chart->mark_label, "target %s", target);
-	chart->mark[0] = (ob_plot_mark){ .at = c->figure[0].target, .label = chart->mark_label, .tinted = true };
-	chart->plot.marks = 1;
+	chart->mark[0] = (ob_chart_mark){ .at = c->figure[0].target, .tinted = true };
+	snprintf(chart->mark[0].label, sizeof chart->mark[0].label, "target %s", target);
+	chart->marks = 1;
 }
 
 // Returns NULL for an empty chart.
@@ -164,14 +164,14 @@ ob_chart *ob_lab_chart_cost(const ob_lab_analysis *d, const ob_case *c)
 {
 	ob_chart *chart = ob_chart_new();
 	const ob_result **list = calloc(d->results->count + 1, sizeof *list);
-	for (size_t i = 0; chart && list && i < d->engines; i++) {
+	for (size_t i = 0; list && i < d->engines; i++) {
 		const ob_engine_kind *k = d->engine[i];
 		for (int f = 0; f < FAMILIES; f++) {
 			char title[128];
 			size_t count = gather(d, c, k, (family)f, list);
 			snprintf(title, sizeof title, "%s%s", k->title, f == FAMILY_TOLERANCE ? ", by tolerance" : "");
-			ob_plot_series *s = ob_chart_begin(chart, ob_lab_analysis_style(d, k), f != FAMILY_STEPS,
-							   f == FAMILY_ITERATIONS ? "" : title);
+			ob_chart_series *s = ob_chart_begin(chart, ob_lab_analysis_style(d, k), f != FAMILY_STEPS,
+							    f == FAMILY_ITERATIONS ? "" : title);
 			s->line = f != FAMILY_ITERATIONS;
 			for (size_t j = 0; j < count; j++)
 				add_result(chart, list[j], ob_result_cost(list[j]) * 1e6);
@@ -180,20 +180,21 @@ ob_chart *ob_lab_chart_cost(const ob_lab_analysis *d, const ob_case *c)
 	chart = end_curves(chart, list);
 	if (!chart)
 		return NULL;
+	snprintf(chart->name, sizeof chart->name, "%s", c->name);
 	snprintf(chart->title, sizeof chart->title, "%s: error against cost", c->title);
 	bool others = false; // there are points off the curves, with other numbers of iterations
-	for (size_t i = 0; i < chart->plot.series_count; i++)
-		others |= chart->series[i].count && !chart->series[i].title;
+	for (size_t i = 0; i < chart->series_count; i++)
+		others |= chart->series[i].count && !*chart->series[i].title;
 	snprintf(chart->subtitle, sizeof chart->subtitle,
 		 "down and left is better \u00b7 at the points: substeps a frame (obsim), steps a second (others)%s",
 		 others ? ", \u00d7 iterations" : "");
 	add_configuration(chart, d, c);
-	snprintf(chart->x_label, sizeof chart->x_label, "CPU per body and simulated second (\u00b5s)");
-	name_axis(&c->figure[0], chart->y_label, sizeof chart->y_label);
-	chart->plot.x.scale = chart->plot.y.scale = OB_SCALE_LOG;
+	snprintf(chart->x.label, sizeof chart->x.label, "CPU per body and simulated second (\u00b5s)");
+	name_axis(&c->figure[0], chart->y.label, sizeof chart->y.label);
+	chart->x.scale = chart->y.scale = OB_SCALE_LOG;
 	mark_target(chart, c);
-	chart->plot.width = 860;
-	chart->plot.height = 500;
+	chart->width = 860;
+	chart->height = 500;
 	return chart;
 }
 
@@ -219,8 +220,8 @@ static void name_order(const ob_engine_kind *k, const ob_result *const *list, si
 // Adds a guide line of first order, from the coarsest point of the first engine.
 static void add_guide(ob_chart *chart)
 {
-	const ob_plot_series *s = chart->series;
-	const ob_plot_point *at = chart->point + chart->first[0], *first = NULL, *last = NULL;
+	const ob_chart_series *s = chart->series;
+	const ob_chart_point *at = chart->point + s->first, *first = NULL, *last = NULL;
 	for (size_t i = 0; i < s->count; i++) {
 		if (at[i].failed || !(at[i].y > 0))
 			continue;
@@ -239,7 +240,7 @@ ob_chart *ob_lab_chart_convergence(const ob_lab_analysis *d, const ob_case *c)
 {
 	ob_chart *chart = ob_chart_new();
 	const ob_result **list = calloc(d->results->count + 1, sizeof *list);
-	for (size_t i = 0; chart && list && i < d->engines; i++) {
+	for (size_t i = 0; list && i < d->engines; i++) {
 		char title[128];
 		size_t count = gather(d, c, d->engine[i], FAMILY_STEPS, list);
 		if (count < 2)
@@ -253,17 +254,18 @@ ob_chart *ob_lab_chart_convergence(const ob_lab_analysis *d, const ob_case *c)
 	if (!chart)
 		return NULL;
 	for (size_t i = 0; i < chart->points; i++)
-		chart->point[i].label = NULL; // the axis has this information
+		chart->point[i].label[0] = 0; // the axis has this information
 	add_guide(chart);
+	snprintf(chart->name, sizeof chart->name, "order-%s", c->name);
 	snprintf(chart->title, sizeof chart->title, "%s: order of convergence", c->title);
 	add_configuration(chart, d, c);
-	snprintf(chart->x_label, sizeof chart->x_label, "substeps a frame");
-	name_axis(&c->figure[0], chart->y_label, sizeof chart->y_label);
-	chart->plot.x.scale = OB_SCALE_LOG2;
-	chart->plot.y.scale = OB_SCALE_LOG;
+	snprintf(chart->x.label, sizeof chart->x.label, "substeps a frame");
+	name_axis(&c->figure[0], chart->y.label, sizeof chart->y.label);
+	chart->x.scale = OB_SCALE_LOG2;
+	chart->y.scale = OB_SCALE_LOG;
 	mark_target(chart, c);
-	chart->plot.width = 860;
-	chart->plot.height = 440;
+	chart->width = 860;
+	chart->height = 440;
 	return chart;
 }
 
@@ -287,7 +289,7 @@ static void add_row(ob_chart *chart, const ob_result *r, double at)
 	else
 		snprintf(hint, sizeof hint, "%s, %s: %s", r->of->title, r->engine->title,
 			 r->outcome.failed[0] ? r->outcome.failed : "missed a target of 0");
-	ob_plot_point *p = ob_chart_add(chart, ratio, at, "", hint);
+	ob_chart_point *p = ob_chart_add(chart, ratio, at, "", hint);
 	p->failed = !isfinite(ratio);
 }
 
@@ -296,7 +298,7 @@ static void add_row(ob_chart *chart, const ob_result *r, double at)
 static void add_engine(ob_chart *chart, const ob_lab_analysis *d, const ob_engine_kind *k, const ob_engine_kind *beside,
 		       double dodge)
 {
-	ob_plot_series *s =
+	ob_chart_series *s =
 		ob_chart_begin(chart, k ? ob_lab_analysis_style(d, k) : 0, k != NULL, k ? k->title : "obsim");
 	s->line = false;
 	int row = 0;
@@ -317,11 +319,10 @@ static size_t name_rows(ob_chart *chart, const ob_lab_analysis *d, const ob_engi
 		if (!has_row(d, *c, beside))
 			continue;
 		if ((*c)->row > 0)
-			snprintf(chart->category_text[rows], sizeof *chart->category_text, "%s \u00b7 %d", (*c)->title,
+			snprintf(chart->category[rows], sizeof *chart->category, "%s \u00b7 %d", (*c)->title,
 				 (*c)->row);
 		else
-			snprintf(chart->category_text[rows], sizeof *chart->category_text, "%s", (*c)->title);
-		chart->category[rows] = chart->category_text[rows];
+			snprintf(chart->category[rows], sizeof *chart->category, "%s", (*c)->title);
 		rows++;
 	}
 	return rows;
@@ -335,21 +336,19 @@ static ob_chart *end_rows(ob_chart *chart, const ob_lab_analysis *d, const ob_en
 		return NULL;
 	}
 	add_configuration(chart, d, NULL);
-	snprintf(chart->x_label, sizeof chart->x_label, "worst error of the case, over its target");
-	chart->plot.x.scale = OB_SCALE_LOG;
-	chart->plot.y = (ob_plot_axis){ .scale = OB_SCALE_CATEGORY, .categories = rows, .category = chart->category };
-	chart->mark[0] = (ob_plot_mark){ .at = 1, .vertical = true, .label = "target", .tinted = true };
-	chart->plot.marks = 1;
-	chart->plot.width = 1000;
-	chart->plot.height = 150 + row_height * (double)rows;
+	snprintf(chart->x.label, sizeof chart->x.label, "worst error of the case, over its target");
+	chart->x.scale = OB_SCALE_LOG;
+	chart->categories = rows;
+	chart->mark[0] = (ob_chart_mark){ .at = 1, .label = "target", .vertical = true, .tinted = true };
+	chart->marks = 1;
+	chart->width = 1000;
+	chart->height = 150 + row_height * (double)rows;
 	return chart;
 }
 
 ob_chart *ob_lab_chart_promises(const ob_lab_analysis *d)
 {
 	ob_chart *chart = ob_chart_new();
-	if (!chart)
-		return NULL;
 	add_engine(chart, d, NULL, NULL, 0);
 	size_t others = 0, done = 0;
 	for (size_t i = 0; i < d->engines; i++)
@@ -357,6 +356,7 @@ ob_chart *ob_lab_chart_promises(const ob_lab_analysis *d)
 	for (size_t i = 0; i < d->engines; i++)
 		if (!ob_lab_analysis_is_obsim(d->engine[i]))
 			add_engine(chart, d, d->engine[i], NULL, .22 * ((double)done++ - (double)(others - 1) / 2));
+	snprintf(chart->name, sizeof chart->name, "all-cases");
 	snprintf(chart->title, sizeof chart->title, "Every case: error against its target, at usual settings");
 	snprintf(chart->subtitle, sizeof chart->subtitle,
 		 "left of the line: the target is met \u00b7 crosses: failed, or misses a target of 0 \u00b7 the "
@@ -381,6 +381,7 @@ ob_chart *ob_lab_chart_ghost(const ob_lab_analysis *d)
 		return NULL;
 	add_engine(chart, d, NULL, ghost, -.15);
 	add_engine(chart, d, ghost, ghost, .15);
+	snprintf(chart->name, sizeof chart->name, "all-ghost");
 	snprintf(chart->title, sizeof chart->title, "Neighbours as ghosts of infinite mass: error against target");
 	return end_rows(chart, d, ghost);
 }
@@ -419,15 +420,16 @@ ob_chart *ob_lab_chart_delay(const ob_lab_analysis *d, const ob_case *c)
 		return NULL;
 	}
 	for (size_t i = 0; i < chart->points; i++)
-		chart->point[i].label = NULL; // the axis has this information
+		chart->point[i].label[0] = 0; // the axis has this information
+	snprintf(chart->name, sizeof chart->name, "delay-%s", c->name);
 	snprintf(chart->title, sizeof chart->title, "%s: error of free simulators over the delay", c->title);
 	add_configuration(chart, d, c);
-	snprintf(chart->x_label, sizeof chart->x_label, "ms until a publication is seen");
-	name_axis(&c->figure[0], chart->y_label, sizeof chart->y_label);
-	chart->plot.x.scale = chart->plot.y.scale = OB_SCALE_LOG;
+	snprintf(chart->x.label, sizeof chart->x.label, "ms until a publication is seen");
+	name_axis(&c->figure[0], chart->y.label, sizeof chart->y.label);
+	chart->x.scale = chart->y.scale = OB_SCALE_LOG;
 	mark_target(chart, c);
-	chart->plot.width = 860;
-	chart->plot.height = 440;
+	chart->width = 860;
+	chart->height = 440;
 	return chart;
 }
 
@@ -445,7 +447,7 @@ ob_chart *ob_lab_chart_lag(const ob_lab_analysis *d)
 			if (r->of != c || r->engine != late)
 				continue;
 			bool failed = r->outcome.failed[0] || !isfinite(r->outcome.figure[figure]);
-			ob_plot_point *p =
+			ob_chart_point *p =
 				ob_chart_add(chart, r->settings.lag, failed ? NAN : r->outcome.figure[figure], "", "");
 			p->failed = failed;
 		}
@@ -454,12 +456,13 @@ ob_chart *ob_lab_chart_lag(const ob_lab_analysis *d)
 		ob_chart_free(chart);
 		return NULL;
 	}
+	snprintf(chart->name, sizeof chart->name, "lag");
 	snprintf(chart->title, sizeof chart->title, "Error of reading a partner late");
 	add_configuration(chart, d, c);
-	snprintf(chart->x_label, sizeof chart->x_label, "iterations that a partner's state is late");
-	snprintf(chart->y_label, sizeof chart->y_label, "relative error");
-	chart->plot.y.scale = OB_SCALE_LOG;
-	chart->plot.width = 760;
-	chart->plot.height = 400;
+	snprintf(chart->x.label, sizeof chart->x.label, "iterations that a partner's state is late");
+	snprintf(chart->y.label, sizeof chart->y.label, "relative error");
+	chart->y.scale = OB_SCALE_LOG;
+	chart->width = 760;
+	chart->height = 400;
 	return chart;
 }

@@ -135,14 +135,9 @@ static void write_audit(ob_page *p, const void *with)
 	write_table(p, t);
 }
 
-static void write_style(ob_page *p, const void *with)
-{
-	ob_page_style(p);
-}
-
 static void write_promises(ob_page *p, const void *with)
 {
-	ob_chart_html(ob_lab_chart_promises(with), p);
+	ob_chart_html(ob_lab_chart_promises(with), p, "");
 }
 
 static const char *const convergence_cases[] = { "stack-10", "pile", "sliding" };
@@ -171,11 +166,7 @@ static void write_convergence(ob_page *p, const void *with)
 					       "Gain of doubling the substeps. An error of first order halves, one "
 					       "of second order falls to a quarter; "
 					       "the observed order stands beside each name.");
-		if (chart)
-			ob_page_markup(p, "<figure>\n");
-		ob_chart_html(chart, p);
-		if (chart)
-			ob_page_markup(p, "</figure>\n");
+		ob_chart_html(chart, p, "");
 	}
 }
 
@@ -190,9 +181,7 @@ static void write_ghost(ob_page *p, const void *with)
 			   "comes from nowhere. (Where bodies touch nothing but the ground it makes no difference.) "
 			   "obsim can do so (<code>coupling=ghost</code>) only to show it."))
 		return;
-	ob_page_markup(p, "<figure>\n");
-	ob_chart_html(chart, p);
-	ob_page_markup(p, "</figure>\n");
+	ob_chart_html(chart, p, "");
 }
 
 static void write_lag(ob_page *p, const void *with)
@@ -203,9 +192,7 @@ static void write_lag(ob_page *p, const void *with)
 			   "other that is some "
 			   "iterations old. Momentum is exact only where both sides see the same."))
 		return;
-	ob_page_markup(p, "<figure>\n");
-	ob_chart_html(chart, p);
-	ob_page_markup(p, "</figure>\n");
+	ob_chart_html(chart, p, "");
 }
 
 static void write_free(ob_page *p, const void *with)
@@ -220,11 +207,7 @@ static void write_free(ob_page *p, const void *with)
 				      "of their steps stands with each case, lockstep beside it. A ledger "
 				      "computes a pair's impulse once; own: each side computes its own. Two "
 				      "runs of one setting differ.");
-		if (chart)
-			ob_page_markup(p, "<figure>\n");
-		ob_chart_html(chart, p);
-		if (chart)
-			ob_page_markup(p, "</figure>\n");
+		ob_chart_html(chart, p, "");
 	}
 }
 
@@ -309,7 +292,7 @@ static ob_chart *case_chart(const ob_lab_analysis *d, const ob_case *c)
 static void write_plot(ob_page *p, const void *with)
 {
 	const report_case *c = with;
-	ob_chart_html(case_chart(c->analysis, c->of), p);
+	ob_chart_html(case_chart(c->analysis, c->of), p, "");
 }
 
 static void write_all_cases(ob_page *p, const void *with)
@@ -349,35 +332,7 @@ static void write_setting(ob_page *p, const void *with)
 	}
 }
 
-static bool write_charts(const ob_lab_analysis *d, const char *dir, ob_error *e)
-{
-	char name[80];
-	for (const ob_case *const *c = ob_cases; *c; c++)
-		if (!ob_chart_write(case_chart(d, *c), dir, (*c)->name, e))
-			return false;
-	for (size_t i = 0; i < CONVERGENCE_CASES; i++) {
-		snprintf(name, sizeof name, "order-%s", convergence_cases[i]);
-		if (!ob_chart_write(convergence_chart(d, i), dir, name, e))
-			return false;
-	}
-	return ob_chart_write(ob_lab_chart_promises(d), dir, "all-cases", e) &&
-	       ob_chart_write(ob_lab_chart_ghost(d), dir, "all-ghost", e);
-}
-
 // ---- the files
-
-static void write_page(FILE *f, const void *with)
-{
-	static const ob_page_slot slots[] = {
-		{ "style", write_style },         { "cards", write_cards },     { "verdict", write_verdict },
-		{ "promises", write_promises },   { "equal", write_equal },     { "rows", write_rows },
-		{ "conserved", write_conserved }, { "audit", write_audit },     { "convergence", write_convergence },
-		{ "ghost", write_ghost },         { "lag", write_lag },         { "free", write_free },
-		{ "index", write_index },         { "cases", write_all_cases }, { "setting", write_setting }
-	};
-	ob_page page = { .out = f };
-	ob_page_fill(&page, text_page_html, slots, sizeof slots / sizeof *slots, with);
-}
 
 static void write_rows_file(FILE *f, const void *with)
 {
@@ -406,11 +361,19 @@ static void write_equal_csv(FILE *f, const void *with)
 
 bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e)
 {
+	static const ob_page_slot slots[] = {
+		{ "cards", write_cards },     { "verdict", write_verdict }, { "promises", write_promises },
+		{ "equal", write_equal },     { "rows", write_rows },       { "conserved", write_conserved },
+		{ "audit", write_audit },     { "ghost", write_ghost },     { "convergence", write_convergence },
+		{ "lag", write_lag },         { "free", write_free },       { "index", write_index },
+		{ "cases", write_all_cases }, { "setting", write_setting }
+	};
+	const ob_report report = { "obsim: accuracy, and speed against error", "", text_page_html, slots,
+				   sizeof slots / sizeof *slots };
 	ob_lab_analysis d = ob_lab_analyse(r);
 	return ob_folder_make(dir, e) && ob_folder_write(dir, "rows.md", write_rows_file, &d, e) &&
 	       ob_folder_write(dir, "conserved.md", write_conserved_file, &d, e) &&
 	       ob_folder_write(dir, "audit.md", write_audit_file, &d, e) &&
 	       ob_folder_write(dir, "equal.md", write_equal_file, &d, e) &&
-	       ob_folder_write(dir, "equal.csv", write_equal_csv, &d, e) && write_charts(&d, dir, e) &&
-	       ob_folder_write(dir, "report.html", write_page, &d, e);
+	       ob_folder_write(dir, "equal.csv", write_equal_csv, &d, e) && ob_report_write(&report, dir, &d, e);
 }

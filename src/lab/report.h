@@ -6,9 +6,8 @@
 
 #include "lab/result.h"
 
-// Writes DIR/report.html (self-contained: no script, no network), DIR/plots/NAME.svg and .png, and the tables
-// DIR/rows.md, conserved.md, audit.md, equal.md and equal.csv; makes the folders. The same results give the same files.
-// One thread at a time per directory.
+// Makes DIR, and writes report.html and the tables rows.md, conserved.md, audit.md, equal.md and equal.csv there. The same
+// results give the same files. One thread at a time per directory.
 bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e);
 
 // Writes the results for other programs. version: of this one

@@ -12,7 +12,7 @@ static const struct {
 	ob_paper_metric metric;
 	bool growth;
 	ob_paper_scenario scenario; // of growth
-	ob_plot_scale scale;
+	ob_chart_scale scale;
 } charts[OB_PAPER_CHARTS] = {
 	{ "figure-14", "Figure 14. Runtime", OB_PAPER_STEP, false, 0, OB_SCALE_LOG },
 	{ "figure-15", "Figure 15. Frame rates", OB_PAPER_FPS, false, 0, OB_SCALE_LOG },
@@ -24,11 +24,6 @@ static const struct {
 	{ "figure-6-obs-shown", "Figure 6, OBS as a system monitor shows it", OB_PAPER_CPU, true, OB_PAPER_OBS,
 	  OB_SCALE_LINEAR },
 };
-
-const char *ob_paper_chart_name(int chart)
-{
-	return charts[chart].name;
-}
 
 static void add_experiments(ob_chart *c, const ob_paper_results *r, ob_paper_scenario s, ob_paper_metric m,
 			    const char *title, int style, bool hollow)
@@ -54,7 +49,7 @@ static void draw_experiments(ob_chart *c, const ob_paper_report_model *model, ob
 		add_experiments(c, here, OB_PAPER_POOL, m, "OBS, one thread a core", STYLE_POOL, false);
 	add_experiments(c, &model->paper, OB_PAPER_COMMON, m, "common, as printed in the paper", STYLE_COMMON, true);
 	add_experiments(c, &model->paper, OB_PAPER_OBS, m, "OBS, as printed in the paper", STYLE_OBS, true);
-	OB_SAY(c->x_label, "experiment");
+	OB_SAY(c->x.label, "experiment");
 	OB_SAY(c->subtitle, "here: %u boxes, other sizes and attitudes in each experiment; %s", here->objects,
 	       here->records.machine);
 }
@@ -88,7 +83,7 @@ static void draw_growth(ob_chart *c, const ob_paper_report_model *model, int cha
 		to = fmax(to, objects);
 	}
 	ob_paper_growth g = ob_paper_grow(model->here, s, m);
-	OB_SAY(c->x_label, "objects n");
+	OB_SAY(c->x.label, "objects n");
 	if (g.linear.n < 3 || !(to > from))
 		return;
 	draw_fit(c, &g.linear, false, from, to, scale, "line");
@@ -108,12 +103,11 @@ ob_chart *ob_paper_chart_make(const ob_paper_report_model *model, int chart)
 {
 	const ob_paper_metric m = charts[chart].metric;
 	ob_chart *c = ob_chart_new();
-	if (!c)
-		return NULL;
+	OB_SAY(c->name, "%s", charts[chart].name);
 	OB_SAY(c->title, "%s", charts[chart].caption);
-	OB_SAY(c->y_label, "%s (%s)", m == OB_PAPER_STEP ? "runtime" : ob_paper_metrics[m].title,
+	OB_SAY(c->y.label, "%s (%s)", m == OB_PAPER_STEP ? "runtime" : ob_paper_metrics[m].title,
 	       ob_paper_metrics[m].unit);
-	c->plot.y.scale = charts[chart].scale;
+	c->y.scale = charts[chart].scale;
 	if (charts[chart].growth)
 		draw_growth(c, model, chart);
 	else

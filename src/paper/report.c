@@ -301,36 +301,10 @@ static void write_setting(ob_page *p, const void *with)
 	}
 }
 
-static void write_style(ob_page *p, const void *with)
-{
-	ob_page_style(p);
-	fputs(text_paper_css, p->out);
-}
-
 static void write_figures(ob_page *p, const void *with)
 {
-	for (int i = 0; i < OB_PAPER_CHARTS; i++) {
-		ob_chart *c = ob_paper_chart_make(with, i);
-		if (!ob_chart_plot(c)) {
-			ob_chart_free(c);
-			continue;
-		}
-		ob_page_markup(p, "<figure id=\"%s\">\n", ob_paper_chart_name(i));
-		ob_chart_html(c, p);
-		ob_page_markup(p, "</figure>\n");
-	}
-}
-
-static void write_page(FILE *f, const void *with)
-{
-	static const ob_page_slot slots[] = {
-		{ "style", write_style },     { "cards", write_cards },     { "busy", write_busy },
-		{ "claims", write_claims },   { "medians", write_medians }, { "figures", write_figures },
-		{ "tables", write_tables },   { "never", write_never },     { "itself", write_itself },
-		{ "setting", write_setting },
-	};
-	ob_page page = { .out = f };
-	ob_page_fill(&page, text_paper_html, slots, sizeof slots / sizeof *slots, with);
+	for (int i = 0; i < OB_PAPER_CHARTS; i++)
+		ob_chart_html(ob_paper_chart_make(with, i), p, "");
 }
 
 // ---- other forms
@@ -358,11 +332,15 @@ static void write_markdown(FILE *f, const void *with)
 
 bool ob_paper_report(const ob_paper_results *r, const char *dir, ob_error *e)
 {
+	static const ob_page_slot slots[] = {
+		{ "cards", write_cards },     { "busy", write_busy },       { "claims", write_claims },
+		{ "medians", write_medians }, { "figures", write_figures }, { "tables", write_tables },
+		{ "never", write_never },     { "itself", write_itself },   { "setting", write_setting },
+	};
+	const ob_report report = { "obsim: the paper's claims, measured", text_paper_css, text_paper_html, slots,
+				   sizeof slots / sizeof *slots };
 	ob_paper_report_model m = ob_paper_report_model_make(r);
-	bool fine = ob_folder_write(dir, "tables.md", write_markdown, &m, e) &&
-		    ob_folder_write(dir, "report.html", write_page, &m, e);
-	for (int i = 0; fine && i < OB_PAPER_CHARTS; i++)
-		fine = ob_chart_write(ob_paper_chart_make(&m, i), dir, ob_paper_chart_name(i), e);
+	bool fine = ob_folder_write(dir, "tables.md", write_markdown, &m, e) && ob_report_write(&report, dir, &m, e);
 	ob_paper_report_model_finish(&m);
 	return fine;
 }

@@ -8,8 +8,8 @@
 #include "experiment/table.h"
 #include "paper/claims.h"
 
-// Writes DIR/report.html (self-contained: no script, no network), tables.md, and plots/NAME.svg and .png into an
-// existing DIR. The same results give the same files. One thread at a time per directory.
+// Writes DIR/report.html and tables.md into an existing DIR. The same results give the same files. One thread at a time per
+// directory.
 bool ob_paper_report(const ob_paper_results *r, const char *dir, ob_error *e);
 
 // Writes claims, means and all runs as one object of JSON.
@@ -34,7 +34,6 @@ ob_table *ob_paper_table_make(const ob_paper_report_model *m, int table);
 
 // The paper's figures, with ours added.
 enum { OB_PAPER_CHARTS = 6 };
-const char *ob_paper_chart_name(int chart); // in files, and in the page
-ob_chart *ob_paper_chart_make(const ob_paper_report_model *m, int chart); // NULL: nothing to show, or out of memory
+ob_chart *ob_paper_chart_make(const ob_paper_report_model *m, int chart);
 
 #endif

@@ -1,4 +1,5 @@
-// The renderer as the program sees it: loads the part that draws.
+// The renderer and captions as the program sees them: loads the parts that draw.
+#include "render/caption.h"
 #include "render/part.h"
 
 #define PACKAGES "libegl1, libopengl0 and libgl1-mesa-dri"
@@ -32,4 +33,30 @@ bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot
 		      uint8_t *rgba, ob_error *e)
 {
 	return part_of(r)->draw(r, prev, now, t, c, rgba, e);
+}
+
+// ---- captions
+
+#define CAIRO "libcairo2"
+
+static const ob_caption_part *load_cairo(ob_error *e)
+{
+	return ob_part_load("cairo", sizeof(ob_caption_part), OB_PART_PROGRAM, CAIRO, e);
+}
+
+bool ob_caption_check(ob_error *e)
+{
+	return ob_part_check("cairo", CAIRO, e);
+}
+
+bool ob_caption(uint8_t *rgba, int width, int height, const char *title, const char *time, ob_error *e)
+{
+	const ob_caption_part *part = load_cairo(e);
+	return part && part->caption(rgba, width, height, title, time, e);
+}
+
+bool ob_caption_strip(uint8_t *rgba, int width, int height, const ob_strip *s, ob_error *e)
+{
+	const ob_caption_part *part = load_cairo(e);
+	return part && part->strip(rgba, width, height, s, e);
 }

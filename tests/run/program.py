@@ -82,6 +82,11 @@ def report(*words, **more):
 	return json.loads(done.stdout)
 
 
+def charts(page):
+	"""Descriptions of the diagrams that the script of a report's page draws."""
+	return [json.loads(text) for text in re.findall(r'<script class="chart" type="application/json">(.*?)</script>', page)]
+
+
 def home_of(name, object):
 	"""The worker of an object according to obsim top, as text; None: the universe, or the object, does not
 	exist."""

@@ -27,13 +27,12 @@ class CompareSync(program.Case):
 		done = program.call(*words)
 		self.assertEqual(done.returncode, 0, done.stderr)
 		self.assertIn("Lockstep kept bodies within", done.stdout)
-		for file in "report.html", "plots/error.svg", "plots/energy.png", "plots/cost.svg":
-			self.assertGreater(os.path.getsize(os.path.join(out, file)), 1000, file)
 		with open(os.path.join(out, "report.html")) as f:
 			page = f.read()
 		for part in "Question", "Recommendation", "Figures", "Method", "Threats to validity", "ledger, process each", "<b>1 seed</b>":
 			self.assertIn(part, page)
 		self.assertNotIn("{{", page)
+		self.assertEqual([c["name"] for c in program.charts(page)], ["error", "rate", "energy", "cost"])
 		with open(os.path.join(out, "results.csv")) as f:
 			rows = list(csv.DictReader(f))
 		self.assertEqual(len(rows), 26)
@@ -54,8 +53,7 @@ class CompareSync(program.Case):
 		with open(os.path.join(out, "report.html")) as f:
 			page = f.read()
 		self.assertRegex(page, r"took [\d.]+ \([\d.]+ to [\d.]+\) times the CPU")
-		self.assertIn("over the number of simulators", page)
-		self.assertGreater(os.path.getsize(os.path.join(out, "plots/objects-cpu.svg")), 1000)
+		self.assertLessEqual({"objects-cpu", "objects-error"}, {c["name"] for c in program.charts(page)})
 
 	def test_refusals(self):
 		scene = self.scene()

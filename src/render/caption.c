@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "plot/part.h"
+#include "render/caption.h"
 
 // Relative to the font size.
 static const double pad_x = .75, pad_y = .45, gap = 1, margin = .9, corner = .35;
@@ -71,7 +71,7 @@ static void paint_ground(cairo_t *c, double width, double height, double r)
 	cairo_fill(c);
 }
 
-bool ob_cairo_caption(uint8_t *rgba, int width, int height, const char *title, const char *time, ob_error *e)
+static bool write_caption(uint8_t *rgba, int width, int height, const char *title, const char *time, ob_error *e)
 {
 	double size = fmax(11, .028 * height);
 	int left = (int)(margin * size), room = width - left, high = (int)ceil(size * (1 + 2 * pad_y));
@@ -159,7 +159,7 @@ static double strip_lines(const ob_strip *s)
 	return s->rows + (*s->more ? 1 : 0) + (s->places ? 2.2 + ribbon / line : 0);
 }
 
-bool ob_cairo_strip(uint8_t *rgba, int width, int height, const ob_strip *s, ob_error *e)
+static bool paint_strip(uint8_t *rgba, int width, int height, const ob_strip *s, ob_error *e)
 {
 	const double size = fmax(11, .02 * height);
 	const int left = (int)(margin * size), wide = (int)ceil(strip_width * size),
@@ -184,3 +184,5 @@ bool ob_cairo_strip(uint8_t *rgba, int width, int height, const ob_strip *s, ob_
 	}
 	return lay(rgba, width, surface, c, left, left, e);
 }
+
+OB_PART(ob_caption_part) = { OB_PART_HEAD(ob_caption_part), .caption = write_caption, .strip = paint_strip };
