@@ -40,7 +40,7 @@ class Lab(program.Case):
 		self.refuse("lab", "--engines", "obsim,oed-quick", saying="no engine 'oed-quick': did you mean ode-quick?")
 		self.refuse("lab", "--engines", "zebra", saying="only: obsim, ")
 		self.refuse("lab", "--sweep", "substeps=0", saying="whole number from 1")
-		self.refuse("lab", "--sweep", "tolerance=1", saying="with its unit")
+		self.refuse("lab", "--sweep", "tolerance=2", saying="above 0, at most 1 m")
 		self.refuse("lab", "--repeats", "99", saying="expected 1 to 15")
 		self.refuse("lab", "--limit", "0", saying="more than 0")
 		self.refuse("lab", "--quick", "pile", saying="'pile'")
