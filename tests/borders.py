@@ -50,7 +50,7 @@ ARROWS = {
     'compare': 'experiment reference settings base',
     'world': 'terrain hull shape motion elementary base',
     'engine': 'host scene world step ode table settings measure shape motion base',
-    'lab': 'reference engine world experiment settings measure shape motion base',
+    'lab': 'scene reference engine world experiment settings measure shape motion base',
     'render': 'measure mesh scene shape motion base',
     'record': 'measure mesh scene table settings shape motion base',
     'paper': 'host measure render reference experiment scene table settings ranks base',
@@ -58,7 +58,7 @@ ARROWS = {
     'import': 'hull shape motion base',
     'cli': 'import control shape free/free.h free/schedule.h serve checkpoint host render record lab paper compare measure scene reference experiment table settings base ranks',
 }
-BUILT = {'render': ['shaders.h'], 'compare': ['compare_texts.h', 'sync_texts.h'], 'lab': ['report_texts.h'], 'experiment': ['page_texts.h'],
+BUILT = {'scene': ['scene_texts.h'], 'render': ['shaders.h'], 'compare': ['compare_texts.h', 'sync_texts.h'], 'lab': ['report_texts.h', 'lab_scenes.h'], 'experiment': ['page_texts.h'],
          'paper': ['paper_texts.h'],
          'serve': ['content_table.h']}  # written by the build, so without a folder
 

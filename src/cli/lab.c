@@ -13,6 +13,7 @@
 #include "lab/audit.h"
 #include "lab/lab.h"
 #include "lab/report.h"
+#include "lab/scene.h"
 #include "lab/tables.h"
 #include "ranks/ranks.h"
 
@@ -39,6 +40,26 @@ static bool suggest_family(const char *word, ob_error *e)
 			return ob_fail(e, "no case '%s': did you mean %s, or all that begin with '%s'?", word,
 				       (*c)->name, s.best);
 	return ob_fail(e, "no case '%s': obsim lab --list shows all", word);
+}
+
+// True for a user's case, which is a file.
+static bool is_file(const char *word)
+{
+	const size_t n = strlen(word);
+	return n > 4 && strcmp(word + n - 4, ".lua") == 0;
+}
+
+static bool open_cases(const ob_arguments *a, ob_error *e)
+{
+	const char *file[OB_LIST_CASES];
+	size_t files = 0;
+	for (const char **word = a->operands; *word; word++) {
+		if (is_file(*word) && files == OB_LIST_CASES)
+			return ob_fail(e, "lab: expected at most %d files", OB_LIST_CASES);
+		if (is_file(*word))
+			file[files++] = *word;
+	}
+	return ob_cases_open(file, files, e);
 }
 
 static bool read_cases(ob_case_list *l, const ob_arguments *a, ob_error *e)
@@ -135,8 +156,8 @@ static bool read_request(request *r, const ob_arguments *a, ob_error *e)
 		engines = "obsim,obsim-lag,ode-quick";
 	if (quick && !sweep)
 		sweep = "none";
-	bool fine = read_cases(&r->plan.cases, a, e) && read_engines(&r->plan.engines, engines, e) &&
-		    ob_sweep_parse(&r->plan.sweep, sweep, e) &&
+	bool fine = open_cases(a, e) && read_cases(&r->plan.cases, a, e) &&
+		    read_engines(&r->plan.engines, engines, e) && ob_sweep_parse(&r->plan.sweep, sweep, e) &&
 		    ob_number_count("repeats", a->value[OB_OPTION_REPEATS], 1, OB_REPEATS, &repeats, e) &&
 		    ob_number_real("limit", a->value[OB_OPTION_LIMIT], 0, 1e6, &r->limit, e);
 	r->plan.repeats = (uint32_t)repeats;
@@ -165,6 +186,19 @@ static bool pick(const ob_lab_plan *p, const ob_results *from, ob_results *to)
 	return fine;
 }
 
+// Error of a user's case, whose function failed in a run; NULL: there is none.
+static const char *find_wrong_case(const ob_results *r)
+{
+	for (size_t i = 0; i < r->count; i++) {
+		const ob_case_text *t = r->result[i].of->text;
+		const size_t n = t ? strlen(t->path) : 0;
+		const char *said = r->result[i].outcome.failed;
+		if (n && strncmp(said, t->path, n) == 0 && said[n] == ':')
+			return said;
+	}
+	return NULL;
+}
+
 static int tell(const request *r, const ob_results *asked)
 {
 	ob_lab_analysis d = ob_lab_analyse(asked);
@@ -186,6 +220,9 @@ static int tell(const request *r, const ob_results *asked)
 		ob_fail(&e, "standard output: %s", strerror(errno));
 		return ob_command_fail(OB_EXIT_FAILED, e.text);
 	}
+	const char *wrong = find_wrong_case(asked);
+	if (wrong)
+		return ob_command_fail(OB_EXIT_USAGE, wrong);
 	size_t missed = r->check ? ob_lab_count_missed(&d) : 0;
 	if (missed == 0)
 		return OB_EXIT_OK;
@@ -193,9 +230,13 @@ static int tell(const request *r, const ob_results *asked)
 	return ob_command_fail(OB_EXIT_MISSED, e.text);
 }
 
+// Results of a user's files are never mixed with those of other texts.
 static bool measure(const request *r, ob_results *results, ob_error *e)
 {
-	ob_experiment x = ob_lab_experiment(ob_version_commit, r->limit);
+	char commit[64];
+	snprintf(commit, sizeof commit, ob_cases_digest() ? "%.40s, cases %08x" : "%.40s", ob_version_commit,
+		 ob_cases_digest());
+	ob_experiment x = ob_lab_experiment(commit, r->limit);
 	ob_trials trials = { 0 };
 	ob_records records = { 0 };
 	bool fine = ob_lab_schedule(&r->plan, &trials, e) && ob_experiment_open(&x, r->out, &records, e);

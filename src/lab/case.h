@@ -1,4 +1,5 @@
-// A hard case: worlds to run, observations after each frame, and the resulting figures, each with its target.
+// A hard case: worlds to run, observations after each frame, and the resulting figures, each with its target. Most are scenes
+// (lab/scene.h), in scenes/lab/ or of a user; others build their worlds.
 //
 // A case may consist of several runs (100 aims at a wall, three stacks). Its figures are the worst over all of them,
 // except for averaged ones. Cases do not depend on engines: they read states.
@@ -8,6 +9,7 @@
 #include "engine/engine.h"
 #include "lab/conservation.h"
 #include "measure/measure.h"
+#include "scene/scene.h"
 
 enum { OB_FIGURES = 8 }; // per case, at most
 
@@ -31,7 +33,11 @@ typedef struct ob_case_run_state {
 	double *body_memory; // [objects][8], likewise
 	const char *failed; // reason for which the run counts as failed: "fell", "passed through"; NULL = success
 	ob_run_settings settings;
+	ob_scene *scene; // of a case that is one; else NULL
+	ob_error wrong; // of such a case: a function of it failed; "" = none
 } ob_case_run_state;
+
+typedef struct ob_case_text ob_case_text;
 
 typedef struct ob_case {
 	int row; // in the table of hard cases
@@ -48,6 +54,7 @@ typedef struct ob_case {
 	ob_figure_def figure[OB_FIGURES];
 	unsigned averaged; // bit per figure: the mean over the runs counts, not the worst (a share)
 	double variant[3]; // for build: what tells it from a case beside it
+	const ob_case_text *text; // its scene (lab/scene.h); NULL: it builds its worlds
 	void (*build)(ob_world *w, uint32_t run, const double *variant); // uses ob_world_* of world/world.h
 	void (*observe)(ob_case_run_state *t); // after each frame, and once before the first; NULL = nothing
 	void (*judge)(ob_case_run_state *t); // at the end of each run
@@ -60,8 +67,15 @@ static inline uint32_t ob_case_runs(const ob_case *c)
 	return c->runs ? c->runs : 1;
 }
 
-extern const ob_case *const ob_cases[]; // in the order of their rows; ends with NULL
+extern const ob_case *const *ob_cases; // in the order of their rows; ends with NULL
 const ob_case *ob_case_find(const char *name);
+// Adds those that are scenes: of the program, and of a user's files. Once, before others use the list. false and e: one is
+// wrong.
+bool ob_cases_open(const char *const *file, size_t files, ob_error *e);
+// Digest of the texts of the user's files; 0: there are none.
+uint32_t ob_cases_digest(void);
+// Builds the world of a run, and *scene if it is one; finish both. false and e: as ob_lab_scene_load.
+bool ob_case_build(const ob_case *c, uint32_t run, ob_world *w, ob_scene **scene, ob_error *e);
 
 // Runs all of a case's runs with one engine. Returns false and e if the engine could not be created, or memory ran out.
 // A run ends at its first failure. If the engine itself broke down (it gave up, NaN, faster than 1e5 m/s or rad/s), all

@@ -213,10 +213,12 @@ ob_experiment ob_lab_experiment(const char *commit, double limit)
 
 static uint32_t count_bodies(const ob_case *c)
 {
-	ob_world w = { .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
-	c->build(&w, 0, c->variant);
-	uint32_t bodies = w.objects;
+	ob_world w;
+	ob_scene *scene;
+	ob_error e;
+	const uint32_t bodies = ob_case_build(c, 0, &w, &scene, &e) ? w.objects : 0;
 	ob_world_finish(&w);
+	ob_scene_free(scene);
 	return bodies;
 }
 

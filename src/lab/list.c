@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "experiment/page.h"
+#include "lab/scene.h"
 
 // Adds the chosen cases, and preserves the order.
 static bool add(ob_case_list *l, bool (*chosen)(const ob_case *c, const char *word), const char *word)
@@ -33,6 +34,11 @@ static bool is_row(const ob_case *c, const char *word)
 	return strspn(word, "0123456789") == strlen(word) && atoi(word) == c->row;
 }
 
+static bool is_of_file(const ob_case *c, const char *word)
+{
+	return c->text && strcmp(c->text->path, word) == 0;
+}
+
 static bool matches(const ob_case *c, const char *word)
 {
 	return *word && (fnmatch(word, c->name, 0) == 0 || strncmp(word, c->name, strlen(word)) == 0);
@@ -40,7 +46,7 @@ static bool matches(const ob_case *c, const char *word)
 
 bool ob_list_add_cases(ob_case_list *l, const char *word)
 {
-	return add(l, is_named, word) || add(l, is_row, word) || add(l, matches, word);
+	return add(l, is_of_file, word) || add(l, is_named, word) || add(l, is_row, word) || add(l, matches, word);
 }
 
 static bool is_wanted(const ob_case *c, const char *quick)
@@ -95,7 +101,8 @@ void ob_list_print(FILE *f, const ob_case_list *l)
 	fprintf(f, "Row  %-*s    %-*s  Target at 60 Hz\n", name, "Name", title, "Title");
 	for (size_t i = 0; i < l->count; i++) {
 		const ob_case *c = l->of[i];
-		fprintf(f, "%3d  %-*s %c  %-*s", c->row, name, c->name, c->slow ? ' ' : '*', title, c->title);
+		fprintf(f, c->row > 0 ? "%3d" : "   ", c->row);
+		fprintf(f, "  %-*s %c  %-*s", name, c->name, c->slow ? ' ' : '*', title, c->title);
 		int indent = 2; // indentation of a case's first target; each other has a line of its own
 		for (uint32_t j = 0; j < c->figures; j++) {
 			if (isnan(c->figure[j].target))

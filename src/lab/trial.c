@@ -28,8 +28,9 @@ static const char *insane(const ob_case_run_state *t)
 }
 
 // Takes the snapshot of an engine without a universe: states at this very time.
-static void take(ob_case_run_state *t, const ob_state *state)
+static void take(ob_case_run_state *t, ob_state *state)
 {
+	t->now.state = state;
 	t->now.step = t->frame;
 	t->now.time = t->time;
 	for (uint32_t id = 0; id < t->world->objects; id++) {
@@ -119,9 +120,10 @@ typedef struct tally {
 static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, const ob_run_settings *s,
 		ob_case_result *out, tally *failures, ob_error *e)
 {
-	ob_world w = { .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
-	c->build(&w, number, c->variant);
+	ob_world w;
 	ob_case_run_state t = { .of = c, .run = number, .world = &w, .settings = *s };
+	if (!ob_case_build(c, number, &w, &t.scene, e))
+		return false;
 	t.settings.step_length = s->step_length > 0 ? s->step_length : ob_case_step;
 	t.settings.sleeping |= c->sleeps;
 	t.now = (ob_snapshot){
@@ -150,6 +152,11 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 		if (t.failed && !failures->failed++)
 			snprintf(failures->why, sizeof failures->why, "%s", t.failed);
 	}
+	if (*t.wrong.text) {
+		made = false;
+		*e = t.wrong;
+	}
+	ob_scene_free(t.scene);
 	free(t.now.motion);
 	free(t.now.hull);
 	free(t.body_memory);

@@ -120,6 +120,7 @@ int ob_scene_call_controls(lua_State *L);
 int ob_scene_call_random(lua_State *L);
 int ob_scene_call_random_rotation(lua_State *L);
 int ob_scene_call_joint(lua_State *L); // upvalue 1: the kind
+void ob_expected_open(lua_State *L); // offers the library "lab" to the table at the top of the stack
 int ob_scene_call_case(lua_State *L);
 int ob_scene_call_expect(lua_State *L);
 int ob_scene_call_watch(lua_State *L);

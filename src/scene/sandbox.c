@@ -82,8 +82,8 @@ int ob_sandbox_line(lua_State *L)
 {
 	lua_Debug d;
 	for (int level = 0; lua_getstack(L, level, &d); level++) {
-		lua_getinfo(L, "l", &d);
-		if (d.currentline > 0)
+		lua_getinfo(L, "Sl", &d);
+		if (d.currentline > 0 && strcmp(d.source, "=" CHUNK) == 0) // not of a library
 			return d.currentline;
 	}
 	return 0;

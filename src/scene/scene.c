@@ -60,6 +60,7 @@ static int open_library(lua_State *L)
 		lua_setfield(L, -2, ob_joint_kind_name(kind));
 	}
 	ob_vector_open(L);
+	ob_expected_open(L);
 	return 0;
 }
 

@@ -114,6 +114,12 @@ static int norm(lua_State *L)
 	return give_number(L, ob_norm(vector_at(L, 1)));
 }
 
+static int aside(lua_State *L)
+{
+	const ob_vec3 v = vector_at(L, 1);
+	return give_number(L, hypot(v.x, v.y));
+}
+
 static int dot(lua_State *L)
 {
 	return give_number(L, ob_dot(vector_at(L, 1), vector_at(L, 2)));
@@ -198,7 +204,7 @@ static int field_of(lua_State *L, const char *kind, const char *letters, const d
 static int vector_index(lua_State *L)
 {
 	const ob_vec3 v = vector_at(L, 1);
-	return field_of(L, vector_kind, "xyz", (double[]){ v.x, v.y, v.z }, "x, y, z, norm, dot and cross");
+	return field_of(L, vector_kind, "xyz", (double[]){ v.x, v.y, v.z }, "x, y, z, norm, aside, dot and cross");
 }
 
 static int rotation_index(lua_State *L)
@@ -222,7 +228,7 @@ static void make_kind(lua_State *L, const char *kind, lua_CFunction index, const
 void ob_vector_open(lua_State *L)
 {
 	static const luaL_Reg vector_methods[] = {
-		{ "norm", norm }, { "dot", dot }, { "cross", cross }, { NULL, NULL }
+		{ "norm", norm }, { "aside", aside }, { "dot", dot }, { "cross", cross }, { NULL, NULL }
 	};
 	static const luaL_Reg vector_events[] = { { "__add", add },   { "__sub", subtract },     { "__unm", negate },
 						  { "__mul", scale }, { "__tostring", to_text }, { NULL, NULL } };

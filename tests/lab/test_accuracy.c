@@ -6,16 +6,16 @@
 
 int main(int argc, char **argv)
 {
-	const ob_case *c = argc == 2 ? ob_case_find(argv[1]) : NULL;
+	ob_error e = { "" };
+	const ob_case *c = argc == 2 && ob_cases_open(NULL, 0, &e) ? ob_case_find(argv[1]) : NULL;
 	if (!c) {
-		fprintf(stderr, "usage: accuracy CASE\n");
+		fprintf(stderr, "usage: accuracy CASE\n%s\n", e.text);
 		return 2;
 	}
 	const ob_engine_kind *kind = ob_engine_find(strcmp(c->name, "lag") ? "obsim" : "obsim-lag");
 	ob_run_settings settings = kind->usual;
 	settings.lag = 0; // the targets hold for engines without late partners
 	ob_case_result out;
-	ob_error e = { "" };
 	if (!ob_case_run(c, kind, &settings, &out, &e)) {
 		fprintf(stderr, "%s\n", e.text);
 		return 1;

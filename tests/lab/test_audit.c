@@ -105,6 +105,7 @@ static void test_print(void)
 
 int main(void)
 {
+	CHECK(ob_cases_open(NULL, 0, &(ob_error){ "" }));
 	test_falls();
 	test_rises();
 	test_failures();

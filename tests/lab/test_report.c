@@ -224,6 +224,7 @@ static void check_little(void)
 
 int main(int argc, char **argv)
 {
+	CHECK(ob_cases_open(NULL, 0, &(ob_error){ "" }));
 	if (argc == 2) {
 		ob_error e = { "" };
 		make_up();

@@ -178,6 +178,7 @@ static void test_equal(void)
 
 int main(void)
 {
+	CHECK(ob_cases_open(NULL, 0, &(ob_error){ "" }));
 	test_order();
 	test_repeats();
 	test_records();

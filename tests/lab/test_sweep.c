@@ -123,6 +123,7 @@ static void test_engines(void)
 
 int main(void)
 {
+	CHECK(ob_cases_open(NULL, 0, &(ob_error){ "" }));
 	test_settings();
 	test_own();
 	test_refused();

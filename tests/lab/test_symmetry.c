@@ -178,6 +178,7 @@ static const ob_case floating = { .name = "floating ragdoll", .build = build_flo
 
 int main(void)
 {
+	CHECK(ob_cases_open(NULL, 0, &(ob_error){ "" }));
 	// The bridge carries a box: contacts and joints are solved by turns, one after the other, within the tolerance of 1 mm.
 	const struct {
 		const char *name;

@@ -79,6 +79,7 @@ static void test_tables(void)
 
 int main(void)
 {
+	CHECK(ob_cases_open(NULL, 0, &(ob_error){ "" }));
 	test_tables();
 	return check_end();
 }

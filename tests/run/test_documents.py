@@ -16,7 +16,7 @@ ROOT = os.path.dirname(program.SCENES)
 DOCUMENTS = ["README.md", "docs/tutorial.md", "docs/scenes.md", "docs/records.md", "docs/serving.md", "docs/scripting.md",
 	"docs/experiments.md", "docs/reliability.md", "docs/tracing.md"]
 # Commands that other tests run, or that need another machine.
-ELSEWHERE = r"obsim import|obsim lab|obsim paper|\./tools/|apt-get|mpirun|srun|python3 bench|python3 tests|build|export |meson|Rscript|using "
+ELSEWHERE = r"obsim import|obsim lab(?! \w+\.lua)|obsim paper|\./tools/|apt-get|mpirun|srun|python3 bench|python3 tests|build|export |meson|Rscript|using "
 SHORTER = [(r"^obsim run .*--out ", "--size 160x90 --duration .2"), (r"^obsim compare (?!.*--(sync|live))", "--duration .1 --repeats 1"),
 	(r"^obsim compare .*--sync", "--duration .1 --seeds 1"), (r"^obsim run (?!.*--(duration|replay|resume))", "--duration 5")]
 

@@ -50,6 +50,51 @@ class Lab(program.Case):
 		self.refuse("lab", "--lst", saying="did you mean --list?")
 		self.assertEqual(os.listdir(self.directory.name), [])
 
+	def own(self, text, name="own.lua"):
+		with open(self.path(name), "w") as f:
+			f.write(text)
+		return self.path(name)
+
+	def test_own_case(self):
+		path = self.own("""
+			local this = case { runs = 2, variants = { { name = "near", x = 0 }, { name = "far", x = 100 } } }
+			scene { title = "A stone, " .. this.name, duration = .5 }
+			local stone = box { size = { 1, 1, 1 }, at = { this.x, 0, 9 }, velocity = { 1 + this.run, 0, 0 } }
+			expect { "error", below = 1e-9, unit = "m", worst = true, function(run)
+				return (run[stone].moved - vector((1 + this.run) * run.time, 0, -9.81 / 2 * run.time ^ 2)):norm()
+			end }
+			expect { "runs", mean = true, function() return this.run end }
+		""")
+		done = self.lab("lab", path, "--engines", "obsim,ode-quick", "--sweep", "none", "--json")
+		self.assertEqual(done.stderr, "")
+		told = {(x["case"], x["engine"]): x["figures"] for x in json.loads(done.stdout)["results"]}
+		self.assertEqual(sorted(told), [("far", "obsim"), ("far", "ode-quick"), ("near", "obsim"), ("near", "ode-quick")])
+		for case in "near", "far":
+			self.assertLess(told[case, "obsim"][0]["value"], 1e-9)
+			self.assertGreater(told[case, "ode-quick"][0]["value"], 1e-3)
+			self.assertEqual(told[case, "obsim"][1]["value"], .5)
+		self.assertEqual({row["case"] for row in self.rows()}, {"near", "far"})
+		# another text of the same name is measured anew
+		with open(path, "a") as f:
+			f.write("expect { 'one', function() return 1 end }\n")
+		again = self.lab("lab", path, "--engines", "obsim", "--sweep", "none", "--json")
+		self.assertEqual([len(x["figures"]) for x in json.loads(again.stdout)["results"]], [3, 3])
+
+	def test_wrong_cases(self):
+		ball = 'sphere { name = "ball", radius = 1 }\n'
+		expect = 'expect { "x", worst = true, function(run) return run["ball"].at.x end }\n'
+		self.refuse("lab", self.own(ball), saying="own.lua:1: expected what must come of it: expect {")
+		self.refuse("lab", self.own('sphere { name = "ball", radius = 1, dies = 1 }\n' + expect),
+			saying='own.lua: object "ball": the engines of the lab have no births or deaths')
+		self.refuse("lab", self.own('sphere { name = "ball", radius = 1, group = 1 }\n' + expect), saying="have no groups")
+		self.refuse("lab", self.own(ball + 'expect { "x", worst = true, function(run) return run["bal"].at.x end }'),
+			saying='own.lua:2: run: no object "bal", did you mean "ball"?')
+		self.refuse("lab", self.own(ball + expect, "projectile.lua"), saying='there is a case "projectile" already')
+		self.refuse("lab", self.path("none.lua"), saying="none.lua: cannot read the scene")
+		late = self.own(ball + 'expect { "x", function(run) return run["ball"].place.x end }', "late.lua")
+		done = self.lab("lab", late, "--engines", "obsim", "--sweep", "none", code=2)
+		self.assertIn('late.lua:2: run: an object has no "place"', done.stderr)
+
 	def test_list(self):
 		done = program.call("lab", "--list", cwd=self.directory.name)
 		self.assertEqual((done.returncode, done.stderr), (0, ""))

@@ -5,23 +5,6 @@
 #include "lab/case.h"
 
 #define OB_CASES(X) \
-	X(projectile) \
-	X(head_on) \
-	X(cradle_1) \
-	X(cradle_2) \
-	X(bounce) \
-	X(apexes) \
-	X(bouncing_49) \
-	X(666) \
-	X(elastic_666) \
-	X(rolling_diagonal) \
-	X(rolling_y) \
-	X(incline_stick) \
-	X(incline_slide) \
-	X(sliding) \
-	X(slip_to_roll) \
-	X(sphere_incline_roll) \
-	X(sphere_incline_slip) \
 	X(stack_10) \
 	X(stack_20) \
 	X(stack_40) \
@@ -40,9 +23,6 @@
 	X(overhang_over) \
 	X(a_frame_stands) \
 	X(a_frame_slides) \
-	X(far_stack) \
-	X(far_head_on) \
-	X(lag) \
 	X(hit_wall) \
 	X(plates_plane) \
 	X(plates_box) \

@@ -1,3 +1,3 @@
--- expect: vector: it has no "w", only x, y, z, norm, dot and cross
+-- expect: vector: it has no "w", only x, y, z, norm, aside, dot and cross
 ground {}
 local w = vector(1, 2, 3).w

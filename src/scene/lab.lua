@@ -1,0 +1,115 @@
+-- The library `lab` of scenes: random numbers, and expectations that several cases have. Read when a scene first uses it.
+local lab = {}
+
+-- Random numbers of a seed by SplitMix64 (Steele, Lea and Flood 2014).
+function lab.splitmix(seed)
+	local state, random = seed, {}
+	function random.whole()
+		state = state + 0x9e3779b97f4a7c15
+		local z = state
+		z = (z ~ (z >> 30)) * 0xbf58476d1ce4e5b9
+		z = (z ~ (z >> 27)) * 0x94d049bb133111eb
+		return z ~ (z >> 31)
+	end
+	function random.real()
+		return (random.whole() >> 11) * 0x1p-53
+	end
+	function random.within(low, high)
+		return low + (high - low) * random.real()
+	end
+	-- Each component within +-size.
+	function random.vector(size)
+		local x, y = random.within(-size, size), random.within(-size, size)
+		return vector(x, y, random.within(-size, size))
+	end
+	function random.rotation()
+		local w = random.within(-1, 1)
+		local v = random.vector(1)
+		return rotation(w, v.x, v.y, v.z)
+	end
+	return random
+end
+
+-- Largest distance of a body from its start, m.
+function lab.farthest(run)
+	local most = 0
+	for _, b in ipairs(run.bodies) do most = math.max(most, b.moved:norm()) end
+	return most
+end
+
+-- Fails the run, and returns true, if a centre is a metre below the ground: through it, not just deep in it.
+function lab.fell(run)
+	local lowest = run["ground"].start.at.z - 1
+	for _, b in ipairs(run.bodies) do
+		if b.at.z < lowest then
+			run:fail("fell through the ground")
+			return true
+		end
+	end
+	return false
+end
+
+-- Fails the run if no body is farther than this from its start.
+function lab.moved(run, distance)
+	local moved = lab.farthest(run) > (distance or 0)
+	if not moved then run:fail("nothing moved") end
+	return moved
+end
+
+-- Expects a structure to stand: limits of the worst penetration and of the drift aside, mm. every: steps between looks;
+-- carried(time): displacement of its support; creep: name and meaning of the drift.
+function lab.stands(limit)
+	local depth, drift, fallen, sum, looks, step = 0, 0, 0, 0, 0, -1
+	watch(function(run)
+		step = step + 1
+		if step % (limit.every or 1) ~= 0 then return end
+		local worst, mean = run:penetration()
+		local carried = limit.carried and limit.carried(run.time) or vector(0, 0, 0)
+		depth, sum, looks, fallen = math.max(depth, 1e3 * worst), sum + mean, looks + 1, 0
+		for _, b in ipairs(run.bodies) do
+			local moved = b.moved - carried
+			drift = math.max(drift, 1e3 * moved:aside())
+			if moved:norm() > .25 then fallen = fallen + 1 end
+		end
+		if fallen > 0 then run:fail("fell") end
+	end)
+	expect { "worst penetration", unit = "mm", below = limit.worst, source = "no penetration", function() return depth end }
+	expect { limit.creep or "drift", unit = "mm", below = limit.drift,
+		source = limit.meaning or "it stays: farthest that a body gets aside", function() return drift end }
+	expect { "bodies that fell", below = 0, source = limit.holds or "none: the stack is stable", function() return fallen end }
+	expect { "mean penetration", unit = "mm", source = "no penetration; over contacts and time",
+		function() return 1e3 * sum / looks end }
+end
+
+-- Expects bodies to fall and come to rest by `duration`: limits of the mean and the worst penetration in the last second, of
+-- the worst ever, mm, and of the growth of energy over that at the start; nil: shown alone; growth = false: not shown.
+function lab.heap(limit, duration)
+	local sum, looks, settled, depth, growth, start, lowest = 0, 0, 0, 0, 0, nil, nil
+	local names = limit.names or { "settled mean penetration", "settled worst penetration" }
+	local last = limit.names and "" or "; in the last second"
+	watch(function(run)
+		local worst, mean = run:penetration()
+		local energy = run.energy
+		depth = math.max(depth, 1e3 * worst)
+		if run.time > duration - 1 then
+			sum, looks, settled = sum + mean, looks + 1, math.max(settled, 1e3 * worst)
+		end
+		start = start or energy
+		lowest = math.min(lowest or energy, energy)
+		growth = math.max(growth, (energy - lowest) / start)
+		lab.fell(run)
+	end)
+	expect { names[1], unit = "mm", below = limit.mean, source = "no penetration" .. last, function(run)
+		lab.moved(run, .1)
+		return 1e3 * sum / math.max(looks, 1)
+	end }
+	expect { names[2], unit = "mm", below = limit.settled, source = "no penetration" .. last, function() return settled end }
+	expect { "worst penetration at any moment", unit = "mm", below = limit.worst, source = "no penetration",
+		function() return depth end }
+	if limit.growth ~= false then
+		expect { "growth of energy", below = limit.growth,
+			source = "none: largest rise from its lowest so far, over that at the start", function() return growth end }
+	end
+end
+
+return lab
