@@ -29,7 +29,7 @@ import numpy
 from obsim import _native
 from obsim._native import Error
 
-__all__ = ['Batch', 'Error', 'Joint', 'Object', 'Run', 'Universe', 'Unknown', 'attach', 'batch', 'names', 'run']
+__all__ = ['Batch', 'Error', 'Joint', 'Object', 'Run', 'Sensor', 'Universe', 'Unknown', 'attach', 'batch', 'names', 'run']
 
 CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
 CONTACT_EVENT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('step', 'u4'), ('begins', 'u4')])
@@ -292,6 +292,48 @@ class Joint(_Strict):
         self._universe.unjoin([self])
 
 
+class Sensor(_Strict):
+    """A sensor of a scene: imu, encoder, force_torque, touch, lidar. It is read as often as you like: values stay until the next."""
+
+    def __init__(self, universe, number, passport):
+        self._universe, self._number, self._passport = universe, number, passport
+        self._name, self._kind = passport.name.decode(), _native.library().ob_sensor_kind_name(passport.kind).decode()
+
+    def __repr__(self):
+        return f'<{self.kind} {self._number} "{self.name}">'
+
+    name = property(lambda self: self._name, doc='As the scene has it.')
+    kind = property(lambda self: self._kind, doc='"imu", for one.')
+    object = property(lambda self: self._universe[self._passport.object], doc='It is fixed to this one.')
+    rate = property(lambda self: self._passport.rate, doc='Samples in a second.')
+    delay = property(lambda self: self._passport.delay, doc='s, from its instant until a sample can be read.')
+    shape = property(lambda self: (self._passport.rows, self._passport.beams) if self._passport.rows > 1 else (self._passport.width,),
+                     doc='Of the values of a sample: (6,), for one; of a lidar rows and beams.')
+    angles = property(lambda self: _angles(self._passport), doc='Of a lidar: of its beams in a row, rad, from its x axis to the left.')
+
+    def samples(self, after=0, most=None):
+        """The samples that are kept, above a number, the newest `most` of them: arrays of numbers, times (s) and values."""
+        n, width = self._passport.kept if most is None else most, self._passport.width
+        number, time_, values = numpy.empty(n, numpy.uint64), numpy.empty(n), numpy.empty((n, width))
+        found = _native.library().ob_universe_get_samples(self._universe._u, self._number, after, number.ctypes.data, time_.ctypes.data,
+                                                          values.ctypes.data, n)
+        return number[:found], time_[:found], values[:found].reshape(found, *self.shape)
+
+    def _newest(self):
+        found = self.samples(0, 1)
+        if not len(found[0]):
+            raise Error(f'{self.kind} "{self.name}" has no sample yet')
+        return found
+
+    value = property(lambda self: self._newest()[2][0], doc='Its newest sample: an array.')
+    time = property(lambda self: float(self._newest()[1][0]), doc='s: the instant of that.')
+
+
+def _angles(p):
+    i = numpy.arange(p.beams)
+    return i * (2 * numpy.pi / p.beams) - numpy.pi if p.fan >= 2 * numpy.pi else numpy.linspace(-p.fan / 2, p.fan / 2, p.beams) if p.beams > 1 else i * 0.
+
+
 def _rows(column, n, width):
     """n rows of so many numbers, from as many, from one row for all, or from _SAME."""
     if column is _SAME:
@@ -309,9 +351,13 @@ def _vector(v):
     return numpy.array([v.x, v.y, v.z])
 
 
-class _Joints(dict):
+class _Named(dict):
+    def __init__(self, what, found):
+        super().__init__(found)
+        self._what = what
+
     def __missing__(self, name):
-        raise _unknown('joint', name, self)
+        raise _unknown(self._what, name, self)
 
 
 class Universe(_Strict):
@@ -405,7 +451,17 @@ class Universe(_Strict):
     def joints(self):
         """Joints by name, of objects that exist."""
         found = ((n, self._joint(n)) for n in range(_native.library().ob_universe_joints(self._u)))
-        return _Joints({j.name.decode(): Joint(self, n, j) for n, j in found if j})
+        return _Named('joint', {j.name.decode(): Joint(self, n, j) for n, j in found if j})
+
+    def _sensor(self, number):
+        s = _native.Sensor()
+        return s if _native.library().ob_universe_get_sensor(self._u, number, ctypes.byref(s)) else None
+
+    @property
+    def sensors(self):
+        """Sensors by name. (Objects that list who is in them are Object.sensor.)"""
+        found = ((n, self._sensor(n)) for n in range(_native.library().ob_universe_sensors(self._u)))
+        return _Named('sensor', {s.name.decode(): Sensor(self, n, s) for n, s in found if s})
 
     def _find(self, key):
         if not isinstance(key, str):

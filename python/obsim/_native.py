@@ -1,4 +1,4 @@
-"""libobsim by ctypes: the functions of <ob/universe.h>, <ob/motion.h>, <ob/joint.h> and <ob/control.h>, as they are declared there."""
+"""libobsim by ctypes: the functions of <ob/universe.h>, <ob/motion.h>, <ob/joint.h>, <ob/sensor.h> and <ob/control.h>, as they are declared there."""
 import ctypes
 import ctypes.util
 import os
@@ -42,6 +42,13 @@ class Joint(ctypes.Structure):
 
 class JointLoad(ctypes.Structure):
     _fields_ = [('force', Vec3), ('torque', Vec3), ('along', ctypes.c_double), ('broke', ctypes.c_uint64)]
+
+
+class Sensor(ctypes.Structure):
+    _fields_ = [*((name, ctypes.c_uint32) for name in ('kind', 'object', 'generation', 'joint', 'width', 'kept')),
+                ('first', ctypes.c_uint64), ('seed', ctypes.c_uint64), ('pose', Pose), ('rate', ctypes.c_double), ('delay', ctypes.c_double),
+                ('noise', ctypes.c_double * 3 * 2), ('beams', ctypes.c_uint32), ('rows', ctypes.c_uint32),
+                *((name, ctypes.c_double) for name in ('fan', 'rise', 'reach')), ('name', ctypes.c_char * NAME_MAX)]
 
 
 class Info(ctypes.Structure):
@@ -102,6 +109,10 @@ _functions = {
     'ob_universe_get_joint_value': (ctypes.c_bool, [_pointer, _u32, _pointer, _pointer]),
     'ob_universe_get_joint_values': (ctypes.c_bool, [_pointer, _pointer, _size, _pointer]),
     'ob_universe_get_joint_load': (ctypes.c_bool, [_pointer, _u32, _pointer]),
+    'ob_universe_sensors': (_u32, [_pointer]),
+    'ob_universe_get_sensor': (ctypes.c_bool, [_pointer, _u32, _pointer]),
+    'ob_universe_get_samples': (_size, [_pointer, _u32, _u64, _pointer, _pointer, _pointer, _size]),
+    'ob_sensor_kind_name': (ctypes.c_char_p, [_u32]),
     'ob_joint_kind_name': (ctypes.c_char_p, [_u32]),
     'ob_shape_name': (ctypes.c_char_p, [ctypes.c_int]),
     'ob_controller_open': (_pointer, [_pointer, _pointer]),

@@ -28,7 +28,7 @@
 #define OB_CHECKPOINT_BYTES_MAX (OB_BUDGET_BYTES - ((uint64_t)128 << 20))
 
 // A change of an area's contents needs a new version.
-enum { OB_CHECKPOINT_VERSION = 18, OB_CHECKPOINT_AREAS_MAX = 32 };
+enum { OB_CHECKPOINT_VERSION = 19, OB_CHECKPOINT_AREAS_MAX = 32 };
 
 typedef struct ob_checkpoint_rule {
 	const char *name; // for messages

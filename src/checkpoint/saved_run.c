@@ -33,6 +33,8 @@ typedef enum saved_area {
 	AREA_PATHS, // of requests
 	AREA_PATH_POINTS,
 	AREA_JOINTS,
+	AREA_SENSORS,
+	AREA_SAMPLES,
 	AREAS
 } saved_area;
 
@@ -80,6 +82,8 @@ static const ob_checkpoint_rule rules[AREAS] = {
 	[AREA_PATHS] = { "paths", sizeof(ob_given_path), 0, OB_GIVEN_PATHS_MAX },
 	[AREA_PATH_POINTS] = { "points of paths", sizeof(ob_path_point), 0, OB_GIVEN_POINTS_MAX },
 	[AREA_JOINTS] = { "joints", sizeof(ob_saved_joint), 0, JOINTS_MAX },
+	[AREA_SENSORS] = { "sensors", sizeof(ob_sensor_cell), 0, OB_SENSORS_MAX },
+	[AREA_SAMPLES] = { "samples of sensors", sizeof(double), 0, OB_SENSOR_NUMBERS_MAX },
 };
 
 // Points the arrays into the file's memory.
@@ -103,6 +107,8 @@ static void bind(ob_saved_run *r, const ob_checkpoint_file *f)
 	r->host.population.path = f->area[AREA_PATHS].at;
 	r->host.population.point = f->area[AREA_PATH_POINTS].at;
 	u->joint = f->area[AREA_JOINTS].at;
+	u->sensor_cell = f->area[AREA_SENSORS].at;
+	u->sensor_value = f->area[AREA_SAMPLES].at;
 }
 
 // ---- saving
@@ -164,7 +170,9 @@ bool ob_saved_run_make(ob_saved_run *r, ob_checkpoint_file *f, ob_host *h, const
 				  [AREA_PULLS] = r->host.population.pulls,
 				  [AREA_PATHS] = r->host.population.paths,
 				  [AREA_PATH_POINTS] = r->host.population.points,
-				  [AREA_JOINTS] = u->joints };
+				  [AREA_JOINTS] = u->joints,
+				  [AREA_SENSORS] = u->sensors,
+				  [AREA_SAMPLES] = u->sensor_numbers };
 	for (int i = 0; i < AREAS; i++)
 		if (count[i] > rules[i].most)
 			return ob_fail(e, "a checkpoint has no room for so many %s", rules[i].name);
@@ -251,6 +259,8 @@ static bool open_universe(ob_saved_run *r, const ob_checkpoint_file *f, const ch
 	r->host.population.paths = (uint32_t)f->area[AREA_PATHS].count;
 	r->host.population.points = (uint32_t)f->area[AREA_PATH_POINTS].count;
 	u->joints = (uint32_t)f->area[AREA_JOINTS].count;
+	u->sensors = (uint32_t)f->area[AREA_SENSORS].count;
+	u->sensor_numbers = (uint32_t)f->area[AREA_SAMPLES].count;
 	memcpy(&r->host.counters, f->area[AREA_COUNTERS].at, sizeof r->host.counters);
 	return ob_saved_universe_check(u, &why) || ob_fail(e, "%s: this checkpoint is damaged: %s", name, why.text);
 }

@@ -47,6 +47,30 @@ static bool check_joints(const ob_scene *scene, const ob_host_config *c, ob_erro
 				 lacks);
 }
 
+// Numbers that the universe keeps of all sensors.
+static uint64_t sensor_numbers(const ob_scene *scene, const ob_host_config *c)
+{
+	uint64_t sum = 0;
+	for (uint32_t i = 0; i < scene->sensors; i++)
+		sum += ob_sensor_room(&scene->sensor[i], c->run.step_length);
+	return sum;
+}
+
+// Refuses what cannot be done with sensors.
+static bool check_sensors(const ob_scene *scene, const ob_host_config *c, ob_error *e)
+{
+	if (scene->sensors && (c->free || c->ranks.ranks > 1))
+		return ob_fail(e, "sensors: %s has none, as this scene has: take simulators in lockstep, on one rank",
+			       c->free ? "a free run" : "a run of several ranks");
+	if (sensor_numbers(scene, c) > OB_SENSOR_NUMBERS_MAX)
+		return ob_fail(
+			e,
+			"sensors: their samples of a step, of their delays and those kept take above %d MiB: take "
+			"lower rates, shorter delays or less to keep",
+			OB_SENSOR_NUMBERS_MAX >> 17);
+	return true;
+}
+
 // Refuses joints that ODE does not have.
 static bool check_ode_joints(const ob_scene *scene, ob_error *e)
 {
@@ -99,7 +123,7 @@ static bool check_config(const ob_scene *scene, const ob_host_config *c, ob_erro
 		return ob_fail(e, "restart limit: expected at most %d deaths in some seconds", OB_RESTART_LIMIT_MAX);
 	if (r->monolith && scene->hulls > 0) // few of ODE's convex geometries collide with each other
 		return ob_fail(e, "arch: the one ODE world has no hulls, as this scene has: take object simulators");
-	if (!check_joints(scene, c, e) || (r->monolith && !check_ode_joints(scene, e)))
+	if (!check_sensors(scene, c, e) || !check_joints(scene, c, e) || (r->monolith && !check_ode_joints(scene, e)))
 		return false;
 	for (uint32_t i = 0; i < scene->objects; i++) {
 		if (!ob_object_check(&scene->object[i], e))
@@ -197,6 +221,8 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		.harden = c->harden,
 		.run = c->run,
 		.joints = most_joints(scene, c, capacity),
+		.sensors = scene->sensors,
+		.sensor_values = (uint32_t)sensor_numbers(scene, c),
 	};
 	setup.run.one_per_object = one_per_object;
 	setup.run.freezes = ob_on_death_freezes_failed(c->on_death);
@@ -279,6 +305,7 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_confi
 	if (!h->population)
 		return false;
 	ob_joints_write(h->u, scene->joint, scene->joints);
+	ob_sensors_write(h->u, scene->sensor, scene->sensors);
 	if (!from)
 		ob_population_update(h->population, 0, h->requests);
 	else if (!load(h, from, e))

@@ -44,7 +44,7 @@ typedef struct ob_mesh_source {
 
 typedef struct ob_builder {
 	ob_scene *scene; // objects are added to it; room is the array's length:
-	uint32_t objects_room, joints_room;
+	uint32_t objects_room, joints_room, sensors_room;
 	uint32_t hulls_room;
 	uint64_t *hull_points; // [scene->hulls], hashes of their points
 	const ob_scene_options *options;
@@ -119,13 +119,16 @@ int ob_scene_call_param(lua_State *L);
 int ob_scene_call_controls(lua_State *L);
 int ob_scene_call_random(lua_State *L);
 int ob_scene_call_random_rotation(lua_State *L);
-int ob_scene_call_joint(lua_State *L); // upvalue 1: the kind
+int ob_scene_call_joint(lua_State *L); // upvalue 1: the kind; likewise:
+int ob_scene_call_sensor(lua_State *L);
 void ob_expected_open(lua_State *L); // offers the library "lab" to the table at the top of the stack
 int ob_scene_call_case(lua_State *L);
 int ob_scene_call_expect(lua_State *L);
 int ob_scene_call_watch(lua_State *L);
 int ob_scene_call_random_integer(lua_State *L); // math.random
 
+// Finds the object of this name, of those declared so far; it must be there from the start. kind: name of the call.
+void ob_builder_find_object(lua_State *L, const ob_scene *s, const char *kind, const char *name, ob_joined *to);
 // The shortest rotation from +z to the unit vector n.
 ob_quat ob_scene_turn_to(ob_vec3 n);
 // Adds an object of this shape from the table at the bottom of the stack; pushes its name. Returns 1.

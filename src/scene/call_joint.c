@@ -111,8 +111,8 @@ static _Noreturn void fail_name(lua_State *L, const ob_scene *s, const char *kin
 	ob_sandbox_fail(L, "%s: expected the name of an object declared before, got \"%s\"", kind, name);
 }
 
-// Finds the object of this name, of those declared so far; the last ones are joined most often.
-static void find_object(lua_State *L, const ob_scene *s, const char *kind, const char *name, ob_joined *to)
+// The last ones are joined most often.
+void ob_builder_find_object(lua_State *L, const ob_scene *s, const char *kind, const char *name, ob_joined *to)
 {
 	enum { NAMES_PER_INSTRUCTION = 4 };
 	uint32_t i = s->objects;
@@ -142,7 +142,7 @@ static void read_object(lua_State *L, const ob_builder *b, const char *kind, int
 				kind, kind);
 	const char *name = lua_tostring(L, -1);
 	if (!o->find)
-		find_object(L, b->scene, kind, name, to);
+		ob_builder_find_object(L, b->scene, kind, name, to);
 	else if (!o->find(o->with, name, to))
 		ob_sandbox_fail(L, "%s: expected the name of an object, got \"%s\"", kind, name);
 	lua_pop(L, 1);

@@ -42,7 +42,7 @@ static int call_shape(lua_State *L)
 	return ob_scene_add(L, (ob_shape)lua_tointeger(L, lua_upvalueindex(1)));
 }
 
-// Opens the library, and offers a call for each shape and for each kind of joint.
+// Opens the library, and offers a call for each shape, and each kind of joint and of sensor.
 static int open_library(lua_State *L)
 {
 	ob_library_open(L);
@@ -58,6 +58,11 @@ static int open_library(lua_State *L)
 		lua_pushinteger(L, kind);
 		lua_pushcclosure(L, ob_scene_call_joint, 1);
 		lua_setfield(L, -2, ob_joint_kind_name(kind));
+	}
+	for (uint32_t kind = 0; kind < OB_SENSOR_KINDS; kind++) {
+		lua_pushinteger(L, kind);
+		lua_pushcclosure(L, ob_scene_call_sensor, 1);
+		lua_setfield(L, -2, ob_sensor_kind_name(kind));
 	}
 	ob_vector_open(L);
 	ob_expected_open(L);
@@ -144,6 +149,8 @@ static bool build(ob_builder *b, const char *path, ob_error *e)
 		return false;
 	if (s->objects == 0 && s->joints == 0)
 		return ob_fail(e, "%s:1: expected at least one object (box, sphere, ground ...)", path);
+	for (uint32_t i = 0; i < s->sensors; i++)
+		s->sensor[i].seed = s->seed ^ (i + 1) * UINT64_C(0x9e3779b97f4a7c15);
 	return ob_builder_resolve_tolerance(b, path, e) && ob_builder_place_cameras(b, path, e) &&
 	       ob_builder_check_controls(b, path, e);
 }
@@ -220,6 +227,7 @@ void ob_scene_free(ob_scene *s)
 	free(s->path);
 	free(s->object);
 	free(s->joint);
+	free(s->sensor);
 	free(s->hull);
 	free(s->hull_corners);
 	free(s->terrains);

@@ -4,6 +4,7 @@
 
 #include <ob/joint.h>
 #include <ob/motion.h>
+#include <ob/sensor.h>
 
 #include "fmu/instance.h"
 #include "hull/hull.h"
@@ -94,6 +95,8 @@ typedef struct ob_scene {
 	ob_object_def *object; // [objects]; ids are their index
 	uint32_t joints;
 	ob_joint_passport *joint; // [joints]; their objects are there from the start
+	uint32_t sensors;
+	ob_sensor_passport *sensor; // [sensors]; rate 0: a sample in each step; kept: as readers want it
 	uint32_t hulls;
 	ob_hull *hull; // [hulls], by the number in passports
 	ob_hull_corners *hull_corners; // [hulls], in the scene's frame

@@ -8,7 +8,7 @@
 //     │         │                                                                            │
 //   FORECAST ───┘                                                                         (commit)
 //     ^                                                                                      v
-//     └──────(begin)─────────── COMPLETE <──────────────────────────────────────────────── COPY
+//     └──────(begin)─────────── COMPLETE <───── SENSE <─────────────────────────────────── COPY
 //                               │      ^
 //                       host <── PAUSE  └── no object is due, and no pair comes near: the step is complete as it begins
 //
@@ -38,6 +38,9 @@
 //   COPY              32 islands                staged motions                    slots; no object is in an island
 //                     (worker per object) the   result of its island's solver     its own slot
 //                       worker's own object
+//   SENSE             a sensor                  motions before the step and its   its samples
+//                     (worker per object) the     own, contacts, joints
+//                       worker's own
 //   BASELINE          (ODE's world) all objects all of it                         all of it
 //
 // A phase without work is skipped. The scheduling worker itself checks few pairs, and finds the islands of few bodies,
@@ -45,6 +48,7 @@
 #include "baseline/ode_baseline.h"
 #include "exchange/commit.h"
 #include "exchange/results.h"
+#include "sensor/sensor.h"
 #include "step/broadphase.h"
 #include "step/budget.h"
 #include "step/critical_path.h"
@@ -66,6 +70,7 @@
 enum {
 	QUERIES_PER_WORKER = 16, // for fewer the gate costs more than another worker gains
 	SCRIPTS_PER_WORKER = 16, // likewise
+	SENSED_PER_WORKER = 4096, // likewise: numbers that the universe keeps of sensors
 	PARALLEL_PAIRS = 4 * OB_LATE_CONTACTS_BATCH, // checked by all workers from here on, for the same reason
 };
 
@@ -283,6 +288,37 @@ static bool open_copy(const scheduler *c, ob_phase phase)
 	return n;
 }
 
+// Opens the phase to the workers of objects with sensors, or to enough workers of a pool; few sensors, and those of contained
+// simulators, the scheduling worker reads at once.
+static bool open_sense(const scheduler *c, ob_phase phase)
+{
+	const ob_step_data *data = c->data;
+	uint32_t *who = data->scratch, *listed = data->scratch + data->objects_max, n = 0;
+	if (!data->sensors)
+		return false;
+	const uint32_t workers = 1 + (uint32_t)(ob_sensors_numbers(c->u) / SENSED_PER_WORKER);
+	const bool each = c->settings->one_per_object && !ob_universe_contains(c->u);
+	if (!each && (workers == 1 || ob_universe_simulators(c->u) == 1 || ob_universe_contains(c->u))) {
+		for (uint32_t i = 0; i < data->sensors; i++)
+			ob_sensor_sample(c->u, i);
+		return false;
+	}
+	if (!each) {
+		open_tasks(c, phase, data->sensors, workers);
+		return true;
+	}
+	for (uint32_t i = 0; i < data->sensors; i++)
+		if (ob_object_in_range(data, data->sensor[i].object))
+			listed[data->sensor[i].object] = 0;
+	if (data->count->failure)
+		return false;
+	for (uint32_t i = 0; i < data->sensors; i++)
+		if (!listed[data->sensor[i].object]++)
+			who[n++] = data->sensor[i].object;
+	ob_gate_open(c->u, phase, who, n);
+	return true;
+}
+
 static bool open_baseline(const scheduler *c, ob_phase phase)
 {
 	ob_gate_open(c->u, phase, NULL, 0);
@@ -459,6 +495,18 @@ static void publish_results(ob_sim *s)
 	}
 }
 
+static void read_sensors(ob_sim *s)
+{
+	uint32_t i;
+	for (i = 0; s->settings->one_per_object && i < s->data->sensors; i++)
+		if (s->data->sensor[i].object == s->worker)
+			ob_sensor_sample(s->u, i);
+	while (!s->settings->one_per_object && ob_task_claim(s->u, &i)) {
+		ob_sensor_sample(s->u, i);
+		ob_profile_task_done(s, i);
+	}
+}
+
 static void step_baseline(ob_sim *s)
 {
 	ob_ode_baseline_step(s->baseline);
@@ -480,7 +528,7 @@ static ob_phase build_islands(const scheduler *c)
 	c->data->count->islands = 0;
 	ob_move_make(c->u, ob_cluster_begin(c->cluster, c->u));
 	if (!ob_cluster_is_due(c->cluster, c->u))
-		return OB_PHASE_COMPLETE;
+		return OB_PHASE_SENSE;
 	ob_cluster_end_contacts(c->cluster, c->u);
 	ob_islands_begin(c->u);
 	ob_cluster_involve_links(c->cluster, c->u);
@@ -493,7 +541,7 @@ static ob_phase after_links(const scheduler *c)
 	if (!ob_cluster_share_islands(c->cluster, c->u, &elsewhere))
 		return OB_PHASE_PAUSE;
 	ob_islands_list_members(c->u);
-	return elsewhere || c->data->count->islands ? OB_PHASE_LISTS : OB_PHASE_COMPLETE;
+	return elsewhere || c->data->count->islands ? OB_PHASE_LISTS : OB_PHASE_SENSE;
 }
 
 static ob_phase after_lists(const scheduler *c)
@@ -614,13 +662,18 @@ static ob_phase after_late_contacts(const scheduler *c)
 
 static ob_phase after_copy(const scheduler *c)
 {
+	return OB_PHASE_SENSE;
+}
+
+static ob_phase after_sense(const scheduler *c)
+{
 	return OB_PHASE_COMPLETE;
 }
 
 static ob_phase after_baseline(const scheduler *c)
 {
 	count_awake(c);
-	return OB_PHASE_COMPLETE;
+	return OB_PHASE_SENSE;
 }
 
 // Looks for contacts of objects whose joint has broken in the step that is complete. Returns true if there are any.
@@ -665,6 +718,7 @@ static const step_phase phases[] = {
 	[OB_PHASE_BROADPHASE]       = { open_broadphase, query_neighbours,   after_broadphase,       OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, QUERIES_PER_WORKER },
 	[OB_PHASE_LATE_CONTACTS]    = { open_pairs,      find_late_contacts, after_late_contacts,    OB_PROFILE_BROADPHASE, OB_TRACE_OBJECTS, 0 },
 	[OB_PHASE_COPY]             = { open_copy,       publish_results,    after_copy,             OB_PROFILE_PUBLISH,    OB_TRACE_OBJECTS, 0 },
+	[OB_PHASE_SENSE]            = { open_sense,      read_sensors,       after_sense,            OB_PROFILE_PUBLISH,      OB_TRACE_OBJECTS, 0 },
 	[OB_PHASE_COMPLETE]         = { NULL,            NULL,               complete_step,          OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE, 0 },
 	[OB_PHASE_BASELINE]         = { open_baseline,   step_baseline,      after_baseline,         OB_PROFILE_SOLVE,      OB_TRACE_SOLVE, 0 },
 	[OB_PHASE_PAUSE]            = { open_pause,      NULL,               NULL,                   OB_PROFILE_SCHEDULE,   OB_TRACE_SCHEDULE, 0 },

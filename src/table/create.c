@@ -36,7 +36,8 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 	ob_layout_plan(h, &(ob_layout_plan_of){ setup->capacity, setup->workers, setup->hulls, setup->traced,
 						setup->harden & 1 << OB_HARDEN_OUTBOX, setup->script_cells,
 						setup->script_bytes, setup->history, setup->ledgers, setup->joints,
-						setup->terrains ? (uint32_t)setup->terrains->bytes : 0 });
+						setup->terrains ? (uint32_t)setup->terrains->bytes : 0, setup->sensors,
+						setup->sensor_values });
 	h->version = OB_LAYOUT_VERSION;
 	h->host_pid = getpid();
 	h->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;

@@ -154,11 +154,12 @@ static bool rests(const ob_universe *u, uint32_t joint)
 	return any;
 }
 
-ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint)
+ob_joint_load ob_joint_load_of(const ob_universe *u, uint32_t joint, uint64_t step)
 {
 	const ob_joint_state *s = &u->step_data.joint_state[joint];
-	const uint64_t step = ob_step_count(u), of = has_broken(u, joint) ? s->broke : step;
-	ob_joint_load out = { .broke = has_broken(u, joint) ? of : 0 };
+	const bool broke = s->broke && s->broke <= step;
+	const uint64_t of = broke ? s->broke : step;
+	ob_joint_load out = { .broke = broke ? of : 0 };
 	uint32_t last = of % 2;
 	if (s->stamp[last] != of && s->stamp[!last] < of && s->stamp[!last] > s->stamp[last])
 		last = !last;
@@ -168,6 +169,11 @@ ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint)
 		out.along = s->version[last].along;
 	}
 	return out;
+}
+
+ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint)
+{
+	return ob_joint_load_of(u, joint, ob_step_count(u));
 }
 
 bool ob_joint_holds(const ob_universe *u, const ob_joint_passport *j)

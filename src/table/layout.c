@@ -92,7 +92,9 @@ void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p)
 				      .history = p->history,
 				      .ledgers = p->ledgers,
 				      .joints = p->joints,
-				      .terrain_bytes = p->terrain_bytes };
+				      .terrain_bytes = p->terrain_bytes,
+				      .sensors = p->sensors,
+				      .sensor_values = p->sensor_values };
 	h->sizes.pairs_max = most_pairs(capacity);
 	if (p->terrain_bytes && h->sizes.pairs_max < TERRAIN_PAIRS)
 		h->sizes.pairs_max = TERRAIN_PAIRS;
@@ -132,24 +134,26 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	if (s->script_cells > s->capacity || s->script_bytes > SCRIPT_BYTES_LIMIT ||
 	    (s->script_cells > 0) != (s->script_bytes >= sizeof(ob_script_directory)))
 		return false;
-	if (s->joints > JOINTS_LIMIT || s->terrain_bytes > TERRAIN_BYTES_LIMIT)
+	if (s->joints > JOINTS_LIMIT || s->terrain_bytes > TERRAIN_BYTES_LIMIT || s->sensors > OB_SENSORS_MAX ||
+	    s->sensor_values > OB_SENSOR_NUMBERS_MAX)
 		return false;
 	if (s->history == 1 || s->history > VERSIONS_LIMIT || s->ledgers == 1 || s->ledgers > s->history)
 		return false;
 	ob_header expected;
-	ob_layout_plan(&expected, &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
-							s->outbox_bytes > 0, s->script_cells, s->script_bytes,
-							s->history, s->ledgers, s->joints, s->terrain_bytes });
+	ob_layout_plan(&expected,
+		       &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
+					     s->outbox_bytes > 0, s->script_cells, s->script_bytes, s->history,
+					     s->ledgers, s->joints, s->terrain_bytes, s->sensors, s->sensor_values });
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       (h->harden & 1 << OB_HARDEN_OUTBOX) == (s->outbox_bytes ? 1 << OB_HARDEN_OUTBOX : 0) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&
 	       memchr(h->isolation, 0, sizeof h->isolation);
 }
 
-// Pointers to what a universe without scripts, room for joints or terrains does not have are NULL.
+// Pointers to what a universe without scripts, room for joints, sensors or terrains does not have are NULL.
 static bool is_bound(const ob_layout_sizes *s, ob_area area)
 {
-	const bool optional = (area >= OB_AREA_SCRIPT_COUNTS && area <= OB_AREA_FIRST_JOINT) ||
+	const bool optional = (area >= OB_AREA_SCRIPT_COUNTS && area <= OB_AREA_SENSOR_VALUE) ||
 			      area == OB_AREA_SCRIPT_TEXT || area == OB_AREA_TERRAIN;
 	return !optional || count_of(s, area) > 0;
 }
@@ -163,6 +167,7 @@ void ob_layout_bind(ob_universe *u, void *base)
 				       .buckets = s->buckets,
 				       .neighbours_max = s->neighbours_max,
 				       .joints_max = s->joints,
+				       .sensors = s->sensors,
 				       .script_cells = s->script_cells };
 #define BIND(name, pointer, count) \
 	u->pointer = is_bound(s, OB_AREA_##name) ? (void *)(u->base + u->header.area[OB_AREA_##name]) : NULL;

@@ -15,7 +15,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 49, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
+enum { OB_LAYOUT_VERSION = 50, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 }; // chunk: unit of pages.h
 
 // Areas in their order: the name, the pointer of ob_universe to the first element, and the number of elements by the sizes s
 // (layout.c).
@@ -75,6 +75,9 @@ enum { OB_LAYOUT_VERSION = 49, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 16 
 	X(JOINT_STATE, step_data.joint_state, s->joints) \
 	X(NEXT_JOINT, step_data.next_joint, s->joints) \
 	X(FIRST_JOINT, step_data.first_joint, s->joints > 0 ? s->capacity : 0) \
+	X(SENSOR, step_data.sensor, s->sensors) /* these three empty unless the scene has sensors */ \
+	X(SENSOR_CELL, step_data.sensor_cell, s->sensors) \
+	X(SENSOR_VALUE, step_data.sensor_value, s->sensor_values) \
 	X(SCRATCH, step_data.scratch, 4 * (uint64_t)s->capacity) \
 	X(TASK_NS, step_data.task_ns, s->capacity) \
 	X(SCRIPT_TEXT, step_data.script_text, s->script_bytes) \
@@ -104,6 +107,7 @@ typedef struct ob_layout_sizes {
 	uint32_t ledgers; // same of each object's mail; 0 = it has none
 	uint32_t joints;
 	uint32_t terrain_bytes;
+	uint32_t sensors, sensor_values; // sensors; numbers that their samples take
 } ob_layout_sizes;
 
 // The first two fields have the same place in all versions. A file with the same magic is owned through its lock
@@ -179,7 +183,7 @@ enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
 static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT_PAGE, "trace");
 static_assert(sizeof(ob_run_settings) == 128, "run settings");
-static_assert(sizeof(ob_header) == 88 + 8 * OB_AREAS + OB_NAME_MAX + 16 + sizeof(ob_run_settings) + 8, "header");
+static_assert(sizeof(ob_header) == 96 + 8 * OB_AREAS + OB_NAME_MAX + 16 + sizeof(ob_run_settings) + 8, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 576, "control");
 static_assert(sizeof(ob_worker_cell) == 960, "worker cell");
@@ -237,6 +241,7 @@ typedef struct ob_layout_plan_of {
 	uint32_t script_cells, script_bytes;
 	uint32_t history, ledgers, joints;
 	uint32_t terrain_bytes;
+	uint32_t sensors, sensor_values;
 } ob_layout_plan_of;
 
 // Fills sizes (from the input), offsets and bytes.

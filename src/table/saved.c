@@ -27,6 +27,8 @@ void ob_universe_count_saved(const ob_universe *u, ob_saved_universe *out)
 		.ids = ob_universe_ids(u),
 		.planes = data->count->planes,
 		.joints = ob_joints_end(data),
+		.sensors = data->sensors,
+		.sensor_numbers = u->header.sizes.sensor_values,
 	};
 	if (data->script_cells) {
 		out->script_cells = data->script_counts->cells;
@@ -115,6 +117,10 @@ void ob_universe_save(const ob_universe *u, ob_saved_universe *out)
 	memcpy(out->plane, data->plane, out->planes * sizeof *out->plane);
 	save_pairs(u, out);
 	save_joints(u, out);
+	if (out->sensors) {
+		memcpy(out->sensor_cell, data->sensor_cell, out->sensors * sizeof *out->sensor_cell);
+		memcpy(out->sensor_value, data->sensor_value, out->sensor_numbers * sizeof *out->sensor_value);
+	}
 }
 
 // ---- checking
@@ -297,6 +303,16 @@ static bool check_joints(const ob_saved_universe *s, ob_error *e)
 	return true;
 }
 
+static bool check_sensors(const ob_saved_universe *s, ob_error *e)
+{
+	for (uint32_t i = 0; i < s->sensors; i++) {
+		const ob_sensor_cell *c = &s->sensor_cell[i];
+		if (c->step > s->step || !all_finite((const double *)c->past, sizeof c->past / 8))
+			return ob_fail(e, "sensor %u makes no sense", i);
+	}
+	return true;
+}
+
 bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e)
 {
 	if (s->step > UINT32_MAX - 2 || s->checked > s->step) // a motion carries its step as 32 bits
@@ -304,7 +320,8 @@ bool ob_saved_universe_check(const ob_saved_universe *s, ob_error *e)
 	for (uint32_t id = 0; id < s->ids; id++)
 		if (!check_object(s, id, e))
 			return false;
-	return check_planes(s, e) && check_pairs(s, e) && check_scripts(s, e) && check_joints(s, e);
+	return check_planes(s, e) && check_pairs(s, e) && check_scripts(s, e) && check_joints(s, e) &&
+	       check_sensors(s, e);
 }
 
 // ---- loading
@@ -390,6 +407,8 @@ bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 	if (!scripts_are_the_same(u, s))
 		return ob_fail(e, "its scripts are not those of the saved run: a file beside the scene has changed");
 	ob_step_data *data = &u->step_data;
+	if (s->sensors != data->sensors || s->sensor_numbers != u->header.sizes.sensor_values)
+		return ob_fail(e, "its sensors, with their samples, are not those of the saved run");
 	if (s->joints > data->joints_max)
 		return ob_fail(e, "this run has room for %u joints, the saved one has %u", data->joints_max, s->joints);
 	if (s->pairs > data->pairs_max || s->ids > data->objects_max)
@@ -407,6 +426,10 @@ bool ob_universe_load(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 	for (uint32_t i = 0; i < s->records; i++)
 		load_record(u, i, &s->record[i]);
 	load_joints(u, s);
+	if (s->sensors) {
+		memcpy(data->sensor_cell, s->sensor_cell, s->sensors * sizeof *s->sensor_cell);
+		memcpy(data->sensor_value, s->sensor_value, s->sensor_numbers * sizeof *s->sensor_value);
+	}
 	data->count->planes = s->planes;
 	data->count->pairs = s->pairs;
 	data->count->records_used = s->records;

@@ -9,6 +9,7 @@
 //   pairs, planes     all, in their order                   the same bytes; a record's number is that of its pair
 //   pair records      the newest version                    the first of two versions
 //   scripts           cells, texts                      the same bytes; texts are compared
+//   sensors           what was taken of each, samples       the same bytes; the scene has the sensors
 //   grid, islands,    not: they follow from these           the caller's (ob_sim_restore)
 //   gate, workers
 //
@@ -55,6 +56,9 @@ typedef struct ob_saved_universe {
 	char *script_text;
 	uint32_t joints; // length of the next one
 	ob_saved_joint *joint;
+	uint32_t sensors, sensor_numbers; // lengths of the next two
+	ob_sensor_cell *sensor_cell;
+	double *sensor_value;
 } ob_saved_universe;
 
 // Sets step, checked and the lengths, for allocating the arrays.

@@ -34,6 +34,13 @@ const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id)
 	return s->ring + __atomic_load_n(&s->version, __ATOMIC_ACQUIRE) % OB_RING_VERSIONS;
 }
 
+const ob_motion *ob_previous_motion(const ob_universe *u, uint32_t id)
+{
+	const ob_slot *s = u->slot + id;
+	const uint64_t version = __atomic_load_n(&s->version, __ATOMIC_ACQUIRE);
+	return s->ring + (version > 1 ? version - 1 : version) % OB_RING_VERSIONS;
+}
+
 uint64_t ob_motion_version(const ob_universe *u, uint32_t id)
 {
 	return __atomic_load_n(&u->slot[id].version, __ATOMIC_ACQUIRE);

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include <ob/joint.h>
+#include <ob/sensor.h>
 #include <ob/universe.h>
 
 #include "table/pair_state.h"
@@ -173,6 +174,23 @@ typedef struct ob_joint_counts {
 	uint32_t writes; // twice the passports written; odd: one is being written, so readers try again
 } ob_joint_counts;
 
+// A body when earlier steps began.
+enum { OB_PAST_STEPS = 5 };
+typedef struct ob_past {
+	ob_state before; // one step ago
+	ob_vec3 older[OB_PAST_STEPS][2]; // velocities and rates, two steps ago and more
+} ob_past;
+
+// Data of a sensor that change, beside the samples. Written by its object's simulator.
+typedef struct ob_sensor_cell {
+	uint64_t taken; // samples so far: the number of the last one
+	uint64_t step; // number of complete steps when `past` holds
+	uint64_t known; // steps in a row that past knows
+	ob_past past[2]; // of its object, or of both ends of its joint
+} ob_sensor_cell;
+
+enum { OB_SENSOR_NUMBERS_MAX = 1 << 25 }; // 256 MiB of samples
+
 // The areas, as pointers into this process's mapping (made once per process by the table module).
 typedef struct ob_step_data {
 	uint32_t objects_max, pairs_max, buckets, neighbours_max;
@@ -259,6 +277,10 @@ typedef struct ob_step_data {
 	ob_joint_state *joint_state; // [joints_max]
 	uint32_t (*next_joint)[2]; // [joints_max]: 1 + the next one of either object; 0 ends
 	uint32_t *first_joint; // [object]: 1 + the first of its joints, ascending; 0: it has none
+	uint32_t sensors; // 0, and these NULL, unless the scene has sensors (sensor.c)
+	ob_sensor_passport *sensor; // [sensors]; constant
+	ob_sensor_cell *sensor_cell; // [sensors]
+	double *sensor_value; // of each its samples, in turns: the time (s) and the values of each
 } ob_step_data;
 
 // Bounds of ob_step_data.effort, so that sums stay within theirs. GIVEN_UP: the island is more than a step may take.

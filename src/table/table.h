@@ -34,6 +34,7 @@ typedef enum ob_phase {
 	OB_PHASE_BROADPHASE, // neighbours of objects whose fat AABB has changed
 	OB_PHASE_LATE_CONTACTS, // finds pairs that touched in this step across different islands
 	OB_PHASE_COPY, // with a worker per object: copy the result of the island's solver
+	OB_PHASE_SENSE, // sensors take the samples of the step
 	OB_PHASE_COMPLETE, // serial: the gate never opens with it
 	OB_PHASE_BASELINE, // one ODE world holds all objects: its whole step
 	OB_PHASE_PAUSE, // the universe stands still at a step boundary for the host
@@ -59,6 +60,7 @@ typedef struct ob_universe_setup {
 	uint32_t ledgers; // same of each object's mail; 0: no ledger
 	const struct ob_free_settings *free; // of a free run
 	uint32_t joints; // at the same time
+	uint32_t sensors, sensor_values; // their number, and the sum of ob_sensor_room
 	const ob_terrain_set *terrains; // NULL: there are none
 } ob_universe_setup;
 
@@ -114,8 +116,22 @@ uint32_t ob_joint_next(const ob_step_data *data, uint32_t joint, uint32_t id);
 bool ob_joint_holds(const ob_universe *u, const ob_joint_passport *j);
 // True if it broke in the last complete step.
 bool ob_joint_broke_now(const ob_universe *u, uint32_t joint);
-// Action of the joint in the last complete step, as ob_universe_get_joint_load.
+// Action of the joint in the last complete step, as ob_universe_get_joint_load; or in the step that ends when so many are
+// complete.
 ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint);
+ob_joint_load ob_joint_load_of(const ob_universe *u, uint32_t joint, uint64_t step);
+// Numbers that the universe keeps of a sensor's samples, with steps of h (s).
+uint64_t ob_sensor_room(const ob_sensor_passport *s, double h);
+// Sum of all sensors.
+uint64_t ob_sensors_numbers(const ob_universe *u);
+// Writes the scene's sensors; their rate may be 0: a sample in each step. Call from the host, before the run.
+void ob_sensors_write(ob_universe *u, const ob_sensor_passport *sensor, uint32_t sensors);
+// Number of a sensor's last sample that is due when n steps are complete, or was due `delay` (s) before.
+uint64_t ob_sensor_due(const ob_sensor_passport *s, double h, uint64_t n, double delay);
+// True if its numbers are plausible, and its samples lie within those of the universe.
+bool ob_sensor_makes_sense(const ob_universe *u, const ob_sensor_passport *s);
+// Publishes its next sample, of time t (s), whose number is one more than the last one's.
+void ob_sensor_publish(ob_universe *u, uint32_t sensor, double t, const double *value);
 // True if the two may have contacts: neither is a sensor, their groups hit each other, and no joint lets them overlap.
 bool ob_may_touch(const ob_universe *u, uint32_t a, uint32_t b);
 // True if a sensor looks for such an object: it moves, is no sensor, and their groups hit each other.
@@ -182,6 +198,7 @@ void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p);
 bool ob_write_hull(ob_universe *u, uint32_t hull, const ob_hull *h);
 // Direct views for the step, ordered by the gate: the newest motion, the body properties. Never for outside readers.
 const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id);
+const ob_motion *ob_previous_motion(const ob_universe *u, uint32_t id); // the one before; the newest, if there is none
 uint64_t ob_motion_version(const ob_universe *u, uint32_t id); // number of its published motions
 const ob_passport *ob_passport_of(const ob_universe *u, uint32_t id);
 void ob_prefetch_versions(const ob_universe *u, uint32_t id); // read by the two before

@@ -1,0 +1,165 @@
+// imu, encoder, force_torque, touch, lidar: sensors on objects and joints that have been declared.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/allocate.h"
+#include "base/spelling.h"
+#include "scene/builder.h"
+#include "scene/object_limits.h"
+#include "scene/sandbox.h"
+#include "shape/shape.h"
+
+#define RADIANS (M_PI / 180)
+#define RATE_LEAST 1e-3 // Hz
+#define RATE_MOST 1e5 // Hz
+#define DELAY_MOST 10 // s
+#define KEEP_MOST 1000000
+
+// Fields of a call.
+typedef struct sensor {
+	const char *on, *joint, *name;
+	ob_vec3 at;
+	ob_quat rotation;
+	double rate, delay, fan, rise, reach; // degrees
+	uint32_t keep, beams, rows;
+	ob_sensor_noise noise[2];
+} sensor;
+
+#define F(member, ...) OB_FIELD(sensor, member, .name = #member, __VA_ARGS__)
+#define NOISE(title, member) OB_FIELD(sensor, member, .name = title, .kind = OB_FIELD_NUMBER, .high = OB_JOINT_MOST)
+#define NOISES(before, part) \
+	NOISE(before "noise", noise[part].white), NOISE(before "bias", noise[part].bias), \
+		NOISE(before "walk", noise[part].walk)
+#define COMMON \
+	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
+		F(rate, .kind = OB_FIELD_NUMBER, .low = RATE_LEAST, .high = RATE_MOST), \
+		F(delay, .kind = OB_FIELD_NUMBER, .high = DELAY_MOST), \
+		F(keep, .kind = OB_FIELD_COUNT, .high = KEEP_MOST), NOISES("", 0)
+#define ON F(on, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1, .required = true)
+#define JOINT F(joint, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1, .required = true)
+#define POSE \
+	F(at, .kind = OB_FIELD_VECTOR, .low = -OB_LENGTH_MOST, .high = OB_LENGTH_MOST), \
+		F(rotation, .kind = OB_FIELD_ROTATION)
+
+static const ob_field imu_fields[] = { ON, POSE, COMMON, NOISES("gyro_", 1) };
+static const ob_field encoder_fields[] = { JOINT, COMMON, NOISES("rate_", 1) };
+static const ob_field force_torque_fields[] = { JOINT, COMMON, NOISES("torque_", 1) };
+static const ob_field touch_fields[] = { ON, COMMON };
+static const ob_field lidar_fields[] = { ON,
+					 POSE,
+					 COMMON,
+					 F(beams, .kind = OB_FIELD_COUNT, .low = 1, .high = OB_SENSOR_VALUES_MAX),
+					 F(rows, .kind = OB_FIELD_COUNT, .low = 1, .high = OB_SENSOR_VALUES_MAX),
+					 F(fan, .kind = OB_FIELD_NUMBER, .high = 360),
+					 F(rise, .kind = OB_FIELD_NUMBER, .high = 180),
+					 F(reach, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST,
+					   .high = OB_LENGTH_MOST) };
+
+static const struct {
+	const ob_field *field;
+	size_t fields;
+	uint32_t width; // 0: of its beams
+} calls[OB_SENSOR_KINDS] = {
+	[OB_SENSOR_IMU] = { imu_fields, sizeof imu_fields / sizeof *imu_fields, 6 },
+	[OB_SENSOR_ENCODER] = { encoder_fields, sizeof encoder_fields / sizeof *encoder_fields, 2 },
+	[OB_SENSOR_FORCE_TORQUE] = { force_torque_fields, sizeof force_torque_fields / sizeof *force_torque_fields, 6 },
+	[OB_SENSOR_TOUCH] = { touch_fields, sizeof touch_fields / sizeof *touch_fields, 1 },
+	[OB_SENSOR_LIDAR] = { lidar_fields, sizeof lidar_fields / sizeof *lidar_fields, 0 },
+};
+
+static uint32_t find_joint(lua_State *L, const ob_scene *s, const char *kind, const char *name)
+{
+	enum { NAMES_PER_INSTRUCTION = 4 };
+	ob_spelling spelling = ob_spelling_start(name);
+	ob_sandbox_spend(L, s->joints / NAMES_PER_INSTRUCTION);
+	for (uint32_t i = 0; i < s->joints; i++) {
+		if (strcmp(s->joint[i].name, name) == 0)
+			return i;
+		ob_spelling_offer(&spelling, s->joint[i].name);
+	}
+	if (spelling.best)
+		ob_sandbox_fail(L, "%s.joint: unknown joint \"%s\", did you mean \"%s\"?", kind, name, spelling.best);
+	ob_sandbox_fail(L, "%s.joint: expected the name of a joint declared before, got \"%s\"", kind, name);
+}
+
+// Pose in the frame of a body: a hull's axes are the principal ones, its origin the centre of mass.
+static ob_pose in_body(const ob_scene *s, const ob_passport *o, ob_pose pose)
+{
+	if (!ob_shape_is((ob_shape)o->shape, OB_HULLED))
+		return pose;
+	const ob_hull *h = &s->hull[o->hull];
+	const ob_mat3 r = ob_quat_matrix(h->frame);
+	return (ob_pose){ ob_rotate_back(&r, ob_sub(pose.p, h->centre)),
+			  ob_quat_normalize(ob_quat_mul(ob_quat_conjugate(h->frame), pose.q)) };
+}
+
+// Places it on its object, or on the first object of its joint.
+static void place(lua_State *L, const ob_scene *s, const char *kind, const sensor *d, ob_sensor_passport *p)
+{
+	ob_joined on;
+	p->generation = 1;
+	if (d->on) {
+		ob_builder_find_object(L, s, kind, d->on, &on);
+		p->object = on.id;
+		p->pose = in_body(s, &s->object[on.id].passport, (ob_pose){ d->at, d->rotation });
+		return;
+	}
+	p->joint = find_joint(L, s, kind, d->joint);
+	const ob_joint_passport *j = &s->joint[p->joint];
+	p->object = j->object[0];
+	p->pose = j->frame[0];
+	if (p->kind == OB_SENSOR_ENCODER && (j->kind == OB_JOINT_FIXED || j->kind == OB_JOINT_APART))
+		ob_sandbox_fail(L, "%s.joint: expected a joint with a free axis, got \"%s\"", kind, d->joint);
+}
+
+static void set_name(lua_State *L, const ob_scene *s, const char *kind, const char *name, ob_sensor_passport *p)
+{
+	enum { NAMES_PER_INSTRUCTION = 4 };
+	if (name)
+		snprintf(p->name, sizeof p->name, "%s", name);
+	else
+		snprintf(p->name, sizeof p->name, "%s#%u", kind, s->sensors);
+	ob_sandbox_spend(L, s->sensors / NAMES_PER_INSTRUCTION);
+	for (uint32_t i = 0; i < s->sensors; i++)
+		if (strcmp(s->sensor[i].name, p->name) == 0)
+			ob_sandbox_fail(L, "%s.name: \"%s\" is already the name of another sensor", kind, p->name);
+}
+
+static void add(lua_State *L, ob_builder *b, const char *kind, const ob_sensor_passport *p)
+{
+	ob_scene *s = b->scene;
+	if (s->sensors == OB_SENSORS_MAX)
+		ob_sandbox_fail(L, "%s: expected at most %d sensors in a scene", kind, OB_SENSORS_MAX);
+	if (s->sensors == b->sensors_room) {
+		const uint32_t room = b->sensors_room ? 2 * b->sensors_room : 16;
+		ob_builder_allow(L, kind, room * sizeof *s->sensor);
+		if (!OB_GROW(s->sensor, room))
+			ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
+		b->sensors_room = room;
+	}
+	s->sensor[s->sensors++] = *p;
+	ob_sandbox_extend(L, OB_SCENE_OBJECT_INSTRUCTIONS);
+}
+
+int ob_scene_call_sensor(lua_State *L)
+{
+	ob_builder *b = ob_sandbox_user(L);
+	ob_sensor_passport p = { .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
+	sensor d = { .rotation = ob_quat_identity(), .beams = 360, .rows = 1, .fan = 360, .rise = 30, .reach = 30 };
+	const char *kind = ob_sensor_kind_name(p.kind);
+	lua_settop(L, 1);
+	ob_fields_read(L, 1, kind, calls[p.kind].field, calls[p.kind].fields, &d);
+	if ((uint64_t)d.beams * d.rows > OB_SENSOR_VALUES_MAX)
+		ob_sandbox_fail(L, "%s.rows: expected at most %d beams in all rows, got %llu", kind,
+				OB_SENSOR_VALUES_MAX, (unsigned long long)d.beams * d.rows);
+	place(L, b->scene, kind, &d, &p);
+	set_name(L, b->scene, kind, d.name, &p);
+	p.rate = d.rate, p.delay = d.delay, p.kept = d.keep;
+	p.beams = d.beams, p.rows = d.rows, p.fan = d.fan * RADIANS, p.rise = d.rise * RADIANS, p.reach = d.reach;
+	p.width = calls[p.kind].width ? calls[p.kind].width : d.beams * d.rows;
+	memcpy(p.noise, d.noise, sizeof p.noise);
+	add(L, b, kind, &p);
+	lua_pushstring(L, p.name);
+	return 1;
+}
