@@ -79,11 +79,11 @@ static uint64_t next_boundary(const run *r)
 static bool look(run *r, ob_error *e)
 {
 	ob_expected *x = r->scene->expected;
-	const double step = r->request.run.step_length;
+	const ob_run_settings *settings = &r->request.run;
 	if (!x || r->request.asked.measure != OB_MEASURE_STEPS || r->first > 0 || r->ranks.rank > 0)
 		return true;
-	r->misjudged = !ob_expected_look(x, &r->now, step, e) ||
-		       (r->now.step >= r->steps && !ob_expected_end(x, &r->now, step, e));
+	r->misjudged = !ob_expected_look(x, &r->now, settings, e) ||
+		       (r->now.step >= r->steps && !ob_expected_end(x, &r->now, settings, e));
 	return !r->misjudged;
 }
 

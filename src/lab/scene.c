@@ -102,7 +102,7 @@ ob_scene *ob_lab_scene_load(const ob_case *c, uint32_t run, ob_world *w, ob_erro
 
 static void observe(ob_case_run_state *t)
 {
-	if (ob_expected_look(t->scene->expected, &t->now, t->settings.step_length, &t->wrong))
+	if (ob_expected_look(t->scene->expected, &t->now, &t->settings, &t->wrong))
 		t->failed = *t->scene->expected->failed ? t->scene->expected->failed : NULL;
 	else
 		t->failed = t->wrong.text;
@@ -111,7 +111,7 @@ static void observe(ob_case_run_state *t)
 static void judge(ob_case_run_state *t)
 {
 	ob_expected *x = t->scene->expected;
-	if (!*t->wrong.text && !ob_expected_end(x, &t->now, t->settings.step_length, &t->wrong))
+	if (!*t->wrong.text && !ob_expected_end(x, &t->now, &t->settings, &t->wrong))
 		t->failed = t->wrong.text;
 	for (uint32_t i = 0; i < x->count; i++)
 		t->figure[i] = x->expectation[i].value;
@@ -177,7 +177,7 @@ static bool try_start(ob_scene *s, ob_error *e)
 			now.hull[i] = &w.hull[i];
 		now.hulls = now.hull ? w.hulls : 0;
 		now.joint = w.joint, now.joints = w.joints;
-		fine = ob_expected_look(s->expected, &now, ob_case_step, e);
+		fine = ob_expected_look(s->expected, &now, &s->run, e);
 		free(now.hull);
 	}
 	free(motion);

@@ -416,7 +416,9 @@ static int run_index(lua_State *L)
 	if (strcmp(name, "time") == 0)
 		lua_pushnumber(L, now->time);
 	else if (strcmp(name, "step") == 0)
-		lua_pushnumber(L, x->step);
+		lua_pushnumber(L, x->settings->step_length);
+	else if (strcmp(name, "tolerance") == 0)
+		lua_pushnumber(L, x->settings->tolerance);
 	else if (strcmp(name, "energy") == 0)
 		lua_pushnumber(L, ob_measure_energy(now, x->scene->run.gravity));
 	else if (strcmp(name, "momentum") == 0)
@@ -543,28 +545,28 @@ static bool ask_all(ob_expected *x, bool worst, ob_error *e)
 	return true;
 }
 
-bool ob_expected_end(ob_expected *x, const ob_snapshot *now, double step, ob_error *e)
+bool ob_expected_end(ob_expected *x, const ob_snapshot *now, const ob_run_settings *settings, ob_error *e)
 {
 	if (x->ended)
 		return true;
 	x->ended = true;
-	x->now = now, x->step = step;
+	x->now = now, x->settings = settings;
 	const bool fine = ask_all(x, false, e);
 	x->now = NULL;
 	return fine;
 }
 
-bool ob_expected_look(ob_expected *x, const ob_snapshot *now, double step, ob_error *e)
+bool ob_expected_look(ob_expected *x, const ob_snapshot *now, const ob_run_settings *settings, ob_error *e)
 {
 	bool fine = true;
 	if (x->ended)
 		return true;
-	x->now = now, x->step = step;
+	x->now = now, x->settings = settings;
 	for (int i = 0; i < x->watches && fine; i++)
 		fine = call(x, x->watch[i], e);
 	fine = fine && ask_all(x, true, e);
 	x->now = NULL;
-	return fine && (!*x->failed || ob_expected_end(x, now, step, e));
+	return fine && (!*x->failed || ob_expected_end(x, now, settings, e));
 }
 
 bool ob_expectation_is_met(const ob_expectation *x)

@@ -50,17 +50,17 @@ struct ob_expected {
 	struct ob_sandbox *sandbox; // set when the scene has been read
 	const ob_scene *scene;
 	const ob_snapshot *now; // during a call
-	double step; // s
+	const ob_run_settings *settings; // likewise
 	int watches, watch[OB_EXPECTATIONS_MAX], watch_line[OB_EXPECTATIONS_MAX], run;
 	double got;
 	char said[112]; // the value of a function, if it is no number; "" = it is one
 };
 
-// Looks at a snapshot of the run; the first is that of the start. step: s, between two of them. false and e, "file:line: ...": a
+// Looks at a snapshot of the run; the first is that of the start. settings: of the run. false and e, "file:line: ...": a
 // function failed, or returned no number.
-bool ob_expected_look(ob_expected *x, const ob_snapshot *now, double step, ob_error *e);
+bool ob_expected_look(ob_expected *x, const ob_snapshot *now, const ob_run_settings *settings, ob_error *e);
 // Looks at the last one, which ob_expected_look has seen. Has no effect after a failure of the run.
-bool ob_expected_end(ob_expected *x, const ob_snapshot *now, double step, ob_error *e);
+bool ob_expected_end(ob_expected *x, const ob_snapshot *now, const ob_run_settings *settings, ob_error *e);
 // True if the value is within its limit, or has none.
 bool ob_expectation_is_met(const ob_expectation *x);
 void ob_expected_free(ob_expected *x); // NULL is allowed
