@@ -6,6 +6,7 @@
 #include "cli/command.h"
 #include "cli/quantity.h"
 #include "cli/version.h"
+#include "experiment/words.h"
 #include "paper/claims.h"
 #include "paper/paper.h"
 #include "paper/report.h"
@@ -13,19 +14,6 @@
 #include "render/render.h"
 
 enum { OBJECTS_MAX = 4096 }; // each is a process
-
-// "  " before each line, broken between words
-static void print_folded(const char *text)
-{
-	enum { WIDTH = 100 };
-	while (*text) {
-		size_t n = strlen(text), cut = n;
-		for (size_t i = 0; n > WIDTH && i < WIDTH; i++)
-			cut = text[i] == ' ' ? i : cut;
-		printf("    %.*s\n", (int)cut, text);
-		text += cut + (text[cut] == ' ');
-	}
-}
 
 static void print_claims(const ob_paper_results *r)
 {
@@ -35,7 +23,7 @@ static void print_claims(const ob_paper_results *r)
 		const ob_paper_claim *c = &claim[i];
 		printf("%s\n  %s%s%s\n", c->says, ob_paper_verdict_text(c->verdict), *c->condition ? " " : "",
 		       c->condition);
-		print_folded(c->because);
+		ob_word_wrap(stdout, "    ", c->because, 99);
 		putchar('\n');
 	}
 }

@@ -48,66 +48,76 @@ const ob_configuration ob_configuration_table[OB_CONFIGURATIONS] = {
 					     NULL },
 };
 
-#define METRIC(id, key, title, unit, scale, group, meaning) [id] = { key, title, unit, scale, NAN, group, meaning }
+#define METRIC(id, key, title, unit, scale, group, meaning, kind, ...) \
+	[OB_COMPARE_##id] = { key, title, unit, scale, NAN, group, meaning, OB_COMPARE_##kind, { __VA_ARGS__ } }
 const ob_metric ob_compare_metric_table[OB_COMPARE_METRICS] = {
-	METRIC(OB_COMPARE_COST, "cpu_s_per_body_and_step", "CPU per body and step", "µs", 1e6, "Cost",
-	       "CPU time of all workers, spinning and waking included, over bodies and steps"),
-	METRIC(OB_COMPARE_WALL, "wall_s_per_simulated_s", "wall per simulated s", "ms", 1e3, NULL,
-	       "wall-clock time of stepping"),
-	METRIC(OB_COMPARE_CPU, "cpu_s_per_simulated_s", "CPU per simulated s", "ms", 1e3, NULL,
-	       "CPU time of all workers"),
-	METRIC(OB_COMPARE_P50, "step_p50_s", "median", "ms", 1e3, "Latency of a step",
-	       "wall-clock time from one step boundary to the next"),
-	METRIC(OB_COMPARE_P90, "step_p90_s", "90 %", "ms", 1e3, NULL, "90th percentile of the steps"),
-	METRIC(OB_COMPARE_P99, "step_p99_s", "99 %", "ms", 1e3, NULL, "so long or shorter were 99 %"),
-	METRIC(OB_COMPARE_LONGEST, "step_max_s", "longest", "ms", 1e3, NULL, "the longest step of the run"),
-	METRIC(OB_COMPARE_CRITICAL, "critical_s_per_step", "critical path", "µs", 1e6, "Time of a step by cause",
+	METRIC(COST, "cpu_s_per_body_and_step", "CPU per body and step", "µs", 1e6, "Cost",
+	       "CPU time of all workers, spinning and waking included, over bodies and steps", SAMPLE,
+	       "body_step_cpu_us"),
+	METRIC(WALL, "wall_s_per_simulated_s", "wall per simulated s", "ms", 1e3, NULL, "wall-clock time of stepping",
+	       SAMPLE, "wall_s", "simulated_s"),
+	METRIC(CPU, "cpu_s_per_simulated_s", "CPU per simulated s", "ms", 1e3, NULL, "CPU time of all workers", SAMPLE,
+	       "cpu_s", "simulated_s"),
+	METRIC(P50, "step_p50_s", "median", "ms", 1e3, "Latency of a step",
+	       "wall-clock time from one step boundary to the next", SAMPLE, "step_p50_s"),
+	METRIC(P90, "step_p90_s", "90 %", "ms", 1e3, NULL, "90th percentile of the steps", SAMPLE, "step_p90_s"),
+	METRIC(P99, "step_p99_s", "99 %", "ms", 1e3, NULL, "so long or shorter were 99 %", SAMPLE, "step_p99_s"),
+	METRIC(LONGEST, "step_max_s", "longest", "ms", 1e3, NULL, "the longest step of the run", SAMPLE, "step_max_s"),
+	METRIC(CRITICAL, "critical_s_per_step", "critical path", "µs", 1e6, "Time of a step by cause",
 	       "in each phase the worker with the most to do, and scheduling: what the step would take with a core for "
-	       "every worker"),
-	METRIC(OB_COMPARE_SPEEDUP, "speedup_of_16", "speed-up, 16 workers", "1", 1, NULL,
+	       "every worker",
+	       TIMED, "critical_s", "steps"),
+	METRIC(SPEEDUP, "speedup_of_16", "speed-up, 16 workers", "1", 1, NULL,
 	       "work over the critical path of 16 simulated workers: how much faster the steps could be with a core "
-	       "for each "
-	       "of so many"),
-	METRIC(OB_COMPARE_WORK, "work_s_per_step", "work, all simulators", "µs", 1e6, NULL,
-	       "CPU time of everything but waiting, summed over all workers"),
-	METRIC(OB_COMPARE_GATE, "gate_s_per_step_and_worker", "at the gate, a worker", "µs", 1e6, NULL,
-	       "wall-clock time in which a worker waits for the others"),
-	METRIC(OB_COMPARE_GATE_CPU, "gate_cpu_s_per_step", "CPU of waiting", "µs", 1e6, NULL,
-	       "CPU time of spinning, falling asleep and waking, all workers"),
-	METRIC(OB_COMPARE_HELD, "held_s_per_step", "without a core", "µs", 1e6, NULL,
-	       "wall-clock time in which workers had work and no core, all together"),
-	METRIC(OB_COMPARE_EXPLAINED, "explained", "share explained", "1", 1, NULL,
-	       "work, waiting for a core, at the gate and for the host, over the time that the workers had"),
-	METRIC(OB_COMPARE_PER_SIMULATOR, "cpu_s_per_simulator_and_simulated_s", "a simulator", "ms", 1e3,
-	       "CPU by user, per simulated second", "CPU time of all workers over objects"),
-	METRIC(OB_COMPARE_HOST, "host_cpu_s_per_simulated_s", "host", "ms", 1e3, NULL,
-	       "CPU time of the host's process without workers and renderer"),
-	METRIC(OB_COMPARE_RENDERER, "renderer_cpu_s_per_simulated_s", "renderer", "ms", 1e3, NULL,
-	       "CPU time of drawing, in a run with 60 frames of 640x480 per simulated second"),
-	METRIC(OB_COMPARE_FPS, "frames_per_s", "frames drawn per s", "1", 1, NULL,
-	       "frames that were drawn in that run, over its wall-clock time with start and end"),
-	METRIC(OB_COMPARE_SWITCHES, "switches_per_step", "switches per step", "1", 1, "What the system carries",
-	       "involuntary context switches of workers"),
-	METRIC(OB_COMPARE_STARTUP, "startup_s", "start-up", "ms", 1e3, NULL, "until every worker stood at the gate"),
-	METRIC(OB_COMPARE_STARTUP_EACH, "startup_s_per_simulator", "start-up, a simulator", "µs", 1e6, NULL,
-	       "that over objects"),
-	METRIC(OB_COMPARE_MEMORY, "memory_bytes", "memory", "MB", 1e-6, NULL,
-	       "proportional set size of all processes, and the universe"),
-	METRIC(OB_COMPARE_MEMORY_EACH, "memory_bytes_per_simulator", "memory, a simulator", "kB", 1e-3, NULL,
-	       "that over objects"),
-	METRIC(OB_COMPARE_MEMORY_WORKER, "memory_bytes_per_worker_process", "memory, a process", "MB", 1e-6, NULL,
-	       "proportional set size of a worker where workers are processes"),
-	METRIC(OB_COMPARE_PENETRATION, "penetration_mean_m", "penetration, end, mean", "mm", 1e3, "Error",
-	       "of the pairs that penetrate"),
-	METRIC(OB_COMPARE_WORST, "worst_penetration_m", "penetration, worst", "mm", 1e3, NULL, "at any step"),
-	METRIC(OB_COMPARE_SEPARATION, "separation_mean_m", "separation, end, mean", "mm", 1e3, NULL,
-	       "of contacts that carry an impulse"),
-	METRIC(OB_COMPARE_ENERGY, "energy_gain_max", "energy, largest gain", "1", 1, NULL,
-	       "over the energy at the start, at any step"),
-	METRIC(OB_COMPARE_MOMENTUM, "momentum_error", "momentum error", "1", 1, NULL, "of closed scenes only"),
-	METRIC(OB_COMPARE_OBJECTS, "objects", "objects", "1", 1, NULL, ""),
-	METRIC(OB_COMPARE_WORKERS, "workers", "workers", "1", 1, NULL, ""),
-	METRIC(OB_COMPARE_STEPS, "steps", "steps", "1", 1, NULL, ""),
+	       "for each of so many",
+	       TIMED, "work_s", "critical_16_s"),
+	METRIC(WORK, "work_s_per_step", "work, all simulators", "µs", 1e6, NULL,
+	       "CPU time of everything but waiting, summed over all workers", TIMED, "work_s", "steps"),
+	METRIC(GATE, "gate_s_per_step_and_worker", "at the gate, a worker", "µs", 1e6, NULL,
+	       "wall-clock time in which a worker waits for the others", TIMED, "gate_s", "steps", "workers"),
+	METRIC(GATE_CPU, "gate_cpu_s_per_step", "CPU of waiting", "µs", 1e6, NULL,
+	       "CPU time of spinning, falling asleep and waking, all workers", TIMED, "gate_cpu_s", "steps"),
+	METRIC(HELD, "held_s_per_step", "without a core", "µs", 1e6, NULL,
+	       "wall-clock time in which workers had work and no core, all together", TIMED, "held_s", "steps"),
+	METRIC(EXPLAINED, "explained", "share explained", "1", 1, NULL,
+	       "work, waiting for a core, at the gate and for the host, over the time that the workers had", TIMED,
+	       NULL),
+	METRIC(PER_SIMULATOR, "cpu_s_per_simulator_and_simulated_s", "a simulator", "ms", 1e3,
+	       "CPU by user, per simulated second", "CPU time of all workers over objects", SAMPLE, "cpu_s",
+	       "simulated_s", "objects"),
+	METRIC(HOST, "host_cpu_s_per_simulated_s", "host", "ms", 1e3, NULL,
+	       "CPU time of the host's process without workers and renderer", SAMPLE, "host_cpu_s", "simulated_s"),
+	METRIC(RENDERER, "renderer_cpu_s_per_simulated_s", "renderer", "ms", 1e3, NULL,
+	       "CPU time of drawing, in a run with 60 frames of 640x480 per simulated second", DRAWN, "renderer_cpu_s",
+	       "simulated_s"),
+	METRIC(FPS, "frames_per_s", "frames drawn per s", "1", 1, NULL,
+	       "frames that were drawn in that run, over its wall-clock time with start and end", DRAWN, "fps"),
+	METRIC(SWITCHES, "switches_per_step", "switches per step", "1", 1, "What the system carries",
+	       "involuntary context switches of workers", SAMPLE, "switches", "steps"),
+	METRIC(STARTUP, "startup_s", "start-up", "ms", 1e3, NULL, "until every worker stood at the gate", SAMPLE,
+	       "startup_s"),
+	METRIC(STARTUP_EACH, "startup_s_per_simulator", "start-up, a simulator", "µs", 1e6, NULL, "that over objects",
+	       SAMPLE, "startup_s", "objects"),
+	METRIC(MEMORY, "memory_bytes", "memory", "MB", 1e-6, NULL,
+	       "proportional set size of all processes, and the universe", SAMPLE, "memory_bytes"),
+	METRIC(MEMORY_EACH, "memory_bytes_per_simulator", "memory, a simulator", "kB", 1e-3, NULL, "that over objects",
+	       SAMPLE, "memory_bytes", "objects"),
+	METRIC(MEMORY_WORKER, "memory_bytes_per_worker_process", "memory, a process", "MB", 1e-6, NULL,
+	       "proportional set size of a worker where workers are processes", SAMPLE, "worker_memory_bytes",
+	       "workers"),
+	METRIC(PENETRATION, "penetration_mean_m", "penetration, end, mean", "mm", 1e3, "Error",
+	       "of the pairs that penetrate", SAMPLE, "penetration_mean_m"),
+	METRIC(WORST, "worst_penetration_m", "penetration, worst", "mm", 1e3, NULL, "at any step", MEASURED,
+	       "worst_penetration_m"),
+	METRIC(SEPARATION, "separation_mean_m", "separation, end, mean", "mm", 1e3, NULL,
+	       "of contacts that carry an impulse", SAMPLE, "separation_mean_m"),
+	METRIC(ENERGY, "energy_gain_max", "energy, largest gain", "1", 1, NULL,
+	       "over the energy at the start, at any step", MEASURED, "energy_gain_max"),
+	METRIC(MOMENTUM, "momentum_error", "momentum error", "1", 1, NULL, "of closed scenes only", MEASURED,
+	       "momentum_error"),
+	METRIC(OBJECTS, "objects", "objects", "1", 1, NULL, "", ANY, "objects"),
+	METRIC(WORKERS, "workers", "workers", "1", 1, NULL, "", ANY, "workers"),
+	METRIC(STEPS, "steps", "steps", "1", 1, NULL, "", ANY, "steps"),
 };
 #undef METRIC
 _Static_assert((int)OB_COMPARE_METRICS <= (int)OB_METRICS, "they fit a record");
@@ -120,17 +130,8 @@ static bool is_monolith(ob_configuration_id id)
 // Kind of trial that measures a metric.
 static ob_compare_kind kind_of(ob_compare_metric m)
 {
-	switch (m) {
-	case OB_COMPARE_WORST:
-	case OB_COMPARE_ENERGY:
-	case OB_COMPARE_MOMENTUM:
-		return OB_COMPARE_MEASURED;
-	case OB_COMPARE_RENDERER:
-	case OB_COMPARE_FPS:
-		return OB_COMPARE_DRAWN;
-	default:
-		return OB_COMPARE_SAMPLE;
-	}
+	const ob_compare_kind kind = (ob_compare_kind)ob_compare_metric_table[m].kind;
+	return kind < OB_COMPARE_KINDS ? kind : OB_COMPARE_SAMPLE;
 }
 
 // Object simulators end in the same bits in any configuration: one is measured for all. The pool always runs.
@@ -306,73 +307,32 @@ static char *run_once(const ob_trial *t, bool timed, ob_error *e)
 	return NULL;
 }
 
-// Reads cost and final state from an undisturbed run.
-static void read_undisturbed(const char *r, double *m)
-{
-	double steps = ob_json_read_number(r, "steps"), objects = ob_json_read_number(r, "objects"),
-	       simulated = ob_json_read_number(r, "simulated_s");
-	double worker_memory = ob_json_read_number(r, "worker_memory_bytes");
-	m[OB_COMPARE_COST] = 1e-6 * ob_json_read_number(r, "body_step_cpu_us");
-	m[OB_COMPARE_WALL] = ob_json_read_number(r, "wall_s") / simulated;
-	m[OB_COMPARE_CPU] = ob_json_read_number(r, "cpu_s") / simulated;
-	m[OB_COMPARE_P50] = ob_json_read_number(r, "step_p50_s");
-	m[OB_COMPARE_P90] = ob_json_read_number(r, "step_p90_s");
-	m[OB_COMPARE_P99] = ob_json_read_number(r, "step_p99_s");
-	m[OB_COMPARE_LONGEST] = ob_json_read_number(r, "step_max_s");
-	m[OB_COMPARE_PER_SIMULATOR] = ob_json_read_number(r, "cpu_s") / simulated / objects;
-	m[OB_COMPARE_HOST] = ob_json_read_number(r, "host_cpu_s") / simulated;
-	m[OB_COMPARE_SWITCHES] = ob_json_read_number(r, "switches") / steps;
-	m[OB_COMPARE_STARTUP] = ob_json_read_number(r, "startup_s");
-	m[OB_COMPARE_STARTUP_EACH] = ob_json_read_number(r, "startup_s") / objects;
-	m[OB_COMPARE_MEMORY] = ob_json_read_number(r, "memory_bytes");
-	m[OB_COMPARE_MEMORY_EACH] = ob_json_read_number(r, "memory_bytes") / objects;
-	m[OB_COMPARE_MEMORY_WORKER] = worker_memory > 0 ? worker_memory / ob_json_read_number(r, "workers") : NAN;
-	m[OB_COMPARE_PENETRATION] = ob_json_read_number(r, "penetration_mean_m");
-	m[OB_COMPARE_SEPARATION] = ob_json_read_number(r, "separation_mean_m");
-}
-
-// Reads the shares of time from a run with clocks in the simulators.
-static void read_timed(const char *r, double *m)
-{
-	double steps = ob_json_read_number(r, "steps"), workers = ob_json_read_number(r, "workers");
-	m[OB_COMPARE_CRITICAL] = ob_json_read_number(r, "critical_s") / steps;
-	m[OB_COMPARE_SPEEDUP] = ob_json_read_number(r, "work_s") / ob_json_read_number(r, "critical_16_s");
-	m[OB_COMPARE_WORK] = ob_json_read_number(r, "work_s") / steps;
-	m[OB_COMPARE_GATE] = ob_json_read_number(r, "gate_s") / steps / workers;
-	m[OB_COMPARE_GATE_CPU] = ob_json_read_number(r, "gate_cpu_s") / steps;
-	m[OB_COMPARE_HELD] = ob_json_read_number(r, "held_s") / steps;
-	m[OB_COMPARE_EXPLAINED] = (ob_json_read_number(r, "work_s") + ob_json_read_number(r, "held_s") +
-				   ob_json_read_number(r, "gate_s") + ob_json_read_number(r, "idle_s")) /
-				  (workers * ob_json_read_number(r, "elapsed_s"));
-}
+static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e);
+static const ob_experiment experiment = {
+	.name = "compare", .metrics = OB_COMPARE_METRICS, .metric = ob_compare_metric_table, .run = run_trial
+};
 
 static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
 {
 	const job *j = t->what;
 	double *m = out->metric;
 	char *r = run_once(t, false, e), *timed = NULL;
-	bool fine = r != NULL;
-	if (fine && j->kind == OB_COMPARE_SAMPLE) {
-		read_undisturbed(r, m);
-		timed = run_once(t, true, e);
-		fine = timed != NULL;
-		if (fine)
-			read_timed(timed, m);
-	} else if (fine && j->kind == OB_COMPARE_MEASURED) {
-		m[OB_COMPARE_WORST] = ob_json_read_number(r, "worst_penetration_m");
-		m[OB_COMPARE_ENERGY] = ob_json_read_number(r, "energy_gain_max");
-		m[OB_COMPARE_MOMENTUM] = ob_json_read_number(r, "momentum_error");
-	} else if (fine) {
-		m[OB_COMPARE_RENDERER] =
-			ob_json_read_number(r, "renderer_cpu_s") / ob_json_read_number(r, "simulated_s");
-		m[OB_COMPARE_FPS] = ob_json_read_number(r, "fps");
-	}
+	bool fine = r && (j->kind != OB_COMPARE_SAMPLE || (timed = run_once(t, true, e)));
 	if (fine) {
-		m[OB_COMPARE_OBJECTS] = ob_json_read_number(r, "objects");
-		m[OB_COMPARE_WORKERS] = ob_json_read_number(r, "workers");
-		m[OB_COMPARE_STEPS] = ob_json_read_number(r, "steps");
+		ob_record_read(out, &experiment, (int)j->kind, r);
+		ob_record_read(out, &experiment, OB_COMPARE_ANY, r);
+		m[OB_COMPARE_COST] *= 1e-6;
+		if (!(m[OB_COMPARE_MEMORY_WORKER] > 0))
+			m[OB_COMPARE_MEMORY_WORKER] = NAN;
 		fine = ob_json_read_string(ob_json_find(r, "state_hash"), out->note, sizeof out->note) ||
 		       ob_fail(e, "its report cannot be read");
+	}
+	if (fine && timed) {
+		ob_record_read(out, &experiment, OB_COMPARE_TIMED, timed);
+		m[OB_COMPARE_EXPLAINED] =
+			(ob_json_read_number(timed, "work_s") + ob_json_read_number(timed, "held_s") +
+			 ob_json_read_number(timed, "gate_s") + ob_json_read_number(timed, "idle_s")) /
+			(ob_json_read_number(timed, "workers") * ob_json_read_number(timed, "elapsed_s"));
 	}
 	free(r);
 	free(timed);
@@ -455,11 +415,8 @@ static bool pick(ob_records *to, const ob_records *from, const ob_trials *s)
 
 bool ob_comparison_run(ob_comparison *c, const char *commit, const char *folder, bool fresh, ob_error *e)
 {
-	const ob_experiment x = { .name = "compare",
-				  .commit = commit,
-				  .metrics = OB_COMPARE_METRICS,
-				  .metric = ob_compare_metric_table,
-				  .run = run_trial };
+	ob_experiment x = experiment;
+	x.commit = commit;
 	jobs *all = malloc(sizeof *all);
 	ob_trials s = { 0 };
 	ob_records r = { 0 };
@@ -485,39 +442,26 @@ void ob_comparison_finish(ob_comparison *c)
 
 // ---- results
 
-static ob_spread spread_of(const ob_statistics *s)
-{
-	bool interval = !isnan(s->median_low), several = s->n > 1;
-	return (ob_spread){ s->median,
-			    interval  ? s->median_low
-			    : several ? s->least
-				      : NAN,
-			    interval  ? s->median_high
-			    : several ? s->most
-				      : NAN,
-			    s->n, interval };
-}
-
-ob_spread ob_comparison_spread(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id,
-			       ob_compare_metric m)
+ob_estimate ob_comparison_spread(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id,
+				 ob_compare_metric m)
 {
 	char key[OB_CONFIGURATION_KEY];
 	ob_compare_kind kind = kind_of(m);
 	if (!ob_comparison_is_done(c, p, id))
-		return (ob_spread){ NAN, NAN, NAN, 0, false };
+		return (ob_estimate){ 0, NAN, NAN, NAN, false };
 	ob_configuration_key(kind == OB_COMPARE_MEASURED ? measured_for(id) : id, kind, key);
 	ob_statistics s = ob_records_summarise(&c->records, p->key, key, m);
-	return spread_of(&s);
+	return ob_estimate_median(&s);
 }
 
-ob_spread ob_comparison_ratio(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id of,
-			      ob_configuration_id to, ob_compare_metric m)
+ob_estimate ob_comparison_ratio(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id of,
+				ob_configuration_id to, ob_compare_metric m)
 {
 	if (!ob_comparison_is_done(c, p, of) || !ob_comparison_is_done(c, p, to))
-		return (ob_spread){ NAN, NAN, NAN, 0, false };
+		return (ob_estimate){ 0, NAN, NAN, NAN, false };
 	ob_statistics s = ob_records_ratio(&c->records, p->key, ob_configuration_table[of].key,
 					   ob_configuration_table[to].key, m, false);
-	return spread_of(&s);
+	return ob_estimate_median(&s);
 }
 
 ob_configuration_id ob_configuration_without(ob_configuration_id id)

@@ -7,7 +7,8 @@
 #ifndef OB_COMPARE_COMPARE_H
 #define OB_COMPARE_COMPARE_H
 
-#include "experiment/experiment.h"
+#include "experiment/analysis.h"
+#include "experiment/table.h"
 #include "settings/settings.h"
 
 typedef enum ob_worker_count {
@@ -56,7 +57,9 @@ typedef enum ob_compare_kind {
 	OB_COMPARE_SAMPLE, // an undisturbed run, for cost and latency, and one with clocks, for the shares of time
 	OB_COMPARE_MEASURED, // a run that measures errors at each step
 	OB_COMPARE_DRAWN, // a run with frames
-	OB_COMPARE_KINDS
+	OB_COMPARE_KINDS,
+	OB_COMPARE_TIMED = OB_COMPARE_KINDS, // of metrics: the run with clocks; any
+	OB_COMPARE_ANY
 } ob_compare_kind;
 
 typedef enum ob_compare_metric {
@@ -147,17 +150,12 @@ void ob_configuration_key(ob_configuration_id id, ob_compare_kind kind, char to[
 
 // ---- results. NaN: not measured
 
-// Spread of all samples: 95 % interval from 6 samples on, else least to most; low and high are NaN for a single one.
-typedef struct ob_spread {
-	double median, low, high;
-	size_t n;
-	bool interval;
-} ob_spread;
-ob_spread ob_comparison_spread(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id,
-			       ob_compare_metric m);
+// Median of all samples.
+ob_estimate ob_comparison_spread(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id,
+				 ob_compare_metric m);
 // Ratio of one configuration's metric to another's, sample by sample: variation between repeats cancels out.
-ob_spread ob_comparison_ratio(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id of,
-			      ob_configuration_id to, ob_compare_metric m);
+ob_estimate ob_comparison_ratio(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id of,
+				ob_configuration_id to, ob_compare_metric m);
 // Same configuration without the measure that it prices; for all measures: without any. OB_CONFIGURATIONS: it prices
 // none.
 ob_configuration_id ob_configuration_without(ob_configuration_id id);
@@ -175,6 +173,16 @@ typedef struct ob_verdict {
 void ob_verdict_make(ob_verdict *v, const ob_comparison *c, const ob_sweep_point *p);
 
 // ---- output as text, as JSON, as a folder
+
+// A sweep point as a table: metrics downwards, configurations across. intervals: in each cell; otherwise only those of the cost, in a row of their own. NULL: no runs.
+ob_table *ob_comparison_table(const ob_comparison *c, const ob_sweep_point *p, bool intervals);
+// Cost of each measure of --harden: CPU and wall time over the same run without it. NULL: none was priced.
+ob_table *ob_comparison_prices(const ob_comparison *c, const ob_sweep_point *p);
+// Prints why the tables lack a configuration: it failed, or was skipped, for which this is the word. False: they have it.
+bool ob_comparison_left_out(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id,
+			    const char *skipped, char *to, size_t room);
+// Prints "6 runs of each", "3 runs of each of 4 seeds".
+void ob_comparison_print_runs(const ob_comparison *c, char *to, size_t room);
 
 // Prints the verdict, then the table. width: of a line
 void ob_comparison_print(const ob_comparison *c, FILE *f, size_t width);

@@ -6,9 +6,9 @@
 
 #include "base/utf8.h"
 #include "compare/compare.h"
-#include "compare/table.h"
 #include "experiment/json.h"
 #include "experiment/process.h"
+#include "experiment/words.h"
 
 enum { HASH_DIGITS = 8 };
 
@@ -21,33 +21,21 @@ void ob_comparison_print_runs(const ob_comparison *c, char *to, size_t room)
 
 // ---- the table
 
-static void print_number(char to[48], double v, const ob_metric *m)
-{
-	ob_page_print_quantity(to, 48, v * m->scale, "1");
-}
-
-static void add_cell(ob_table *t, const ob_metric *m, ob_spread x, bool interval)
-{
-	char median[48], low[48], high[48];
-	print_number(median, x.median, m);
-	print_number(low, x.low, m);
-	print_number(high, x.high, m);
-	ob_table_add(t, "%s", isnan(x.median) ? "–" : median);
-	if (interval && !isnan(x.low) && strcmp(low, high) != 0)
-		ob_table_small(t, "%s – %s", low, high);
-}
+static const char *between = " – "; // the ends of an interval
 
 // Adds a row for the configurations listed, if at least one has the metric.
 static void add_metric(ob_table *t, const ob_comparison *c, const ob_sweep_point *p, const int *id, int n,
 		       ob_compare_metric metric, bool intervals)
 {
 	const ob_metric *m = &ob_compare_metric_table[metric];
-	bool unit = strcmp(m->unit, "1") != 0;
+	bool unit = strcmp(m->unit, "1") != 0, several = false, interval = false;
 	ob_table_add(t, "  %s%s%s", m->title, unit ? ", " : "", unit ? m->unit : "");
-	bool several = false, interval = false;
 	for (int i = 0; i < n; i++) {
-		ob_spread x = ob_comparison_spread(c, p, id[i], metric);
-		add_cell(t, m, x, intervals);
+		ob_estimate x = ob_comparison_spread(c, p, id[i], metric);
+		const ob_word low = ob_word_number(x.low * m->scale), high = ob_word_number(x.high * m->scale);
+		ob_table_add(t, "%s", ob_word_number(x.value * m->scale).text);
+		if (intervals && !isnan(x.low) && strcmp(low.text, high.text) != 0)
+			ob_table_small(t, "%s%s%s", low.text, between, high.text);
 		several |= x.n > 1;
 		interval |= x.interval;
 	}
@@ -55,18 +43,15 @@ static void add_metric(ob_table *t, const ob_comparison *c, const ob_sweep_point
 		return;
 	ob_table_add(t, interval ? "    interval of 95 %%" : "    least to most");
 	for (int i = 0; i < n; i++) {
-		ob_spread x = ob_comparison_spread(c, p, id[i], metric);
-		char low[48], high[48];
-		print_number(low, x.low, m);
-		print_number(high, x.high, m);
-		ob_table_add(t, "%s–%s", low, high);
+		ob_estimate x = ob_comparison_spread(c, p, id[i], metric);
+		ob_table_add(t, "%s–%s", ob_word_number(x.low * m->scale).text, ob_word_number(x.high * m->scale).text);
 	}
 }
 
 static bool is_known(const ob_comparison *c, const ob_sweep_point *p, ob_compare_metric m)
 {
 	for (int w = 0; w < OB_CONFIGURATIONS; w++)
-		if (!isnan(ob_comparison_spread(c, p, w, m).median))
+		if (!isnan(ob_comparison_spread(c, p, w, m).value))
 			return true;
 	return false;
 }
@@ -90,9 +75,9 @@ ob_table *ob_comparison_table(const ob_comparison *c, const ob_sweep_point *p, b
 		if (ob_comparison_is_done(c, p, w))
 			id[n++] = w;
 	memset(align + 1, 'r', (size_t)n);
-	ob_table *t = n ? ob_table_new(align) : NULL;
-	if (!t)
+	if (!n)
 		return NULL;
+	ob_table *t = ob_table_new(align);
 	ob_table_add(t, "%s", "");
 	for (int i = 0; i < n; i++)
 		ob_table_add(t, "%s", ob_configuration_table[id[i]].title);
@@ -118,13 +103,6 @@ ob_table *ob_comparison_table(const ob_comparison *c, const ob_sweep_point *p, b
 	return t;
 }
 
-static void add_ratio(ob_table *t, ob_spread r)
-{
-	ob_table_add(t, "%.2f", r.median);
-	if (!isnan(r.low))
-		ob_table_small(t, "%.2f – %.2f", r.low, r.high);
-}
-
 ob_table *ob_comparison_prices(const ob_comparison *c, const ob_sweep_point *p)
 {
 	ob_table *t = NULL;
@@ -135,41 +113,29 @@ ob_table *ob_comparison_prices(const ob_comparison *c, const ob_sweep_point *p)
 			continue;
 		if (!t) {
 			t = ob_table_new("llrr");
-			if (!t)
-				return NULL;
-			ob_table_add(t, "What containment costs");
-			ob_table_add(t, "over");
-			ob_table_add(t, "CPU");
-			ob_table_add(t, "wall");
+			ob_table_row(t, "What containment costs", "over", "CPU", "wall", NULL);
 		}
 		ob_table_add(t, "  %s", ob_configuration_table[w].title);
 		ob_table_add(t, "%s", ob_configuration_table[without].title);
-		add_ratio(t, ob_comparison_ratio(c, p, w, without, OB_COMPARE_CPU));
-		add_ratio(t, ob_comparison_ratio(c, p, w, without, OB_COMPARE_WALL));
+		for (int m = OB_COMPARE_CPU; m >= OB_COMPARE_WALL; m--) {
+			ob_estimate r = ob_comparison_ratio(c, p, w, without, m);
+			ob_table_add(t, "%.2f", r.value);
+			if (!isnan(r.low))
+				ob_table_small(t, "%.2f%s%.2f", r.low, between, r.high);
+		}
 	}
 	return t;
 }
 
 // ---- the text
 
-// Prints lines of at most this width, unless a word is longer.
-static void print_wrapped(FILE *f, const char *text, size_t width)
+bool ob_comparison_left_out(const ob_comparison *c, const ob_sweep_point *p, ob_configuration_id id,
+			    const char *skipped, char *to, size_t room)
 {
-	size_t used = 0;
-	while (*(text += strspn(text, " "))) {
-		size_t bytes = strcspn(text, " "), letters = 0;
-		for (size_t i = 0; i < bytes; i++)
-			letters += (text[i] & 0xc0) != 0x80; // UTF-8
-		if (used && used + 1 + letters > width) {
-			fputc('\n', f);
-			used = 0;
-		}
-		fprintf(f, "%s%.*s", used ? " " : "", (int)bytes, text);
-		used += (used ? 1 : 0) + letters;
-		text += bytes;
-	}
-	if (used)
-		fputc('\n', f);
+	const char *failed = ob_comparison_failure(c, p, id);
+	snprintf(to, room, "%s: %s: %s", ob_configuration_table[id].title, failed ? "failed" : skipped,
+		 failed ? failed : p->skipped[id]);
+	return failed || *p->skipped[id];
 }
 
 static void print_point(const ob_comparison *c, const ob_sweep_point *p, FILE *f, size_t width)
@@ -186,33 +152,23 @@ static void print_point(const ob_comparison *c, const ob_sweep_point *p, FILE *f
 				     ob_comparison_agrees(c, p) ? "The object simulators end in the same bits."
 								: "The object simulators DIFFER in their last state." };
 	for (size_t i = 0; i < sizeof said / sizeof *said; i++)
-		print_wrapped(f, said[i], width);
+		ob_word_wrap(f, "", said[i], width);
 	ob_comparison_print_runs(c, runs, sizeof runs);
 	snprintf(line, sizeof line, "%.300s%s%s: %" PRIu32 " objects, %" PRIu64 " steps of %g s, %g s simulated; %s%s",
 		 c->scene, *p->define ? " " : "", p->define, p->objects, p->steps, p->step, p->simulated, runs,
 		 c->repeats * c->seeds > 1 ? "; medians" : "");
 	ob_utf8_make_plain(line); // file names may contain anything
 	fputc('\n', f);
-	print_wrapped(f, line, width);
+	ob_word_wrap(f, "", line, width);
 	fputc('\n', f);
-	ob_table *t = ob_comparison_table(c, p, false);
-	if (t)
-		ob_table_print(t, f, width);
-	ob_table_free(t);
-	t = ob_comparison_prices(c, p);
-	if (t) {
+	ob_table_print(ob_comparison_table(c, p, false), f, width);
+	ob_table *prices = ob_comparison_prices(c, p);
+	if (prices)
 		fputc('\n', f);
-		ob_table_print(t, f, width);
-	}
-	ob_table_free(t);
-	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
-		const char *failed = ob_comparison_failure(c, p, w);
-		if (!failed && !*p->skipped[w])
-			continue;
-		snprintf(line, sizeof line, "%s: %s: %s", ob_configuration_table[w].title,
-			 failed ? "failed" : "skipped", failed ? failed : p->skipped[w]);
-		print_wrapped(f, line, width);
-	}
+	ob_table_print(prices, f, width);
+	for (int w = 0; w < OB_CONFIGURATIONS; w++)
+		if (ob_comparison_left_out(c, p, w, "skipped", line, sizeof line))
+			ob_word_wrap(f, "", line, width);
 }
 
 void ob_comparison_print(const ob_comparison *c, FILE *f, size_t width)
@@ -226,10 +182,10 @@ void ob_comparison_print(const ob_comparison *c, FILE *f, size_t width)
 
 // ---- JSON
 
-static void write_spread(const char *key, ob_spread x, ob_json *j)
+static void write_spread(const char *key, ob_estimate x, ob_json *j)
 {
 	ob_json_open(j, key);
-	ob_json_number(j, "median", x.median);
+	ob_json_number(j, "median", x.value);
 	ob_json_number(j, "low", x.low);
 	ob_json_number(j, "high", x.high);
 	ob_json_count(j, "runs", x.n);

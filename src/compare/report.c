@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "compare/compare.h"
-#include "compare/table.h"
 #include "compare_texts.h"
 #include "experiment/chart.h"
 #include "experiment/folder.h"
@@ -12,7 +11,7 @@
 
 // ---- diagrams
 
-// define: of one point of a sweep; "" for none.
+// define: the point of a sweep; "" = none
 static ob_chart *begin_chart(const ob_comparison *c, const char *name, const char *define)
 {
 	ob_chart *d = ob_chart_new();
@@ -51,7 +50,7 @@ static ob_chart *chart_cost(const ob_comparison *c, const ob_sweep_point *p)
 	snprintf(d->x.label, sizeof d->x.label, "CPU per body and step (µs)");
 	d->x.scale = OB_SCALE_LOG;
 	for (int i = 0; i < n; i++) { // the interval as a line behind the marker
-		ob_spread x = ob_comparison_spread(c, p, id[i], OB_COMPARE_COST);
+		ob_estimate x = ob_comparison_spread(c, p, id[i], OB_COMPARE_COST);
 		interval |= x.interval;
 		if (isnan(x.low))
 			continue;
@@ -67,10 +66,10 @@ static ob_chart *chart_cost(const ob_comparison *c, const ob_sweep_point *p)
 		->line = false;
 	for (int i = 0; i < n; i++) {
 		char label[32], hint[192];
-		ob_spread x = ob_comparison_spread(c, p, id[i], OB_COMPARE_COST);
-		snprintf(label, sizeof label, "%.3g", 1e6 * x.median);
-		snprintf(hint, sizeof hint, "%s: %.3g µs", d->category[i], 1e6 * x.median);
-		ob_chart_add(d, 1e6 * x.median, i, label, hint);
+		ob_estimate x = ob_comparison_spread(c, p, id[i], OB_COMPARE_COST);
+		snprintf(label, sizeof label, "%.3g", 1e6 * x.value);
+		snprintf(hint, sizeof hint, "%s: %.3g µs", d->category[i], 1e6 * x.value);
+		ob_chart_add(d, 1e6 * x.value, i, label, hint);
 	}
 	return d;
 }
@@ -90,7 +89,7 @@ static ob_chart *chart_latency(const ob_comparison *c, const ob_sweep_point *p)
 		ob_chart_begin(d, k, false, title)->line = false;
 		for (int i = 0; i < n; i++) {
 			char hint[192];
-			double ms = 1e3 * ob_comparison_spread(c, p, id[i], metrics[k]).median;
+			double ms = 1e3 * ob_comparison_spread(c, p, id[i], metrics[k]).value;
 			snprintf(hint, sizeof hint, "%s, %s: %.3g ms", d->category[i], title, ms);
 			ob_chart_add(d, ms, i, "", hint);
 		}
@@ -114,13 +113,13 @@ static ob_chart *chart_growth(const ob_comparison *c)
 	for (int w = 0; w < OB_CONFIGURATION_MONOLITH_OTHER; w++) {
 		ob_chart_begin(d, w, false, ob_configuration_table[w].title);
 		for (uint32_t i = 0; i < c->points; i++) {
-			ob_spread x = ob_comparison_spread(c, &c->point[i], w, OB_COMPARE_COST);
+			ob_estimate x = ob_comparison_spread(c, &c->point[i], w, OB_COMPARE_COST);
 			char hint[192];
-			if (isnan(x.median))
+			if (isnan(x.value))
 				continue;
 			snprintf(hint, sizeof hint, "%s, %" PRIu32 " objects: %.3g µs", ob_configuration_table[w].title,
-				 c->point[i].objects, 1e6 * x.median);
-			ob_chart_point *at = ob_chart_add(d, c->point[i].objects, 1e6 * x.median, "", hint);
+				 c->point[i].objects, 1e6 * x.value);
+			ob_chart_point *at = ob_chart_add(d, c->point[i].objects, 1e6 * x.value, "", hint);
 			at->low = 1e6 * x.low;
 			at->high = 1e6 * x.high;
 		}
@@ -149,10 +148,10 @@ static void write_answer(ob_page *p, const void *with)
 
 static void write_card(ob_page *p, const ob_comparison *c, ob_configuration_id id, const char *text)
 {
-	ob_spread r = ob_comparison_ratio(c, last_point(c), id, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
-	if (isnan(r.median))
+	ob_estimate r = ob_comparison_ratio(c, last_point(c), id, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
+	if (isnan(r.value))
 		return;
-	ob_page_markup(p, "<li><b>%.2f×</b><span>", r.median);
+	ob_page_markup(p, "<li><b>%.2f×</b><span>", r.value);
 	ob_page_text(p, text);
 	if (!isnan(r.low))
 		ob_page_markup(p, "<br>%.2f to %.2f, run by run", r.low, r.high);
@@ -171,18 +170,10 @@ static void write_cards(ob_page *p, const void *with)
 static void write_setting(ob_page *p, const void *with)
 {
 	const ob_comparison *c = with;
-	const struct {
-		const char *name, *text;
-	} lines[] = { { "Scene", c->scene },
-		      { "Options", c->options },
-		      { "Machine", c->records.machine },
-		      { "Program", c->records.commit } };
 	char runs[64];
-	double took = 0;
-	for (size_t i = 0; i < sizeof lines / sizeof *lines; i++)
-		ob_page_term(p, lines[i].name, *lines[i].text ? lines[i].text : "–");
-	for (size_t i = 0; i < c->records.count; i++)
-		took += c->records.record[i].took_s;
+	ob_page_term(p, "Scene", c->scene);
+	ob_page_term(p, "Options", *c->options ? c->options : "–");
+	const double took = ob_page_provenance(p, &c->records);
 	ob_comparison_print_runs(c, runs, sizeof runs);
 	ob_page_markup(p, "<dt>Runs</dt><dd>%s, interleaved in both orders; %.0f s in all</dd>\n", runs, took);
 }
@@ -190,19 +181,6 @@ static void write_setting(ob_page *p, const void *with)
 static void write_growth(ob_page *p, const void *with)
 {
 	ob_chart_html(chart_growth(with), p, "");
-}
-
-static void write_left_out(ob_page *p, const ob_comparison *c, const ob_sweep_point *at)
-{
-	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
-		const char *failed = ob_comparison_failure(c, at, w);
-		if (!failed && !*at->skipped[w])
-			continue;
-		ob_page_markup(p, "<p class=\"note\">%s: %s: ", ob_configuration_table[w].title,
-			       failed ? "failed" : "left out");
-		ob_page_text(p, failed ? failed : at->skipped[w]);
-		ob_page_markup(p, "</p>\n");
-	}
 }
 
 static void write_point(ob_page *p, const ob_comparison *c, const ob_sweep_point *at)
@@ -225,15 +203,13 @@ static void write_point(ob_page *p, const ob_comparison *c, const ob_sweep_point
 				  : "The object simulators did NOT end in the same bits.");
 	ob_chart_html(chart_cost(c, at), p, "");
 	ob_chart_html(chart_latency(c, at), p, "");
-	ob_table *t = ob_comparison_table(c, at, true);
-	if (t)
-		ob_table_html(t, p);
-	ob_table_free(t);
-	t = ob_comparison_prices(c, at);
-	if (t)
-		ob_table_html(t, p);
-	ob_table_free(t);
-	write_left_out(p, c, at);
+	ob_table_html(ob_comparison_table(c, at, true), p);
+	ob_table_html(ob_comparison_prices(c, at), p);
+	for (int w = 0; w < OB_CONFIGURATIONS; w++) {
+		char line[640];
+		if (ob_comparison_left_out(c, at, w, "left out", line, sizeof line))
+			ob_page_paragraph(p, "note", line);
+	}
 	ob_page_markup(p, "</section>\n");
 }
 
@@ -246,13 +222,7 @@ static void write_points(ob_page *p, const void *with)
 
 static void write_meanings(ob_page *p, const void *with)
 {
-	for (int m = 0; m < OB_COMPARE_SHOWN; m++) {
-		const ob_metric *metric = &ob_compare_metric_table[m];
-		if (metric->group)
-			ob_page_markup(p, "%s<h3>%s</h3>\n<dl>\n", m ? "</dl>\n" : "", metric->group);
-		ob_page_markup(p, "<dt>%s</dt><dd>%s</dd>\n", metric->title, metric->meaning);
-	}
-	ob_page_markup(p, "</dl>\n");
+	ob_page_meanings(p, ob_compare_metric_table, OB_COMPARE_SHOWN);
 }
 
 static void write_json(FILE *f, const void *with)

@@ -3,7 +3,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,6 +10,7 @@
 #include "experiment/analysis.h"
 #include "experiment/json.h"
 #include "experiment/process.h"
+#include "experiment/words.h"
 
 #define RATE(HZ) \
 	{ \
@@ -45,35 +45,38 @@ const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS] = {
 	LAGS(OB_SYNC_OWN, "own", "own"),
 };
 
-#define METRIC(id, key, title, unit, scale, meaning) [id] = { key, title, unit, scale, NAN, NULL, meaning }
+#define METRIC(id, key, title, unit, scale, meaning, ...) \
+	[OB_SYNC_##id] = { key, title, unit, scale, NAN, NULL, meaning, 0, { __VA_ARGS__ } }
 const ob_metric ob_sync_metrics[OB_SYNC_METRICS] = {
-	METRIC(OB_SYNC_CPU, "cpu_s_per_body_and_simulated_s", "CPU, body and s", "ms", 1e3,
-	       "CPU time of all workers over moving bodies and simulated seconds"),
-	METRIC(OB_SYNC_WALL, "wall_s_per_simulated_s", "wall, s", "s", 1,
-	       "wall-clock time of a simulated second, with the measurement of each step"),
-	METRIC(OB_SYNC_UPDATES, "updates_per_s", "updates/s", "k", 1e-3,
-	       "steps of all simulators in a second of wall-clock time"),
-	METRIC(OB_SYNC_LATENCY, "latency_mean_s", "latency", "ms", 1e3,
+	METRIC(CPU, "cpu_s_per_body_and_simulated_s", "CPU, body and s", "ms", 1e3,
+	       "CPU time of all workers over moving bodies and simulated seconds", NULL),
+	METRIC(WALL, "wall_s_per_simulated_s", "wall, s", "s", 1,
+	       "wall-clock time of a simulated second, with the measurement of each step", "wall_s", "simulated_s"),
+	METRIC(UPDATES, "updates_per_s", "updates/s", "k", 1e-3,
+	       "steps of all simulators in a second of wall-clock time", NULL),
+	METRIC(LATENCY, "latency_mean_s", "latency", "ms", 1e3,
 	       "from cause to effect: a simulator's own time less the time of the neighbour's version that it reads, "
-	       "mean; in "
-	       "lockstep bodies in contact are solved together, so there is none"),
-	METRIC(OB_SYNC_LATENCY_MOST, "latency_max_s", "latency, most", "ms", 1e3, "the largest of them"),
-	METRIC(OB_SYNC_WORST, "worst_penetration_m", "worst penetration", "mm", 1e3,
-	       "of any pair at any boundary of 1/60 s"),
-	METRIC(OB_SYNC_SIZES, "worst_penetration_sizes", "over size", "1", 1,
-	       "that over the median thickness of the bodies that move"),
-	METRIC(OB_SYNC_ENERGY, "energy_gain_max", "energy gained", "1", 1,
+	       "mean; in lockstep bodies in contact are solved together, so there is none",
+	       "lag_mean_s"),
+	METRIC(LATENCY_MOST, "latency_max_s", "latency, most", "ms", 1e3, "the largest of them", "lag_max_s"),
+	METRIC(WORST, "worst_penetration_m", "worst penetration", "mm", 1e3, "of any pair at any boundary of 1/60 s",
+	       "worst_penetration_m"),
+	METRIC(SIZES, "worst_penetration_sizes", "over size", "1", 1,
+	       "that over the median thickness of the bodies that move", NULL),
+	METRIC(ENERGY, "energy_gain_max", "energy gained", "1", 1,
 	       "largest energy above that of the start, over it, 0 below 1e-12; work of prescribed motion is not "
-	       "counted"),
-	METRIC(OB_SYNC_BY_LAG, "energy_by_lag", "by late mail", "1", 1,
+	       "counted",
+	       NULL),
+	METRIC(BY_LAG, "energy_by_lag", "by late mail", "1", 1,
 	       "energy that late mail of the ledger has added, over the energy of the start: the sum over all pairs of "
-	       "each "
-	       "impulse's work on the body that received it, less its work on that body as the sender saw it"),
-	METRIC(OB_SYNC_MOMENTUM, "momentum_error", "momentum", "1", 1,
-	       "largest change of momentum that nothing explains, over its size; only in scenes without fixed bodies"),
-	METRIC(OB_SYNC_LAG, "lag_speed_over_size", "lag x speed / size", "1", 1,
-	       "mean latency times the speed that is worth the energy which lockstep's hits lose, over the size"),
-	METRIC(OB_SYNC_LOST, "energy_lost_j", "energy lost", "J", 1, "at the start less at the end"),
+	       "each impulse's work on the body that received it, less its work on that body as the sender saw it",
+	       NULL),
+	METRIC(MOMENTUM, "momentum_error", "momentum", "1", 1,
+	       "largest change of momentum that nothing explains, over its size; only in scenes without fixed bodies",
+	       "momentum_error"),
+	METRIC(LAG, "lag_speed_over_size", "lag x speed / size", "1", 1,
+	       "mean latency times the speed that is worth the energy which lockstep's hits lose, over the size", NULL),
+	METRIC(LOST, "energy_lost_j", "energy lost", "J", 1, "at the start less at the end", NULL),
 };
 
 typedef struct job {
@@ -131,30 +134,30 @@ static void read_report(const job *j, const char *r, double *m)
 	const bool free = j->of->coupling != OB_SYNC_LOCKSTEP;
 	static const double rounding = 1e-12;
 	const double energy = ob_json_read_number(r, "energy_start"), gain = ob_json_read_number(r, "energy_gain_max");
-	const double simulated = ob_json_read_number(r, "simulated_s"), wall = ob_json_read_number(r, "wall_s"),
-		     steps = ob_json_read_number(r, "steps") * j->point->objects;
-	m[OB_SYNC_CPU] = ob_json_read_number(r, "cpu_s") / simulated / j->point->objects;
-	m[OB_SYNC_WALL] = wall / simulated;
-	m[OB_SYNC_UPDATES] = (free ? ob_json_read_number(r, "updates") : steps) / wall;
-	m[OB_SYNC_LATENCY] = ob_json_read_number(r, "lag_mean_s");
-	m[OB_SYNC_LATENCY_MOST] = ob_json_read_number(r, "lag_max_s");
-	m[OB_SYNC_WORST] = ob_json_read_number(r, "worst_penetration_m");
+	const double steps = ob_json_read_number(r, "steps") * j->point->objects;
+	m[OB_SYNC_CPU] = ob_json_read_number(r, "cpu_s") / ob_json_read_number(r, "simulated_s") / j->point->objects;
+	m[OB_SYNC_UPDATES] = (free ? ob_json_read_number(r, "updates") : steps) / ob_json_read_number(r, "wall_s");
 	m[OB_SYNC_SIZES] = m[OB_SYNC_WORST] / j->point->size;
 	m[OB_SYNC_ENERGY] = gain < rounding ? 0 : gain;
 	m[OB_SYNC_BY_LAG] = ob_json_read_number(r, "energy_by_lag_j") / (energy != 0 ? fabs(energy) : 1);
-	m[OB_SYNC_MOMENTUM] = ob_json_read_number(r, "momentum_error");
 	m[OB_SYNC_LOST] = energy - ob_json_read_number(r, "energy_end");
 }
+
+static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e);
+static const ob_experiment experiment = {
+	.name = "compare-sync", .metrics = OB_SYNC_METRICS, .metric = ob_sync_metrics, .run = run_trial
+};
 
 static bool run_trial(const ob_trial *t, ob_record *out, ob_error *e)
 {
 	const job *j = t->what;
 	char *report = ob_program_report(arguments(j, t->seed), e);
-	const bool fine = report;
-	if (fine)
-		read_report(j, report, out->metric);
+	if (!report)
+		return false;
+	ob_record_read(out, &experiment, 0, report);
+	read_report(j, report, out->metric);
 	free(report);
-	return fine;
+	return true;
 }
 
 // ---- schedule
@@ -257,11 +260,8 @@ static bool run_points(ob_sync_comparison *c, const ob_experiment *x, const char
 
 bool ob_sync_run(ob_sync_comparison *c, const char *commit, const char *folder, bool fresh, ob_error *e)
 {
-	const ob_experiment x = { .name = "compare-sync",
-				  .commit = commit,
-				  .metrics = OB_SYNC_METRICS,
-				  .metric = ob_sync_metrics,
-				  .run = run_trial };
+	ob_experiment x = experiment;
+	x.commit = commit;
 	if (!ob_experiment_open(&x, folder, &c->records, e) || !run_points(c, &x, folder, fresh, e))
 		return false;
 	scale_lags(c);
@@ -346,38 +346,23 @@ static int best_free(const ob_sync_comparison *c, const ob_sync_point *p, ob_syn
 
 // ---- texts
 
-typedef struct text {
-	char *to;
-	size_t room, n;
-} text;
-
-static void say(text *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void say(text *t, const char *format, ...)
-{
-	va_list words;
-	va_start(words, format);
-	if (t->n < t->room)
-		t->n += (size_t)vsnprintf(t->to + t->n, t->room - t->n, format, words);
-	va_end(words);
-}
-
 // A number with two digits, or all before the point.
-static void say_number(text *t, double x)
+static void say_number(ob_sync_text *t, double x)
 {
-	say(t, fabs(x) < 100 ? "%.2g" : "%.0f", x);
+	OB_SAY(t->words, fabs(x) < 100 ? "%.2g" : "%.0f", x);
 }
 
 // A value in a unit for people, with its interval.
-static void say_estimate(text *t, ob_estimate e, double scale)
+static void say_estimate(ob_sync_text *t, ob_estimate e, double scale)
 {
 	say_number(t, scale * e.value);
 	if (isnan(e.low))
 		return;
-	say(t, " (");
+	OB_SAY(t->words, " (");
 	say_number(t, scale * e.low);
-	say(t, " to ");
+	OB_SAY(t->words, " to ");
 	say_number(t, scale * e.high);
-	say(t, ")");
+	OB_SAY(t->words, ")");
 }
 
 // ---- hypotheses
@@ -396,130 +381,132 @@ static ob_estimate order_between(const ob_sync_comparison *c, const ob_sync_poin
 	const char *a = ob_sync_table[to].key, *b = ob_sync_table[from].key;
 	const ob_estimate error = ob_records_estimate_ratio(&c->records, p->key, a, b, OB_SYNC_SIZES);
 	const double decades = log(value(c, p, to, OB_SYNC_LAG) / value(c, p, from, OB_SYNC_LAG));
-	return (ob_estimate){ error.n, log(error.value) / decades, log(error.low) / decades,
-			      log(error.high) / decades };
+	return (ob_estimate){ error.n, log(error.value) / decades, log(error.low) / decades, log(error.high) / decades,
+			      error.interval };
 }
 
 // Says the orders of a coupling's error over decades of the lag. Overlapping intervals contradict no fixed power.
 static verdict judge_coupling(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling,
-			      const char *name, text *t)
+			      const char *name, ob_sync_text *t)
 {
 	static const double bounds[] = { 0, .001, .01, .1 }; // s, injected
 	double least_high = INFINITY, most_low = -INFINITY;
 	int last = -1;
 	bool known = true;
-	say(t, " %s: powers", name);
+	OB_SAY(t->words, " %s: powers", name);
 	for (int w = 0, k = 0; w < OB_SYNC_CONFIGURATIONS && k < 4; w++) {
 		if (!is_of_lags(w, coupling) || ob_sync_table[w].delay != bounds[k])
 			continue;
 		if (last >= 0) {
 			const ob_estimate order = order_between(c, p, last, w);
-			say(t, "%s ", k > 1 ? "," : "");
+			OB_SAY(t->words, "%s ", k > 1 ? "," : "");
 			say_estimate(t, order, 1);
-			say(t, " from ");
+			OB_SAY(t->words, " from ");
 			say_number(t, 1e3 * value(c, p, last, OB_SYNC_LATENCY));
-			say(t, " to ");
+			OB_SAY(t->words, " to ");
 			say_number(t, 1e3 * value(c, p, w, OB_SYNC_LATENCY));
-			say(t, " ms");
+			OB_SAY(t->words, " ms");
 			least_high = fmin(least_high, order.high), most_low = fmax(most_low, order.low);
 			known &= !isnan(order.low);
 		}
 		last = w, k++;
 	}
 	if (!known || (most_low <= 0 && least_high >= 0 && most_low <= least_high)) {
-		say(t, known ? ": no power is excluded, 0 neither." : ".");
+		OB_SAY(t->words, known ? ": no power is excluded, 0 neither." : ".");
 		return UNDECIDED;
 	}
 	if (most_low > least_high || least_high < 0) {
-		say(t, ": no fixed power.");
+		OB_SAY(t->words, ": no fixed power.");
 		return CONTRADICTED;
 	}
-	say(t, ": any power from ");
+	OB_SAY(t->words, ": any power from ");
 	say_number(t, most_low);
-	say(t, " to ");
+	OB_SAY(t->words, " to ");
 	say_number(t, least_high);
-	say(t, " describes it.");
+	OB_SAY(t->words, " describes it.");
 	return SUPPORTED;
 }
 
-static verdict judge_power(const ob_sync_comparison *c, const ob_sync_point *p, text *t)
+static verdict judge_power(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_text *t)
 {
 	const verdict ledger = judge_coupling(c, p, OB_SYNC_LEDGER, "Ledger", t),
 		      own = judge_coupling(c, p, OB_SYNC_OWN, "Own", t);
 	const ob_line step = ob_sync_order_of_step(c, p);
 	if (!isnan(step.slope_low))
-		say(t,
-		    " Beside it, without an injected lag, the ledger's error grows with the length of a step to the "
-		    "power of %.2f (%.2f to %.2f).",
-		    step.slope, step.slope_low, step.slope_high);
-	say(t, " Scenes of other speeds and sizes would test whether the product alone counts.");
+		OB_SAY(t->words,
+		       " Beside it, without an injected lag, the ledger's error grows with the length of a step to the "
+		       "power of %.2f (%.2f to %.2f).",
+		       step.slope, step.slope_low, step.slope_high);
+	OB_SAY(t->words, " Scenes of other speeds and sizes would test whether the product alone counts.");
 	return worse(ledger, own);
 }
 
-static verdict judge_momentum(const ob_sync_comparison *c, const ob_sync_point *p, text *t)
+static verdict judge_momentum(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_text *t)
 {
 	const int l = best_free(c, p, OB_SYNC_LEDGER), o = best_free(c, p, OB_SYNC_OWN);
 	const ob_estimate ledger = ob_sync_estimate(c, p, l, OB_SYNC_MOMENTUM),
 			  own = ob_sync_estimate(c, p, o, OB_SYNC_MOMENTUM);
 	if (!ledger.n || !own.n) {
-		say(t,
-		    " Something is fixed in this scene, and takes up momentum. (The program's tests hold the ledger, "
-		    "with the mail under way, to 1e-12 for random lags, jitter, orders and kills.)");
+		OB_SAY(t->words, " Something is fixed in this scene, and takes up momentum. (The program's tests hold "
+				 "the ledger, "
+				 "with the mail under way, to 1e-12 for random lags, jitter, orders and kills.)");
 		return NOT_TESTED;
 	}
-	say(t, " Change of momentum, without the mail under way: ");
+	OB_SAY(t->words, " Change of momentum, without the mail under way: ");
 	say_estimate(t, ledger, 1);
-	say(t, " by the ledger, ");
+	OB_SAY(t->words, " by the ledger, ");
 	say_estimate(t, own, 1);
-	say(t, " by own responses.");
+	OB_SAY(t->words, " by own responses.");
 	return ledger.high < own.low ? SUPPORTED : ledger.low > own.high ? CONTRADICTED : UNDECIDED;
 }
 
 // Energy gained and late mail's are those of one run, so at each injected lag they are compared by their intervals.
-static verdict judge_energy(const ob_sync_comparison *c, const ob_sync_point *p, text *t)
+static verdict judge_energy(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_text *t)
 {
 	static const double noticeable = 1e-6;
 	verdict v = NOT_TESTED;
-	say(t, " Energy gained, and late mail's, over that at the start:");
+	OB_SAY(t->words, " Energy gained, and late mail's, over that at the start:");
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 		const ob_estimate gained = ob_sync_estimate(c, p, w, OB_SYNC_ENERGY),
 				  mail = ob_sync_estimate(c, p, w, OB_SYNC_BY_LAG);
 		if (!is_of_lags(w, OB_SYNC_LEDGER) || ob_sync_table[w].delay == 0 || !gained.n || !mail.n)
 			continue;
-		say(t, " %g ms: ", 1e3 * ob_sync_table[w].delay);
+		OB_SAY(t->words, " %g ms: ", 1e3 * ob_sync_table[w].delay);
 		if (gained.high < noticeable || gained.value < noticeable)
-			say(t, "none");
+			OB_SAY(t->words, "none");
 		else
 			say_estimate(t, gained, 1);
-		say(t, ", ");
+		OB_SAY(t->words, ", ");
 		say_estimate(t, mail, 1);
-		say(t, ";");
+		OB_SAY(t->words, ";");
 		const verdict here = isnan(gained.low)                                     ? UNDECIDED
 				     : gained.high < noticeable || gained.high <= mail.low ? SUPPORTED
 				     : gained.low > fmax(mail.high, noticeable)            ? CONTRADICTED
 											   : UNDECIDED;
 		v = v == NOT_TESTED ? here : worse(v, here);
 	}
-	t->n -= t->n < t->room && t->to[t->n - 1] == ';';
-	say(t,
-	    ". What hits lose is not measured apart, so late mail may have added more than was gained, but it cannot "
-	    "be shown to be the only source.");
+	const size_t length = strlen(t->words);
+	t->words[length - (t->words[length - 1] == ';')] = 0;
+	OB_SAY(t->words, ". What hits lose is not measured apart, so late mail may have added more than was gained, "
+			 "but it cannot "
+			 "be shown to be the only source.");
 	return v;
 }
 
-void ob_sync_judge(const ob_sync_comparison *c, int hypothesis, char *to, size_t room)
+ob_sync_text ob_sync_judge(const ob_sync_comparison *c, int hypothesis)
 {
 	static verdict (*const judge[OB_SYNC_HYPOTHESES])(const ob_sync_comparison *, const ob_sync_point *,
-							  text *) = { judge_power, judge_momentum, judge_energy };
+							  ob_sync_text *) = { judge_power, judge_momentum,
+									      judge_energy };
 	const ob_sync_point *p = ob_sync_main_point(c);
-	char reasons[2048] = "";
-	text t = { reasons, sizeof reasons, 0 };
+	ob_sync_text t = { "" }, judged;
 	verdict v = NOT_TESTED;
 	if (best_free(c, p, OB_SYNC_LEDGER) < 0 || best_free(c, p, OB_SYNC_OWN) < 0)
-		say(&t, " Too little was measured.");
+		OB_SAY(t.words, " Too little was measured.");
 	else
 		v = judge[hypothesis](c, p, &t);
-	snprintf(to, room, "%s%s", verdict_word[v], reasons);
+	snprintf(judged.words, sizeof judged.words, "%s%.2000s", verdict_word[v], t.words);
+	return judged;
 }
 
 // ---- recommendation
@@ -556,19 +543,20 @@ static double gains_from(const ob_sync_comparison *c, const ob_sync_point *p, ob
 }
 
 // Says which configurations without an injected lag gained energy in some run.
-static void say_gains(text *t, const ob_sync_comparison *c, const ob_sync_point *p)
+static void say_gains(ob_sync_text *t, const ob_sync_comparison *c, const ob_sync_point *p)
 {
 	bool any = false;
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 		const ob_estimate gain = ob_sync_estimate(c, p, w, OB_SYNC_ENERGY);
 		if (ob_sync_table[w].delay > 0 || !(gain.value > 0))
 			continue;
-		say(t, "%s %s by ", any ? "," : " Without an injected lag some runs gained energy, in the mean:",
-		    ob_sync_table[w].title);
+		OB_SAY(t->words, "%s %s by ",
+		       any ? "," : " Without an injected lag some runs gained energy, in the mean:",
+		       ob_sync_table[w].title);
 		say_estimate(t, gain, 1);
 		any = true;
 	}
-	say(t, "%s", any ? " of that at the start." : " Without an injected lag no run gained energy.");
+	OB_SAY(t->words, "%s", any ? " of that at the start." : " Without an injected lag no run gained energy.");
 }
 
 // The advice that ratios of free running to lockstep allow.
@@ -588,46 +576,51 @@ static const char *advice(ob_estimate error, ob_estimate cost)
 	return "It was not shown to be less accurate: take it where simulators must not wait, and pay the CPU.";
 }
 
-void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room)
+ob_sync_text ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p)
 {
 	static const double share = .1; // of the size: penetration that counts as large
 	const int free = best_free(c, p, OB_SYNC_COUPLINGS);
-	text t = { to, room, 0 };
+	ob_sync_text t = { "" };
 	if (free < 0 || isnan(value(c, p, 0, OB_SYNC_WORST))) {
-		say(&t, "Too little was measured to recommend anything.");
-		return;
+		OB_SAY(t.words, "Too little was measured to recommend anything.");
+		return t;
 	}
 	const ob_sync_configuration *of = &ob_sync_table[free];
 	const char *lockstep = ob_sync_table[0].key;
 	const ob_estimate error = ob_records_estimate_ratio(&c->records, p->key, of->key, lockstep, OB_SYNC_WORST),
 			  cost = ob_records_estimate_ratio(&c->records, p->key, of->key, lockstep, OB_SYNC_CPU);
-	say(&t, "Lockstep kept bodies within ");
+	OB_SAY(t.words, "Lockstep kept bodies within ");
 	say_estimate(&t, ob_sync_estimate(c, p, 0, OB_SYNC_WORST), 1e3);
-	say(&t, " mm of each other's surfaces. The most accurate free form (%s) let them sink in by ", of->title);
+	OB_SAY(t.words, " mm of each other's surfaces. The most accurate free form (%s) let them sink in by ",
+	       of->title);
 	say_estimate(&t, ob_sync_estimate(c, p, free, OB_SYNC_WORST), 1e3);
-	say(&t, " mm, ");
+	OB_SAY(t.words, " mm, ");
 	say_estimate(&t, error, 1);
-	say(&t, " times as far, and took ");
+	OB_SAY(t.words, " times as far, and took ");
 	say_estimate(&t, cost, 1);
-	say(&t, " times the CPU. %s", advice(error, cost));
+	OB_SAY(t.words, " times the CPU. %s", advice(error, cost));
 	if (p != ob_sync_main_point(c))
-		return;
+		return t;
 	say_gains(&t, c, p);
 	const double lag = tolerable_lag(c, p, of->coupling, share), gains = gains_from(c, p, of->coupling, false),
 		     may_gain = gains_from(c, p, of->coupling, true);
 	if (lag > 0)
-		say(&t,
-		    " Free simulators of this coupling stay within %.0f %% of the bodies' size up to a latency of %.3g "
-		    "ms, which is a lag of %.2g sizes at these speeds.",
-		    100 * share, 1e3 * lag, lag * p->speed / p->size);
+		OB_SAY(t.words,
+		       " Free simulators of this coupling stay within %.0f %% of the bodies' size up to a latency of "
+		       "%.3g "
+		       "ms, which is a lag of %.2g sizes at these speeds.",
+		       100 * share, 1e3 * lag, lag * p->speed / p->size);
 	else if (lag < 0)
-		say(&t, " Even without an injected lag it may sink in by more than %.0f %% of their size.",
-		    100 * share);
+		OB_SAY(t.words, " Even without an injected lag it may sink in by more than %.0f %% of their size.",
+		       100 * share);
 	if (isnan(may_gain))
-		say(&t, " No injected lag made this coupling gain energy.");
+		OB_SAY(t.words, " No injected lag made this coupling gain energy.");
 	else if (isnan(gains))
-		say(&t, " From an injected lag of %.3g ms on it may gain energy: that is undecided.", 1e3 * may_gain);
+		OB_SAY(t.words, " From an injected lag of %.3g ms on it may gain energy: that is undecided.",
+		       1e3 * may_gain);
 	else
-		say(&t, " It gains energy from an injected lag of %.3g ms on: bound the lag below %s.", 1e3 * gains,
-		    may_gain < gains ? "that, and better below the lags where that is undecided" : "that");
+		OB_SAY(t.words, " It gains energy from an injected lag of %.3g ms on: bound the lag below %s.",
+		       1e3 * gains,
+		       may_gain < gains ? "that, and better below the lags where that is undecided" : "that");
+	return t;
 }

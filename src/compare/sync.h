@@ -90,12 +90,16 @@ bool ob_sync_is_of_rates(int configuration);
 // Order of the ledger's error in the length of a step, without an injected lag.
 ob_line ob_sync_order_of_step(const ob_sync_comparison *c, const ob_sync_point *p);
 
+typedef struct ob_sync_text {
+	char words[2048];
+} ob_sync_text;
+
 enum { OB_SYNC_HYPOTHESES = 3 };
 // Judges a hypothesis of the page by the figures of the main point. The first word is the verdict: "Undecided" if intervals
 // overlap.
-void ob_sync_judge(const ob_sync_comparison *c, int hypothesis, char *to, size_t room);
+ob_sync_text ob_sync_judge(const ob_sync_comparison *c, int hypothesis);
 // Recommendation by rules, from the figures and their intervals alone.
-void ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p, char *to, size_t room);
+ob_sync_text ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point *p);
 
 void ob_sync_print(const ob_sync_comparison *c, FILE *f, size_t width);
 // Writes report.html and plots/, beside the records in results.csv.

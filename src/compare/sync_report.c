@@ -5,9 +5,9 @@
 
 #include "compare/sync.h"
 #include "experiment/chart.h"
-#include "experiment/folder.h"
 #include "experiment/page.h"
 #include "experiment/table.h"
+#include "experiment/words.h"
 #include "sync_texts.h"
 
 static const char *const coupling_title[OB_SYNC_COUPLINGS] = { "lockstep", "ledger", "own", "own, heavy", "own, ODE" };
@@ -26,43 +26,31 @@ static bool is_shown(const ob_sync_comparison *c, const ob_sync_point *p, ob_syn
 	return m != OB_SYNC_LATENCY_MOST && m != OB_SYNC_SIZES && was_measured(c, p, m);
 }
 
-// Adds a mean with its interval, in the metric's unit for people.
-static void add_cell(ob_table *t, ob_estimate e, double scale)
-{
-	const double v = scale * e.value, low = scale * e.low, high = scale * e.high;
-	if (!e.n)
-		ob_table_add(t, "–");
-	else
-		ob_table_add(t, "%.3g", v);
-	if (low < high)
-		ob_table_small(t, "%.3g to %.3g", low, high);
-}
-
 static ob_table *table_of(const ob_sync_comparison *c, const ob_sync_point *p)
 {
 	char align[OB_SYNC_METRICS + 1] = "l";
+	int shown[OB_SYNC_METRICS], count = 0;
 	for (int m = 0; m < OB_SYNC_SHOWN; m++)
-		strcat(align, is_shown(c, p, m) ? "r" : "");
+		if (is_shown(c, p, m))
+			shown[count++] = m;
+	memset(align + 1, 'r', (size_t)count);
 	ob_table *t = ob_table_new(align);
-	if (!t)
-		return NULL;
 	ob_table_add(t, "%s", "");
-	for (int m = 0; m < OB_SYNC_SHOWN; m++) {
-		const char *unit = ob_sync_metrics[m].unit;
-		if (!is_shown(c, p, m))
-			continue;
-		ob_table_add(t, "%s", ob_sync_metrics[m].title);
-		if (strcmp(unit, "1") != 0)
-			ob_table_small(t, "%s", unit);
+	for (int i = 0; i < count; i++) {
+		ob_table_add(t, "%s", ob_sync_metrics[shown[i]].title);
+		if (strcmp(ob_sync_metrics[shown[i]].unit, "1") != 0)
+			ob_table_small(t, "%s", ob_sync_metrics[shown[i]].unit);
 	}
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 		if (!ob_sync_estimate(c, p, w, OB_SYNC_CPU).n)
 			continue;
 		ob_table_add(t, "%s", ob_sync_table[w].title);
-		for (int m = 0; m < OB_SYNC_SHOWN; m++) {
-			if (!is_shown(c, p, m))
-				continue;
-			add_cell(t, ob_sync_estimate(c, p, w, m), ob_sync_metrics[m].scale);
+		for (int i = 0; i < count; i++) {
+			const ob_estimate e = ob_sync_estimate(c, p, w, shown[i]);
+			const double scale = ob_sync_metrics[shown[i]].scale;
+			ob_table_add(t, e.n ? "%.3g" : "–", scale * e.value);
+			if (e.low < e.high)
+				ob_table_small(t, "%.3g to %.3g", scale * e.low, scale * e.high);
 		}
 	}
 	return t;
@@ -83,18 +71,13 @@ void ob_sync_print(const ob_sync_comparison *c, FILE *f, size_t width)
 {
 	for (uint32_t i = 0; i < c->points; i++) {
 		const ob_sync_point *p = &c->point[i];
-		char text[2048];
 		size_t from = 0;
-		ob_table *t = table_of(c, p);
 		fprintf(f, "%s%s%s, %" PRIu32 " objects, %" PRIu32 " seed%s\n\n", c->scene, *p->define ? ", " : "",
 			p->define, p->objects, p->seeds, p->seeds == 1 ? "" : "s");
-		if (t)
-			ob_table_print(t, f, width);
-		ob_table_free(t);
+		ob_table_print(table_of(c, p), f, width);
 		for (const ob_record *r; (r = next_failure(c, p, &from));)
 			fprintf(f, "%s failed: %s\n", r->configuration, r->reason);
-		ob_sync_recommend(c, p, text, sizeof text);
-		fprintf(f, "\n%s\n", text);
+		fprintf(f, "\n%s\n", ob_sync_recommend(c, p).words);
 	}
 }
 
@@ -105,17 +88,17 @@ static ob_chart *begin_chart(const ob_sync_comparison *c, const ob_sync_point *p
 			     const char *x, const char *y)
 {
 	ob_chart *d = ob_chart_new();
-	size_t n = (size_t)snprintf(d->subtitle, sizeof d->subtitle, "%.150s", c->scene);
+	OB_SAY(d->subtitle, "%.150s", c->scene);
 	if (p)
-		snprintf(d->subtitle + n, sizeof d->subtitle - n,
-			 " %s, %" PRIu32 " objects, means of %" PRIu32 " seeds; %.60s", p->define, p->objects, p->seeds,
-			 c->records.commit);
+		OB_SAY(d->subtitle, " %s, %" PRIu32 " objects, means of %" PRIu32 " seeds", p->define, p->objects,
+		       p->seeds);
 	else
-		snprintf(d->subtitle + n, sizeof d->subtitle - n, ", means over seeds; %.60s", c->records.commit);
-	snprintf(d->name, sizeof d->name, "%s", name);
-	snprintf(d->title, sizeof d->title, "%s", title);
-	snprintf(d->x.label, sizeof d->x.label, "%s", x);
-	snprintf(d->y.label, sizeof d->y.label, "%s", y);
+		OB_SAY(d->subtitle, ", means over seeds");
+	OB_SAY(d->subtitle, "; %.60s", c->records.commit);
+	OB_SAY(d->name, "%s", name);
+	OB_SAY(d->title, "%s", title);
+	OB_SAY(d->x.label, "%s", x);
+	OB_SAY(d->y.label, "%s", y);
 	d->x.scale = d->y.scale = OB_SCALE_LOG;
 	return d;
 }
@@ -231,56 +214,35 @@ static ob_chart *chart_objects(const ob_sync_comparison *c, ob_sync_metric up, c
 	return d;
 }
 
-static ob_chart *chart_objects_cpu(const ob_sync_comparison *c)
-{
-	return chart_objects(c, OB_SYNC_CPU, "objects-cpu", "CPU over the number of simulators",
-			     "CPU per body and simulated second (ms)");
-}
-
-static ob_chart *chart_objects_error(const ob_sync_comparison *c)
-{
-	return chart_objects(c, OB_SYNC_WORST, "objects-error", "Worst penetration over the number of simulators",
-			     "worst penetration (mm)");
-}
-
 // ---- the page
 
 static void write_recommendation(ob_page *p, const void *with)
 {
 	const ob_sync_comparison *c = with;
-	char text[2048];
-	ob_sync_recommend(c, ob_sync_main_point(c), text, sizeof text);
-	ob_page_paragraph(p, "lead", text);
+	ob_page_paragraph(p, "lead", ob_sync_recommend(c, ob_sync_main_point(c)).words);
 }
 
 static void write_hypotheses(ob_page *p, const void *with)
 {
 	const ob_sync_comparison *c = with;
 	for (int i = 0; i < OB_SYNC_HYPOTHESES; i++) {
-		char name[16], text[2048];
+		char name[16];
 		snprintf(name, sizeof name, "H%d", i + 1);
-		ob_sync_judge(c, i, text, sizeof text);
-		ob_page_term(p, name, text);
+		ob_page_term(p, name, ob_sync_judge(c, i).words);
 	}
 }
 
 static void write_setting(ob_page *p, const void *with)
 {
 	const ob_sync_comparison *c = with;
-	char text[1024];
-	double took = 0;
-	for (size_t i = 0; i < c->records.count; i++)
-		took += c->records.record[i].took_s;
+	char text[1024] = "";
 	ob_page_term(p, "Scene", c->scene);
-	ob_page_term(p, "Machine", c->records.machine);
-	ob_page_term(p, "Program", c->records.commit);
-	size_t n = (size_t)snprintf(text, sizeof text,
-				    "%zu of %g simulated seconds, %.0f s in all; seeds of each configuration:",
-				    c->records.count, c->duration, took);
-	for (uint32_t i = 0; i < c->points && n < sizeof text; i++)
-		n += (size_t)snprintf(text + n, sizeof text - n, "%s %" PRIu32 "%s%s%s", i ? "," : "",
-				      c->point[i].seeds, *c->point[i].define ? " (" : "", c->point[i].define,
-				      *c->point[i].define ? ")" : "");
+	const double took = ob_page_provenance(p, &c->records);
+	OB_SAY(text, "%zu of %g simulated seconds, %.0f s in all; seeds of each configuration:", c->records.count,
+	       c->duration, took);
+	for (uint32_t i = 0; i < c->points; i++)
+		OB_SAY(text, "%s %" PRIu32 "%s%s%s", i ? "," : "", c->point[i].seeds, *c->point[i].define ? " (" : "",
+		       c->point[i].define, *c->point[i].define ? ")" : "");
 	ob_page_term(p, "Runs", text);
 }
 
@@ -313,24 +275,17 @@ static void write_diagrams(ob_page *p, const ob_sync_comparison *c, const ob_syn
 static void write_point(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
 {
 	size_t from = 0;
-	char text[2048];
 	ob_page_markup(p, "<section>\n<h3>%" PRIu32 " objects%s", at->objects, *at->define ? ", " : "");
 	ob_page_text(p, at->define);
-	ob_page_print_quantity(text, sizeof text, at->size, "m");
-	ob_page_markup(p, "; size %s, ", text);
-	ob_page_print_quantity(text, sizeof text, at->speed, "m/s");
-	ob_page_markup(p, "speed %s; %" PRIu32 " seed%s</h3>\n", text, at->seeds, at->seeds == 1 ? "" : "s");
-	ob_table *t = table_of(c, at);
-	if (t)
-		ob_table_html(t, p);
-	ob_table_free(t);
-	if (at == ob_sync_main_point(c)) {
+	ob_page_markup(p, "; size %s, speed %s; %" PRIu32 " seed%s</h3>\n", ob_word_quantity(at->size, "m").text,
+		       ob_word_quantity(at->speed, "m/s").text, at->seeds, at->seeds == 1 ? "" : "s");
+	ob_table_html(table_of(c, at), p);
+	if (at == ob_sync_main_point(c))
 		write_diagrams(p, c, at);
-	} else {
-		ob_sync_recommend(c, at, text, sizeof text);
-		ob_page_paragraph(p, "note", text);
-	}
+	else
+		ob_page_paragraph(p, "note", ob_sync_recommend(c, at).words);
 	for (const ob_record *r; (r = next_failure(c, at, &from));) {
+		char text[320];
 		snprintf(text, sizeof text, "%s failed: %s", r->configuration, r->reason);
 		ob_page_paragraph(p, "note", text);
 	}
@@ -344,8 +299,12 @@ static void write_points(ob_page *p, const void *with)
 	write_point(p, c, ob_sync_main_point(c));
 	if (c->points > 1)
 		ob_page_markup(p, "<h3>Number of simulators</h3>\n");
-	ob_chart_html(chart_objects_cpu(c), p, caption);
-	ob_chart_html(chart_objects_error(c), p, caption);
+	ob_chart_html(chart_objects(c, OB_SYNC_CPU, "objects-cpu", "CPU over the number of simulators",
+				    "CPU per body and simulated second (ms)"),
+		      p, caption);
+	ob_chart_html(chart_objects(c, OB_SYNC_WORST, "objects-error",
+				    "Worst penetration over the number of simulators", "worst penetration (mm)"),
+		      p, caption);
 	for (uint32_t i = 0; i < c->points; i++)
 		if (&c->point[i] != ob_sync_main_point(c))
 			write_point(p, c, &c->point[i]);
@@ -390,8 +349,7 @@ static void write_threats(ob_page *p, const void *with)
 
 static void write_meanings(ob_page *p, const void *with)
 {
-	for (int m = 0; m <= OB_SYNC_LAG; m++)
-		ob_page_term(p, ob_sync_metrics[m].title, ob_sync_metrics[m].meaning);
+	ob_page_meanings(p, ob_sync_metrics, OB_SYNC_LAG + 1);
 }
 
 bool ob_sync_write_folder(const ob_sync_comparison *c, const char *folder, ob_error *e)

@@ -28,10 +28,24 @@ ob_statistics ob_records_summarise(const ob_records *r, const char *of, const ch
 	return ob_reference_summarise(n, x);
 }
 
+ob_estimate ob_estimate_median(const ob_statistics *s)
+{
+	const bool interval = !isnan(s->median_low), several = s->n > 1;
+	return (ob_estimate){ s->n, s->median,
+			      interval  ? s->median_low
+			      : several ? s->least
+					: NAN,
+			      interval  ? s->median_high
+			      : several ? s->most
+					: NAN,
+			      interval };
+}
+
 static ob_estimate estimate(const ob_statistics *s, bool logarithms)
 {
 	enum { LEAST = 3 };
-	ob_estimate e = { s->n, s->mean, s->n < LEAST ? NAN : s->mean_low, s->n < LEAST ? NAN : s->mean_high };
+	const bool interval = s->n >= LEAST;
+	ob_estimate e = { s->n, s->mean, interval ? s->mean_low : NAN, interval ? s->mean_high : NAN, interval };
 	if (logarithms)
 		e.value = exp(e.value), e.low = exp(e.low), e.high = exp(e.high);
 	return e;

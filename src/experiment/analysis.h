@@ -11,13 +11,17 @@ enum { OB_SAMPLES = 128 }; // samples used of one case and configuration
 // Median, mean, and their 95 % intervals, of a metric over the completed trials that measured it without failure;
 // OB_SAMPLES at most.
 ob_statistics ob_records_summarise(const ob_records *r, const char *of, const char *configuration, size_t metric);
-// Mean over samples with Student's interval of 95 %.
+
 typedef struct ob_estimate {
-	size_t n;
-	double value, low, high; // value NAN for n = 0; the others for n < 3
+	size_t n; // samples
+	double value, low, high; // NAN: unknown
+	bool interval; // low and high bound it with 95 %; else they are the least and the most
 } ob_estimate;
 
-// Geometric mean, by the logarithms, if all values are positive and it is asked for; else the arithmetic one. Samples as
+// Median; the least and the most where so few samples (2 to 5) give no interval.
+ob_estimate ob_estimate_median(const ob_statistics *s);
+
+// Means with Student's interval, from 3 samples on. Geometric mean, by the logarithms, if all values are positive and it is asked for; else the arithmetic one. Samples as
 // above.
 ob_estimate ob_records_estimate(const ob_records *r, const char *of, const char *configuration, size_t metric,
 				bool geometric);

@@ -50,6 +50,10 @@ typedef struct ob_metric {
 	double target; // upper bound, in the unit of files; NAN = none
 	const char *group; // heading above it in a table; NULL = same group as the metric before
 	const char *meaning; // one sentence for the reader of a report
+	// For trials that are runs of obsim: the kind of run that measures it, by the definition, and members of its report: the
+	// value, then what it is divided by. NULL: the definition finds it otherwise
+	int kind;
+	const char *from[3];
 } ob_metric;
 
 // Reason for which a trial counts as failed.
@@ -146,6 +150,9 @@ void ob_records_finish(ob_records *r);
 bool ob_records_read(ob_records *r, const ob_experiment *x, const char *path, ob_error *e);
 // Replaces the file atomically: readers see the old one or the new one.
 bool ob_records_write(const ob_records *r, const ob_experiment *x, const char *path, ob_error *e);
+
+// Reads the metrics of a kind from the report of a run.
+void ob_record_read(ob_record *r, const ob_experiment *x, int kind, const char *report);
 
 // ---- running
 

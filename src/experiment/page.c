@@ -110,72 +110,24 @@ void ob_page_term(ob_page *p, const char *name, const char *text)
 	ob_page_markup(p, "</dd>\n");
 }
 
-// True if v is easier to read as digits than with an exponent.
-static bool is_plain(double v)
+double ob_page_provenance(ob_page *p, const ob_records *r)
 {
-	return v == 0 || (fabs(v) >= 9.995e-4 && fabs(v) < 99950);
+	double took = 0;
+	ob_page_term(p, "Machine", r->machine);
+	ob_page_term(p, "Program", r->commit);
+	for (size_t i = 0; i < r->count; i++)
+		took += r->record[i].took_s;
+	return took;
 }
 
-// Prints three digits, as "0.412", "35.9", "12400".
-static void print_plain(char *to, size_t room, double v)
+void ob_page_meanings(ob_page *p, const ob_metric *m, size_t count)
 {
-	int before = v == 0 ? 1 : (int)floor(log10(fabs(v) * 1.0005)) + 1; // digits before the point
-	int behind = before >= 3 ? 0 : 3 - before;
-	snprintf(to, room, "%.*f", behind, v);
-	char *point = strchr(to, '.');
-	for (char *end = to + strlen(to) - 1; point && (*end == '0' || *end == '.'); end--) {
-		bool was_point = *end == '.';
-		*end = 0;
-		if (was_point)
-			break;
+	for (size_t i = 0; i < count; i++) {
+		if (m[i].group)
+			ob_page_markup(p, "%s<h3>%s</h3>\n", i ? "</dl>\n" : "", m[i].group);
+		if (m[i].group || i == 0)
+			ob_page_markup(p, "<dl>\n");
+		ob_page_term(p, m[i].title, m[i].meaning);
 	}
-}
-
-// Splits v into a mantissa and a power of ten, rounded to three digits.
-static int split(double v, double *mantissa)
-{
-	char text[40];
-	snprintf(text, sizeof text, "%.2e", v);
-	char *e = strchr(text, 'e');
-	int power = atoi(e + 1);
-	*e = 0;
-	*mantissa = atof(text);
-	return power;
-}
-
-void ob_page_print_unit(char *to, size_t room, const char *unit)
-{
-	size_t used = 0;
-	for (to[0] = 0; *unit && used + 4 < room; unit++) {
-		bool raised = *unit == '^' && (unit[1] == '2' || unit[1] == '3');
-		unit += raised;
-		used += (size_t)snprintf(to + used, room - used, "%.*s", raised ? 2 : 1,
-					 !raised        ? unit
-					 : *unit == '2' ? "\u00b2"
-							: "\u00b3");
-	}
-}
-
-// Prints "1e-6", not "1e-06".
-static void print_short(char *to, size_t room, double v)
-{
-	double mantissa;
-	if (isfinite(v)) {
-		int power = split(v, &mantissa);
-		snprintf(to, room, "%.3ge%d", mantissa, power);
-	} else {
-		snprintf(to, room, "%s", isnan(v) ? "\u2013" : "\u221e");
-	}
-}
-
-void ob_page_print_quantity(char *to, size_t room, double v, const char *unit)
-{
-	char text[40], printed[40] = "";
-	if (is_plain(v))
-		print_plain(text, sizeof text, v);
-	else
-		print_short(text, sizeof text, v);
-	if (strcmp(unit, "1"))
-		ob_page_print_unit(printed, sizeof printed, unit);
-	snprintf(to, room, "%s%s%s", text, *printed ? " " : "", printed);
+	ob_page_markup(p, "</dl>\n");
 }

@@ -1,4 +1,4 @@
-// HTML output of all reports: templates with slots, escaped texts, readable numbers, one style and one script, which draws
+// HTML output of all reports: templates with slots, escaped texts, one style and one script, which draws
 // the diagrams. A page needs no other file and no network. One thread at a time per page.
 #ifndef OB_EXPERIMENT_PAGE_H
 #define OB_EXPERIMENT_PAGE_H
@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#include <ob/error.h>
+#include "experiment/experiment.h"
 
 typedef struct ob_page {
 	FILE *out;
@@ -39,10 +39,9 @@ void ob_page_paragraph(ob_page *p, const char *class, const char *text);
 // Term of a list, and what it means; the name must not need escaping.
 void ob_page_term(ob_page *p, const char *name, const char *text);
 
-// Prints a number of three digits with its unit: "0.5 mm²" from "mm^2"; unit "1" = a bare number, a dash for NaN.
-void ob_page_print_quantity(char *to, size_t room, double v, const char *unit);
-
-// Prints the unit alone, with superscript digits.
-void ob_page_print_unit(char *to, size_t room, const char *unit);
+// Terms of a list: the machine and the program that the records are of. Returns the time that they took, s.
+double ob_page_provenance(ob_page *p, const ob_records *r);
+// Lists of the metrics' titles and meanings, with a heading above each group.
+void ob_page_meanings(ob_page *p, const ob_metric *m, size_t count);
 
 #endif

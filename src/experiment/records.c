@@ -8,6 +8,7 @@
 #include "base/csv.h"
 #include "experiment/experiment.h"
 #include "experiment/folder.h"
+#include "experiment/json.h"
 #include "experiment/result_line.h"
 
 bool ob_records_add(ob_records *r, const ob_record *one)
@@ -28,6 +29,18 @@ const ob_record *ob_records_find(const ob_records *r, const char *of, const char
 			return one;
 	}
 	return NULL;
+}
+
+void ob_record_read(ob_record *r, const ob_experiment *x, int kind, const char *report)
+{
+	for (size_t i = 0; i < x->metrics; i++) {
+		const ob_metric *m = &x->metric[i];
+		if (!m->from[0] || m->kind != kind)
+			continue;
+		r->metric[i] = ob_json_read_number(report, m->from[0]);
+		for (int k = 1; k < 3 && m->from[k]; k++)
+			r->metric[i] /= ob_json_read_number(report, m->from[k]);
+	}
 }
 
 void ob_records_drop(ob_records *r, const ob_trials *s)

@@ -7,6 +7,7 @@
 
 #include "base/allocate.h"
 #include "base/utf8.h"
+#include "experiment/words.h"
 
 typedef struct cell {
 	char *text, *small; // NULL = empty
@@ -24,19 +25,14 @@ ob_table *ob_table_new(const char *align)
 {
 	ob_table *t = calloc(1, sizeof *t);
 	char *copy = strdup(align);
-	if (!t || !copy) {
-		free(t);
-		free(copy);
-		return NULL;
-	}
+	if (!t || !copy)
+		abort();
 	*t = (ob_table){ .align = copy, .columns = strlen(align) };
 	return t;
 }
 
-void ob_table_free(ob_table *t)
+static void free_table(ob_table *t)
 {
-	if (!t)
-		return;
 	for (size_t i = 0; i < t->count; i++) {
 		free(t->cell[i].text);
 		free(t->cell[i].small);
@@ -61,6 +57,15 @@ void ob_table_add(ob_table *t, const char *format, ...)
 	va_list args;
 	va_start(args, format);
 	add_cell(t, format, args);
+	va_end(args);
+}
+
+void ob_table_row(ob_table *t, const char *first, ...)
+{
+	va_list args;
+	va_start(args, first);
+	for (const char *text = first; text; text = va_arg(args, const char *))
+		ob_table_add(t, "%s", text);
 	va_end(args);
 }
 
@@ -103,14 +108,10 @@ void ob_table_link(ob_table *t, const char *id)
 
 void ob_table_add_median(ob_table *t, const ob_metric *m, const ob_statistics *s)
 {
-	char text[48], low[48], high[48];
-	ob_page_print_quantity(text, sizeof text, s->median * m->scale, m->unit);
-	ob_table_add(t, "%s", text);
-	if (!isfinite(s->median_low) || !isfinite(s->median_high))
-		return;
-	ob_page_print_quantity(low, sizeof low, s->median_low * m->scale, "1");
-	ob_page_print_quantity(high, sizeof high, s->median_high * m->scale, "1");
-	ob_table_small(t, "%s to %s", low, high);
+	ob_table_add(t, "%s", ob_word_metric(s->median, m).text);
+	if (isfinite(s->median_low) && isfinite(s->median_high))
+		ob_table_small(t, "%s to %s", ob_word_number(s->median_low * m->scale).text,
+			       ob_word_number(s->median_high * m->scale).text);
 }
 
 // The cell as one text; malloc'd.
@@ -156,8 +157,10 @@ static size_t *measure(const ob_table *t, size_t least)
 	return width;
 }
 
-void ob_table_print(const ob_table *t, FILE *f, size_t limit)
+void ob_table_print(ob_table *t, FILE *f, size_t limit)
 {
+	if (!t)
+		return;
 	size_t *width = measure(t, 0);
 	for (size_t from = 1, to; from == 1 || from < t->columns; from = to) {
 		size_t used = width[0];
@@ -174,10 +177,13 @@ void ob_table_print(const ob_table *t, FILE *f, size_t limit)
 			break;
 	}
 	free(width);
+	free_table(t);
 }
 
-void ob_table_markdown(const ob_table *t, FILE *f)
+void ob_table_markdown(ob_table *t, FILE *f)
 {
+	if (!t)
+		return;
 	size_t *width = measure(t, 3);
 	for (size_t row = 0; row < t->count; row += t->columns) {
 		for (size_t i = 0; i < t->columns; i++) {
@@ -197,6 +203,7 @@ void ob_table_markdown(const ob_table *t, FILE *f)
 			fputs(" |\n", f);
 	}
 	free(width);
+	free_table(t);
 }
 
 static void write_cell(const ob_table *t, ob_page *p, size_t i)
@@ -221,8 +228,10 @@ static void write_cell(const ob_table *t, ob_page *p, size_t i)
 	ob_page_markup(p, head ? "</th>" : "</td>");
 }
 
-void ob_table_html(const ob_table *t, ob_page *p)
+void ob_table_html(ob_table *t, ob_page *p)
 {
+	if (!t)
+		return;
 	ob_page_markup(p, "<div class=\"scroll\"><table>\n<thead>");
 	for (size_t row = 0; row < t->count; row += t->columns) {
 		if (t->cell[row].heading) {
@@ -237,4 +246,5 @@ void ob_table_html(const ob_table *t, ob_page *p)
 		ob_page_markup(p, row ? "</tr>\n" : "</tr></thead>\n<tbody>\n");
 	}
 	ob_page_markup(p, "</tbody></table></div>\n");
+	free_table(t);
 }

@@ -11,11 +11,13 @@
 
 typedef struct ob_table ob_table;
 
-// align: a letter for each column, l or r. NULL: out of memory.
+// align: a letter for each column, l or r. Ends the program if memory runs out.
 ob_table *ob_table_new(const char *align);
-void ob_table_free(ob_table *t);
 // Adds the next cell; the first row is the head. A cell without memory stays empty.
 void ob_table_add(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Adds texts, up to a NULL.
+void ob_table_row(ob_table *t, const char *first, ...) __attribute__((sentinel));
 
 // Adds a row that is one heading, between complete rows.
 void ob_table_heading(ob_table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -28,10 +30,12 @@ void ob_table_link(ob_table *t, const char *id); // in HTML: link to #id; a stat
 // Adds a median in the metric's unit for people, with its interval, if there is one.
 void ob_table_add_median(ob_table *t, const ob_metric *m, const ob_statistics *s);
 
+// Each form writes the table, and frees it; NULL writes nothing.
+//
 // width: characters of a line; columns that do not fit follow in a further panel below, behind the first column again.
 // 0 = no limit
-void ob_table_print(const ob_table *t, FILE *f, size_t width);
-void ob_table_markdown(const ob_table *t, FILE *f);
-void ob_table_html(const ob_table *t, ob_page *p);
+void ob_table_print(ob_table *t, FILE *f, size_t width);
+void ob_table_markdown(ob_table *t, FILE *f);
+void ob_table_html(ob_table *t, ob_page *p);
 
 #endif

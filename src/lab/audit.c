@@ -1,8 +1,8 @@
 #include "lab/audit.h"
 
 #include <math.h>
-#include <stdlib.h>
 
+#include "experiment/words.h"
 #include "reference/statistics.h"
 
 static const double tolerance[OB_AUDIT_TOLERANCES] = { 1e-2, 1e-3, 1e-4, 1e-5 }; // m
@@ -98,10 +98,7 @@ ob_audit ob_lab_audit(const ob_lab_analysis *d, const ob_case *c)
 static ob_table *new_table(void)
 {
 	ob_table *t = ob_table_new("rlrrrrrrrrrrrrl");
-	if (!t)
-		abort();
-	ob_table_add(t, "Row");
-	ob_table_add(t, "Case");
+	ob_table_row(t, "Row", "Case", NULL);
 	for (int i = 0; i < OB_AUDIT_SETTINGS; i++)
 		ob_table_add(t, "%s", names[i]);
 	ob_table_add(t, "order");
@@ -111,7 +108,6 @@ static ob_table *new_table(void)
 
 static void add_case(ob_table *t, const ob_case *c, const ob_audit *a)
 {
-	char text[48];
 	ob_table_add(t, "%d", c->row);
 	ob_table_add(t, "%s", c->title);
 	ob_table_link(t, c->name);
@@ -121,8 +117,7 @@ static void add_case(ob_table *t, const ob_case *c, const ob_audit *a)
 			ob_table_class(t, "missed");
 			continue;
 		}
-		ob_page_print_quantity(text, sizeof text, a->ratio[i], "1");
-		ob_table_add(t, "%s", text);
+		ob_table_add(t, "%s", ob_word_number(a->ratio[i]).text);
 		if (!isnan(a->ratio[i]))
 			ob_table_class(t, a->ratio[i] <= 1 ? "met" : "missed");
 	}
@@ -186,7 +181,6 @@ void ob_lab_print_audit(FILE *f, const ob_lab_analysis *d, bool markdown)
 		ob_table_markdown(t, f);
 	else
 		ob_table_print(t, f, 0);
-	ob_table_free(t);
 	print_rises(f, d, true, "A finer setting has a larger error, above its target,");
 	print_rises(f, d, false, "A finer setting has more than twice the error, below its target,");
 }

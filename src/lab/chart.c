@@ -1,22 +1,12 @@
 #include "lab/chart.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "experiment/words.h"
 #include "reference/statistics.h"
-
-static void append(char *to, size_t room, const char *format, ...) __attribute__((format(printf, 3, 4)));
-static void append(char *to, size_t room, const char *format, ...)
-{
-	size_t used = strlen(to);
-	va_list args;
-	va_start(args, format);
-	vsnprintf(to + used, room - used, format, args);
-	va_end(args);
-}
 
 // True if the engine has results in a case, or, with none named, in the chart so far.
 static bool takes_part(const ob_chart *c, const ob_lab_analysis *d, const ob_case *of, const ob_engine_kind *k)
@@ -32,9 +22,7 @@ static bool takes_part(const ob_chart *c, const ob_lab_analysis *d, const ob_cas
 
 static void add_configuration(ob_chart *c, const ob_lab_analysis *d, const ob_case *of)
 {
-	char *to = c->subtitle;
-	size_t room = sizeof c->subtitle;
-	append(to, room, "%sframes of 1/60 s", *to ? " \u00b7 " : "");
+	OB_SAY(c->subtitle, "%sframes of 1/60 s", *c->subtitle ? " \u00b7 " : "");
 	bool obsim = false, free = false; // its variants count alike here
 	for (size_t i = 0; i < d->engines; i++) {
 		const ob_engine_kind *k = d->engine[i];
@@ -42,12 +30,12 @@ static void add_configuration(ob_chart *c, const ob_lab_analysis *d, const ob_ca
 		if (!takes_part(c, d, of, k) || !k->usual.iterations || (obsim && ob_lab_analysis_is_obsim(k)))
 			continue;
 		if (ob_lab_analysis_is_obsim(k))
-			append(to, room, " \u00b7 obsim: %u iterations", k->usual.iterations);
+			OB_SAY(c->subtitle, " \u00b7 obsim: %u iterations", k->usual.iterations);
 		else
-			append(to, room, " \u00b7 %s: %u iterations", k->title, k->usual.iterations);
+			OB_SAY(c->subtitle, " \u00b7 %s: %u iterations", k->title, k->usual.iterations);
 		obsim |= ob_lab_analysis_is_obsim(k);
 	}
-	append(to, room, " \u00b7 one worker, a thread%s \u00b7 sleeping off \u00b7 commit %s",
+	OB_SAY(c->subtitle, " \u00b7 one worker, a thread%s \u00b7 sleeping off \u00b7 commit %s",
 	       free ? "; free: two" : "", d->results->commit);
 }
 
@@ -57,7 +45,7 @@ void ob_lab_chart_setting(const ob_result *r, char *to, size_t room)
 	if (s->tolerance > 0 && s->substeps)
 		snprintf(to, room, "usual");
 	else if (s->tolerance > 0)
-		ob_page_print_quantity(to, room, s->tolerance * 1e3, "mm");
+		snprintf(to, room, "%s", ob_word_quantity(s->tolerance * 1e3, "mm").text);
 	else if (ob_lab_analysis_is_obsim(r->engine) && !r->engine->free)
 		snprintf(to, room, "%u", s->substeps);
 	else
@@ -110,42 +98,35 @@ static bool is_failed(const ob_result *r)
 
 static void add_result(ob_chart *chart, const ob_result *r, double x)
 {
-	char label[32], hint[192], error[48];
+	char label[32], hint[192];
 	const ob_figure_def *def = &r->of->figure[0];
 	ob_lab_chart_setting(r, label, sizeof label);
-	size_t used = strlen(label);
 	if (r->settings.lag != r->engine->usual.lag)
-		snprintf(label + used, sizeof label - used, ", lag %u", r->settings.lag);
+		OB_SAY(label, ", lag %u", r->settings.lag);
 	else if (family_of(r) == FAMILY_ITERATIONS && !(r->settings.tolerance > 0))
-		snprintf(label + used, sizeof label - used, " \u00d7 %u", r->settings.iterations);
-	ob_page_print_quantity(error, sizeof error, r->outcome.figure[0], def->unit);
+		OB_SAY(label, " \u00d7 %u", r->settings.iterations);
 	const char *failed = r->outcome.failed[0] ? r->outcome.failed : "not a number";
 	snprintf(hint, sizeof hint, "%s, %s%s, %u iterations: %.3g \u00b5s, %s", r->engine->title, label,
 		 ob_lab_analysis_is_obsim(r->engine) && !r->engine->free && !(r->settings.tolerance > 0) ? " substeps"
 													 : "",
-		 r->settings.iterations, ob_result_cost(r) * 1e6, is_failed(r) ? failed : error);
+		 r->settings.iterations, ob_result_cost(r) * 1e6,
+		 is_failed(r) ? failed : ob_word_quantity(r->outcome.figure[0], def->unit).text);
 	ob_chart_point *p = ob_chart_add(chart, x, is_failed(r) ? NAN : r->outcome.figure[0], label, hint);
 	p->failed = is_failed(r);
 }
 
 static void name_axis(const ob_figure_def *def, char *to, size_t room)
 {
-	char unit[40];
-	ob_page_print_unit(unit, sizeof unit, def->unit);
-	if (!strcmp(unit, "1"))
-		snprintf(to, room, "%s", def->name);
-	else
-		snprintf(to, room, "%s (%s)", def->name, unit);
+	const bool bare = !strcmp(def->unit, "1");
+	snprintf(to, room, bare ? "%s" : "%s (%s)", def->name, ob_word_unit(def->unit).text);
 }
 
 static void mark_target(ob_chart *chart, const ob_case *c)
 {
-	char target[48];
 	if (!ob_lab_analysis_has_target(c, 0))
 		return;
-	ob_page_print_quantity(target, sizeof target, c->figure[0].target, c->figure[0].unit);
 	chart->mark[0] = (ob_chart_mark){ .at = c->figure[0].target, .tinted = true };
-	snprintf(chart->mark[0].label, sizeof chart->mark[0].label, "target %s", target);
+	OB_SAY(chart->mark[0].label, "target %s", ob_word_quantity(c->figure[0].target, c->figure[0].unit).text);
 	chart->marks = 1;
 }
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "experiment/page.h"
+#include "experiment/words.h"
 #include "lab/scene.h"
 
 // Adds the chosen cases, and preserves the order.
@@ -85,9 +85,7 @@ bool ob_list_engines(ob_engine_list *l, const char *names, char word[64])
 
 static void print_target(FILE *f, const ob_figure_def *def)
 {
-	char target[48];
-	ob_page_print_quantity(target, sizeof target, def->target, def->unit);
-	fprintf(f, "%s \u2264 %s\n", def->name, target);
+	fprintf(f, "%s \u2264 %s\n", def->name, ob_word_quantity(def->target, def->unit).text);
 }
 
 void ob_list_print(FILE *f, const ob_case_list *l)

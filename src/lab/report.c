@@ -96,16 +96,9 @@ static void write_verdict(ob_page *p, const void *with)
 			       l.compared - l.ahead, l.within);
 }
 
-static void write_table(ob_page *p, ob_table *t)
-{
-	if (t)
-		ob_table_html(t, p);
-	ob_table_free(t);
-}
-
 static void write_equal(ob_page *p, const void *with)
 {
-	write_table(p, ob_lab_table_equal(with, true, false));
+	ob_table_html(ob_lab_table_equal(with, true, false), p);
 	ob_page_markup(p, "<p class=\"note\">\u00b5s of CPU per body and simulated second; small: over obsim\u2019s. "
 			  "* No engine gets to the target: the error is obsim\u2019s least. "
 			  "\u201cnever\u201d: no setting that was tried gets there without failing. "
@@ -114,12 +107,12 @@ static void write_equal(ob_page *p, const void *with)
 
 static void write_rows(ob_page *p, const void *with)
 {
-	write_table(p, ob_lab_table_rows(with));
+	ob_table_html(ob_lab_table_rows(with), p);
 }
 
 static void write_conserved(ob_page *p, const void *with)
 {
-	write_table(p, ob_lab_table_conserved(with));
+	ob_table_html(ob_lab_table_conserved(with), p);
 }
 
 static void write_audit(ob_page *p, const void *with)
@@ -132,7 +125,7 @@ static void write_audit(ob_page *p, const void *with)
 		   "of each case, as its tolerance shrinks and as its substeps grow, and the order at which they "
 		   "fall with the length of a substep. RISES: an error that is above its target is larger at a "
 		   "finer setting; <code>audit.md</code> says which.</p>\n");
-	write_table(p, t);
+	ob_table_html(t, p);
 }
 
 static void write_promises(ob_page *p, const void *with)
@@ -258,13 +251,13 @@ static void write_reference(ob_page *p, const void *with)
 static void write_engines(ob_page *p, const void *with)
 {
 	const report_case *c = with;
-	write_table(p, ob_lab_table_engines(c->analysis, c->of));
+	ob_table_html(ob_lab_table_engines(c->analysis, c->of), p);
 }
 
 static void write_runs(ob_page *p, const void *with)
 {
 	const report_case *c = with;
-	write_table(p, ob_lab_table_runs(c->analysis, c->of));
+	ob_table_html(ob_lab_table_runs(c->analysis, c->of), p);
 }
 
 static void write_id(ob_page *p, const void *with)

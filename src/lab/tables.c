@@ -1,29 +1,11 @@
 #include "lab/tables.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/csv.h"
+#include "experiment/words.h"
 #include "lab/chart.h"
-
-typedef struct quantity {
-	char text[48];
-} quantity;
-
-static const char *print(quantity *q, double v, const char *unit)
-{
-	ob_page_print_quantity(q->text, sizeof q->text, v, unit);
-	return q->text;
-}
-
-static ob_table *new_table(const char *align)
-{
-	ob_table *t = ob_table_new(align);
-	if (!t)
-		abort();
-	return t;
-}
 
 // ---- all promised figures
 
@@ -41,7 +23,6 @@ static void add_promise(ob_table *t, const ob_lab_analysis *d, const ob_result *
 	const ob_figure_def *def = &c->figure[figure];
 	const ob_result *other = ob_lab_analysis_best_other(d, c, figure);
 	bool met = ob_lab_analysis_meets(r, figure);
-	quantity q;
 	if (first && c->row > 0)
 		ob_table_add(t, "%d", c->row);
 	else
@@ -53,15 +34,15 @@ static void add_promise(ob_table *t, const ob_lab_analysis *d, const ob_result *
 	if (*r->outcome.failed && !isfinite(r->outcome.figure[figure]))
 		ob_table_add(t, "failed");
 	else
-		ob_table_add(t, "%s", print(&q, r->outcome.figure[figure], def->unit));
-	ob_table_add(t, "\u2264 %s", print(&q, def->target, def->unit));
+		ob_table_add(t, "%s", ob_word_quantity(r->outcome.figure[figure], def->unit).text);
+	ob_table_add(t, "\u2264 %s", ob_word_quantity(def->target, def->unit).text);
 	if (met)
 		ob_table_add(t, "met");
 	else
 		ob_table_add(t, "MISSED%s%s", *r->outcome.failed ? ": " : "", r->outcome.failed);
 	ob_table_class(t, met ? "met" : "missed");
 	if (other) {
-		ob_table_add(t, "%s", print(&q, other->outcome.figure[figure], def->unit));
+		ob_table_add(t, "%s", ob_word_quantity(other->outcome.figure[figure], def->unit).text);
 		ob_table_small(t, "%s", other->engine->title);
 	} else {
 		ob_table_add(t, "%s", others_ran(d, c) ? "all failed" : "\u2013");
@@ -70,10 +51,8 @@ static void add_promise(ob_table *t, const ob_lab_analysis *d, const ob_result *
 
 ob_table *ob_lab_table_rows(const ob_lab_analysis *d)
 {
-	static const char *const heads[] = { "Row", "Case", "Figure", "obsim", "Target", "", "Best other engine" };
-	ob_table *t = new_table("rllrlll");
-	for (size_t i = 0; i < sizeof heads / sizeof *heads; i++)
-		ob_table_add(t, "%s", heads[i]);
+	ob_table *t = ob_table_new("rllrlll");
+	ob_table_row(t, "Row", "Case", "Figure", "obsim", "Target", "", "Best other engine", NULL);
 	for (const ob_case *const *c = ob_cases; *c; c++) {
 		const ob_result *r = ob_lab_analysis_promised(d, *c);
 		bool first = true;
@@ -104,7 +83,6 @@ static void print_table(FILE *f, ob_table *t, bool markdown)
 		ob_table_markdown(t, f);
 	else
 		ob_table_print(t, f, 0);
-	ob_table_free(t);
 }
 
 void ob_lab_print_rows(FILE *f, const ob_lab_analysis *d, bool markdown)
@@ -124,13 +102,12 @@ static bool conserves_all(const ob_result *r)
 
 ob_table *ob_lab_table_conserved(const ob_lab_analysis *d)
 {
-	ob_table *t = new_table("rlrrrl");
-	quantity q;
+	ob_table *t = ob_table_new("rlrrrl");
 	ob_table_add(t, "Row");
 	ob_table_add(t, "Case");
 	for (int i = 0; i < OB_CONSERVED; i++) {
 		ob_table_add(t, "%s", ob_conserved_kinds[i].title);
-		ob_table_small(t, "\u2264 %s", print(&q, ob_conserved_kinds[i].bound, "1"));
+		ob_table_small(t, "\u2264 %s", ob_word_quantity(ob_conserved_kinds[i].bound, "1").text);
 	}
 	ob_table_add(t, "%s", "");
 	for (const ob_case *const *c = ob_cases; *c; c++) {
@@ -141,7 +118,7 @@ ob_table *ob_lab_table_conserved(const ob_lab_analysis *d)
 		ob_table_add(t, "%s", (*c)->title);
 		ob_table_link(t, (*c)->name);
 		for (ob_conserved i = 0; i < OB_CONSERVED; i++) {
-			ob_table_add(t, "%s", print(&q, r->outcome.conserved[i], "1"));
+			ob_table_add(t, "%s", ob_word_quantity(r->outcome.conserved[i], "1").text);
 			if (!isnan(r->outcome.conserved[i]))
 				ob_table_class(t, ob_lab_analysis_conserves(r, i) ? "met" : "missed");
 		}
@@ -204,23 +181,21 @@ static bool is_ranked(const ob_lab_analysis *d, const ob_engine_kind *k)
 // Adds an engine that never reaches the error; in a page: its least error, and the cost of that.
 static void add_never(ob_table *t, const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k, bool in_page)
 {
-	quantity error, cost;
 	const ob_result *finest = ob_lab_analysis_finest(d, c, k);
 	ob_table_add(t, "never");
 	ob_table_class(t, "never");
 	if (!in_page)
 		return;
 	if (finest)
-		ob_table_small(t, "at best %s, %s", print(&error, finest->outcome.figure[0], c->figure[0].unit),
-			       print(&cost, ob_result_cost(finest) * 1e6, "\u00b5s"));
+		ob_table_small(t, "at best %s, %s", ob_word_quantity(finest->outcome.figure[0], c->figure[0].unit).text,
+			       ob_word_quantity(ob_result_cost(finest) * 1e6, "\u00b5s").text);
 	else
 		ob_table_small(t, "no run without a failure");
 }
 
 static void add_cost(ob_table *t, const ob_lab_analysis *d, const ob_lab_analysis_equal *q, size_t engine, double best)
 {
-	quantity text;
-	ob_table_add(t, "%s", print(&text, q->cost[engine] * 1e6, "1"));
+	ob_table_add(t, "%s", ob_word_quantity(q->cost[engine] * 1e6, "1").text);
 	if (d->engine[engine] != d->own && !isnan(q->own))
 		ob_table_small(t, "%.2g\u00d7", q->cost[engine] / q->own);
 	if (is_ranked(d, d->engine[engine]) && q->cost[engine] <= best)
@@ -231,12 +206,11 @@ ob_table *ob_lab_table_equal(const ob_lab_analysis *d, bool in_page, bool short_
 {
 	size_t place[OB_LAB_ANALYSIS_ENGINES], engines = gather(d, place);
 	char align[OB_LAB_ANALYSIS_ENGINES + 3] = "lr";
-	quantity text;
 	if (!engines)
 		return NULL;
 	memset(align + 2, 'r', engines);
 	align[2 + engines] = 0;
-	ob_table *t = new_table(align);
+	ob_table *t = ob_table_new(align);
 	ob_table_add(t, "Case");
 	ob_table_add(t, "at an error of");
 	for (size_t i = 0; i < engines; i++)
@@ -251,8 +225,9 @@ ob_table *ob_lab_table_equal(const ob_lab_analysis *d, bool in_page, bool short_
 				best = q.cost[i];
 		ob_table_add(t, "%s", (*c)->title);
 		ob_table_link(t, (*c)->name);
-		print(&text, q.error, (*c)->figure[0].unit);
-		ob_table_add(t, "%s%s", isnan(q.error) ? "no engine's" : text.text, q.is_target ? "" : " *");
+		ob_table_add(t, "%s%s",
+			     isnan(q.error) ? "no engine's" : ob_word_quantity(q.error, (*c)->figure[0].unit).text,
+			     q.is_target ? "" : " *");
 		for (size_t i = 0; i < engines; i++)
 			if (isnan(q.cost[place[i]]))
 				add_never(t, d, *c, d->engine[place[i]], in_page);
@@ -334,14 +309,13 @@ static ob_table *begin_case(const ob_case *c, const char *first, const char *sec
 {
 	char align[OB_FIGURES + 4] = "lr";
 	memset(align + 2, 'r', c->figures + 1);
-	ob_table *t = new_table(align);
-	quantity q;
+	ob_table *t = ob_table_new(align);
 	ob_table_add(t, "%s", first);
 	ob_table_add(t, "%s", second);
 	for (uint32_t i = 0; i < c->figures; i++) {
 		ob_table_add(t, "%s", c->figure[i].name);
 		if (ob_lab_analysis_has_target(c, i))
-			ob_table_small(t, "target %s", print(&q, c->figure[i].target, c->figure[i].unit));
+			ob_table_small(t, "target %s", ob_word_quantity(c->figure[i].target, c->figure[i].unit).text);
 	}
 	ob_table_add(t, "CPU");
 	ob_table_small(t, "\u00b5s per body and s");
@@ -359,13 +333,12 @@ static void add_name(ob_table *t, const ob_result *r)
 
 static void add_figures(ob_table *t, const ob_result *r)
 {
-	quantity q;
 	for (uint32_t i = 0; i < r->of->figures; i++) {
-		ob_table_add(t, "%s", print(&q, r->outcome.figure[i], r->of->figure[i].unit));
+		ob_table_add(t, "%s", ob_word_quantity(r->outcome.figure[i], r->of->figure[i].unit).text);
 		if (ob_lab_analysis_has_target(r->of, i) && !r->outcome.failed[0])
 			ob_table_class(t, ob_lab_analysis_meets(r, i) ? "met" : "missed");
 	}
-	ob_table_add(t, "%s", print(&q, ob_result_cost(r) * 1e6, "1"));
+	ob_table_add(t, "%s", ob_word_quantity(ob_result_cost(r) * 1e6, "1").text);
 }
 
 ob_table *ob_lab_table_engines(const ob_lab_analysis *d, const ob_case *c)

@@ -37,12 +37,12 @@ const char *ob_paper_verdict_text(ob_paper_verdict v)
 }
 
 // True if the whole interval of ratios lies on this side; false if it is unknown.
-static bool below(const ob_paper_ratio *r, double limit)
+static bool below(const ob_estimate *r, double limit)
 {
 	return r->high < limit;
 }
 
-static bool above(const ob_paper_ratio *r, double limit)
+static bool above(const ob_estimate *r, double limit)
 {
 	return r->low > limit;
 }
@@ -55,7 +55,7 @@ static double median(const ob_paper_results *r, ob_paper_scenario s, ob_paper_me
 
 // Writes "1.2 ms instead of 3.4 ms, 0.35 times (.. to ..)".
 static void say_pair(ob_paper_claim *c, const ob_paper_results *r, ob_paper_scenario a, ob_paper_scenario b,
-		     ob_paper_metric m, const ob_paper_ratio *ratio)
+		     ob_paper_metric m, const ob_estimate *ratio)
 {
 	OB_SAY(c->because, "%s instead of %s, %s", ob_word_value(median(r, a, m), m).text,
 	       ob_word_value(median(r, b, m), m).text, ob_word_ratio(ratio).text);
@@ -63,7 +63,7 @@ static void say_pair(ob_paper_claim *c, const ob_paper_results *r, ob_paper_scen
 
 static void say_itself(const evidence *c, ob_paper_scenario a, ob_paper_scenario b, ob_paper_metric m)
 {
-	ob_paper_ratio ratio = ob_paper_compare(c->paper, a, b, m);
+	ob_estimate ratio = ob_paper_compare(c->paper, a, b, m);
 	OB_SAY(c->claim->itself, "%s in its tables.", ob_word_ratio(&ratio).text);
 }
 
@@ -73,14 +73,14 @@ static void judge_runtime(const evidence *c)
 	int lower = 0, higher = 0;
 	OB_SAY(claim->because, "With OBS ");
 	for (int i = 0; i < RUNTIMES; i++) {
-		ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, runtimes[i].metric);
+		ob_estimate ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, runtimes[i].metric);
 		if (below(&ratio, 1))
 			OB_SAY(claim->condition, "%s%s", lower++ ? " or " : "runtime means ", runtimes[i].name);
 		higher += above(&ratio, 1);
 		OB_SAY(claim->because, "%s%s takes ", i ? "; " : "", runtimes[i].name);
 		say_pair(claim, c->here, OB_PAPER_OBS, OB_PAPER_COMMON, runtimes[i].metric, &ratio);
 	}
-	ob_paper_ratio pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_TOTAL);
+	ob_estimate pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_TOTAL);
 	OB_SAY(claim->because,
 	       ". One thread per core that runs all the simulators takes %s the CPU time of the common environment.",
 	       ob_word_ratio(&pool).text);
@@ -105,8 +105,8 @@ static uint32_t count_faster(const ob_paper_results *r)
 static void judge_frames(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
-	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_FPS);
-	ob_paper_ratio pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_FPS);
+	ob_estimate ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_FPS);
+	ob_estimate pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_FPS);
 	OB_SAY(claim->itself, "Higher in %u of %u experiments, equal in the rest: it looks like a cap at 240.",
 	       count_faster(c->paper), c->paper->experiments);
 	claim->verdict = OB_PAPER_OPEN;
@@ -130,9 +130,9 @@ static void judge_frames(const evidence *c)
 static void judge_cpu(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
-	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU);
-	ob_paper_ratio pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_CPU);
-	ob_paper_ratio one = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_ONE);
+	ob_estimate ratio = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU);
+	ob_estimate pool = ob_paper_compare(c->here, OB_PAPER_POOL, OB_PAPER_COMMON, OB_PAPER_CPU);
+	ob_estimate one = ob_paper_compare(c->here, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_ONE);
 	bool with_pool = below(&pool, half), with_one = below(&one, half);
 	if (with_pool)
 		OB_SAY(claim->condition, "one thread per core runs all the simulators, not a process for each");
@@ -164,9 +164,9 @@ static void say_all_pairs(const evidence *c)
 static void judge_load(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
-	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_TOTAL);
+	ob_estimate ratio = ob_paper_compare(c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_TOTAL);
 	double load = ob_paper_setups[OB_PAPER_COMMON_LOAD].load;
-	double needed = load * (tenfold - 1) / (ratio.mean - 1);
+	double needed = load * (tenfold - 1) / (ratio.value - 1);
 	double tests = median(c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_TESTS);
 	OB_SAY(claim->because, "The runtime of the common environment became ");
 	say_pair(claim, c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_TOTAL, &ratio);
@@ -195,8 +195,8 @@ static void judge_load(const evidence *c)
 static void judge_kept(const evidence *c)
 {
 	ob_paper_claim *claim = c->claim;
-	ob_paper_ratio better = ob_paper_compare(c->here, OB_PAPER_COMMON_OBB, OB_PAPER_COMMON, OB_PAPER_TOTAL);
-	ob_paper_ratio load = ob_paper_compare(c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_TOTAL);
+	ob_estimate better = ob_paper_compare(c->here, OB_PAPER_COMMON_OBB, OB_PAPER_COMMON, OB_PAPER_TOTAL);
+	ob_estimate load = ob_paper_compare(c->here, OB_PAPER_COMMON_LOAD, OB_PAPER_COMMON, OB_PAPER_TOTAL);
 	claim->verdict = above(&better, doubled)   ? OB_PAPER_HOLDS
 			 : below(&better, doubled) ? OB_PAPER_FAILS
 						   : OB_PAPER_OPEN;
@@ -219,7 +219,7 @@ static void judge_obb(const evidence *c)
 	ob_paper_claim *claim = c->claim;
 	ob_statistics obs = ob_paper_summarise(c->here, OB_PAPER_OBS_OBB, OB_PAPER_BUSIEST),
 		      common = ob_paper_summarise(c->here, OB_PAPER_COMMON_OBB, OB_PAPER_BUSIEST);
-	ob_paper_ratio ratio = ob_paper_compare(c->here, OB_PAPER_OBS_OBB, OB_PAPER_COMMON_OBB, OB_PAPER_STEP);
+	ob_estimate ratio = ob_paper_compare(c->here, OB_PAPER_OBS_OBB, OB_PAPER_COMMON_OBB, OB_PAPER_STEP);
 	OB_SAY(claim->itself, "It has no run with OBB: it is a proposal.");
 	claim->verdict = OB_PAPER_OPEN;
 	if (isnan(obs.mean) || isnan(common.mean)) {

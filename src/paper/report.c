@@ -29,24 +29,19 @@ typedef struct table_plan {
 	{ \
 		head, false, metric \
 	}
+#define THREE_COLUMNS \
+	PAPER("runtime, paper", OB_PAPER_STEP), HERE("runtime", OB_PAPER_STEP), PAPER("frames, paper", OB_PAPER_FPS), \
+		HERE("frames", OB_PAPER_FPS), PAPER("CPU, paper", OB_PAPER_CPU), HERE("CPU", OB_PAPER_CPU)
 #define RUNTIME_COLUMNS \
 	HERE("step", OB_PAPER_STEP), HERE("all simulators", OB_PAPER_TOTAL), HERE("one simulator", OB_PAPER_ONE)
 
 static const table_plan tables[OB_PAPER_TABLES] = {
-	{ "table-1",
-	  "Table 1. The common environment (scenario 1)",
-	  OB_PAPER_COMMON,
-	  6,
-	  { PAPER("runtime, paper", OB_PAPER_STEP), HERE("runtime", OB_PAPER_STEP),
-	    PAPER("frames, paper", OB_PAPER_FPS), HERE("frames", OB_PAPER_FPS), PAPER("CPU, paper", OB_PAPER_CPU),
-	    HERE("CPU", OB_PAPER_CPU) } },
+	{ "table-1", "Table 1. The common environment (scenario 1)", OB_PAPER_COMMON, 6, { THREE_COLUMNS } },
 	{ "table-2",
 	  "Table 2. The common environment with the added load",
 	  OB_PAPER_COMMON_LOAD,
 	  6,
-	  { PAPER("runtime, paper", OB_PAPER_STEP), HERE("runtime", OB_PAPER_STEP),
-	    PAPER("frames, paper", OB_PAPER_FPS), HERE("frames", OB_PAPER_FPS), PAPER("CPU, paper", OB_PAPER_CPU),
-	    HERE("CPU", OB_PAPER_CPU) } },
+	  { THREE_COLUMNS } },
 	{ "table-3",
 	  "Table 3. Runtime of OBS (scenario 2)",
 	  OB_PAPER_OBS,
@@ -103,8 +98,6 @@ ob_table *ob_paper_table_make(const ob_paper_report_model *m, int table)
 	char align[1 + COLUMNS + 1] = "lrrrrrr";
 	align[1 + plan->columns] = 0;
 	ob_table *t = ob_table_new(align);
-	if (!t)
-		return NULL;
 	ob_table_add(t, "experiment");
 	for (size_t i = 0; i < plan->columns; i++) {
 		ob_table_add(t, "%s", plan->column[i].head);
@@ -194,8 +187,6 @@ static void write_medians(ob_page *p, const void *with)
 						 OB_PAPER_TESTS, OB_PAPER_MEMORY };
 	const ob_paper_report_model *m = with;
 	ob_table *t = ob_table_new("lrrrrrrrr");
-	if (!t)
-		return;
 	ob_table_add(t, "%s", "");
 	for (int s = 0; s < OB_PAPER_SCENARIOS; s++)
 		ob_table_add(t, "%s", ob_paper_setups[s].title);
@@ -207,23 +198,20 @@ static void write_medians(ob_page *p, const void *with)
 		}
 	}
 	ob_table_html(t, p);
-	ob_table_free(t);
 	ob_page_markup(p, "<dl>\n");
 	for (int s = 0; s < OB_PAPER_SCENARIOS; s++)
-		ob_page_markup(p, "<dt>%s</dt><dd>%s</dd>\n", ob_paper_setups[s].title, ob_paper_setups[s].what);
+		ob_page_term(p, ob_paper_setups[s].title, ob_paper_setups[s].what);
 	ob_page_markup(p, "</dl>\n");
 }
 
 static void write_tables_of(ob_page *p, const ob_paper_report_model *m, bool printed)
 {
 	for (int i = 0; i < OB_PAPER_TABLES; i++) {
-		ob_table *t = tables[i].column[0].paper == printed ? ob_paper_table_make(m, i) : NULL;
-		if (!t)
+		if (tables[i].column[0].paper != printed)
 			continue;
 		ob_page_markup(p, "<section id=\"%s\">\n<h3>%s</h3>\n", tables[i].id, tables[i].title);
-		ob_table_html(t, p);
+		ob_table_html(ob_paper_table_make(m, i), p);
 		ob_page_markup(p, "</section>\n");
-		ob_table_free(t);
 	}
 }
 
@@ -232,33 +220,32 @@ static void write_tables(ob_page *p, const void *with)
 	write_tables_of(p, with, true);
 }
 
-// Writes "With the load, OBS takes .. the CPU time that it takes without".
-static void write_pair(ob_page *p, const ob_paper_report_model *m, const char *what, ob_paper_scenario a,
-		       ob_paper_scenario b, ob_paper_metric metric)
-{
-	ob_paper_ratio r = ob_paper_compare(m->here, a, b, metric);
-	ob_page_markup(p, "<li>%s: ", what);
-	ob_page_text(p, ob_word_ratio(&r).text);
-	ob_page_markup(p, ".</li>\n");
-}
-
 static void write_never(ob_page *p, const void *with)
 {
+	static const struct {
+		const char *what;
+		ob_paper_scenario a, b;
+		ob_paper_metric metric;
+	} pairs[] = {
+		{ "CPU time of OBS, against the same in lockstep", OB_PAPER_OBS, OB_PAPER_LOCKSTEP, OB_PAPER_TOTAL },
+		{ "CPU time of OBS with the load, against OBS without", OB_PAPER_OBS_LOAD, OB_PAPER_OBS,
+		  OB_PAPER_TOTAL },
+		{ "CPU time of OBS with the load, against the common environment with it", OB_PAPER_OBS_LOAD,
+		  OB_PAPER_COMMON_LOAD, OB_PAPER_TOTAL },
+		{ "CPU time of OBS with OBB, against OBS with AABB", OB_PAPER_OBS_OBB, OB_PAPER_OBS, OB_PAPER_TOTAL },
+		{ "CPU time of OBS with OBB, against the common environment with OBB", OB_PAPER_OBS_OBB,
+		  OB_PAPER_COMMON_OBB, OB_PAPER_TOTAL },
+		{ "the step of OBS with OBB, against that of the common environment with OBB", OB_PAPER_OBS_OBB,
+		  OB_PAPER_COMMON_OBB, OB_PAPER_STEP },
+	};
+	const ob_paper_report_model *m = with;
 	ob_page_markup(p, "<ul>\n");
-	write_pair(p, with, "CPU time of OBS, against the same in lockstep", OB_PAPER_OBS, OB_PAPER_LOCKSTEP,
-		   OB_PAPER_TOTAL);
-	write_pair(p, with, "CPU time of OBS with the load, against OBS without", OB_PAPER_OBS_LOAD, OB_PAPER_OBS,
-		   OB_PAPER_TOTAL);
-	write_pair(p, with, "CPU time of OBS with the load, against the common environment with it", OB_PAPER_OBS_LOAD,
-		   OB_PAPER_COMMON_LOAD, OB_PAPER_TOTAL);
-	write_pair(p, with, "CPU time of OBS with OBB, against OBS with AABB", OB_PAPER_OBS_OBB, OB_PAPER_OBS,
-		   OB_PAPER_TOTAL);
-	write_pair(p, with, "CPU time of OBS with OBB, against the common environment with OBB", OB_PAPER_OBS_OBB,
-		   OB_PAPER_COMMON_OBB, OB_PAPER_TOTAL);
-	write_pair(p, with, "the step of OBS with OBB, against that of the common environment with OBB",
-		   OB_PAPER_OBS_OBB, OB_PAPER_COMMON_OBB, OB_PAPER_STEP);
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+		ob_estimate r = ob_paper_compare(m->here, pairs[i].a, pairs[i].b, pairs[i].metric);
+		ob_page_markup(p, "<li>%s: %s.</li>\n", pairs[i].what, ob_word_ratio(&r).text);
+	}
 	ob_page_markup(p, "</ul>\n");
-	write_tables_of(p, with, false);
+	write_tables_of(p, m, false);
 }
 
 static void write_itself(ob_page *p, const void *with)
@@ -321,12 +308,8 @@ static void write_markdown(FILE *f, const void *with)
 			*c->condition ? " " : "", c->condition, c->because, c->itself);
 	}
 	for (int i = 0; i < OB_PAPER_TABLES; i++) {
-		ob_table *t = ob_paper_table_make(m, i);
-		if (!t)
-			continue;
 		fprintf(f, "\n## %s\n\n", tables[i].title);
-		ob_table_markdown(t, f);
-		ob_table_free(t);
+		ob_table_markdown(ob_paper_table_make(m, i), f);
 	}
 }
 

@@ -163,12 +163,12 @@ ob_statistics ob_paper_summarise(const ob_paper_results *r, ob_paper_scenario s,
 	return ob_records_summarise(&r->records, of, ob_paper_setups[s].key, m);
 }
 
-ob_paper_ratio ob_paper_compare(const ob_paper_results *r, ob_paper_scenario a, ob_paper_scenario b, ob_paper_metric m)
+ob_estimate ob_paper_compare(const ob_paper_results *r, ob_paper_scenario a, ob_paper_scenario b, ob_paper_metric m)
 {
 	char of[OB_CASE_KEY];
 	ob_paper_case_key(of, false, r->objects);
 	ob_statistics s = ob_records_ratio(&r->records, of, ob_paper_setups[a].key, ob_paper_setups[b].key, m, true);
-	return (ob_paper_ratio){ s.n, exp(s.mean), exp(s.mean_low), exp(s.mean_high) };
+	return (ob_estimate){ s.n, exp(s.mean), exp(s.mean_low), exp(s.mean_high), s.n > 1 };
 }
 
 ob_paper_growth ob_paper_grow(const ob_paper_results *r, ob_paper_scenario s, ob_paper_metric m)

@@ -71,13 +71,8 @@ const ob_record *ob_paper_find(const ob_paper_results *r, ob_paper_scenario s, u
 // Statistics over the experiments that measured it without failure.
 ob_statistics ob_paper_summarise(const ob_paper_results *r, ob_paper_scenario s, ob_paper_metric m);
 
-typedef struct ob_paper_ratio {
-	size_t n; // pairs
-	double mean, low, high; // NaN: unknown
-} ob_paper_ratio;
-
 // Ratio a over b, from pairs of the same experiment: geometric mean, interval by Student on the logarithms.
-ob_paper_ratio ob_paper_compare(const ob_paper_results *r, ob_paper_scenario a, ob_paper_scenario b, ob_paper_metric m);
+ob_estimate ob_paper_compare(const ob_paper_results *r, ob_paper_scenario a, ob_paper_scenario b, ob_paper_metric m);
 
 typedef struct ob_paper_growth {
 	ob_line linear, logarithmic; // value over n, value over ln n

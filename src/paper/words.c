@@ -1,34 +1,12 @@
 #include "paper/words.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "experiment/page.h"
-
-void ob_say(char *to, size_t room, const char *format, ...)
-{
-	size_t used = strlen(to);
-	va_list args;
-	va_start(args, format);
-	vsnprintf(to + used, room - used, format, args);
-	va_end(args);
-}
-
-ob_word ob_word_number(double v)
-{
-	ob_word w;
-	ob_page_print_quantity(w.text, sizeof w.text, v, "1");
-	return w;
-}
-
 ob_word ob_word_value(double v, ob_paper_metric m)
 {
-	ob_word w;
-	const ob_metric *def = &ob_paper_metrics[m];
-	ob_page_print_quantity(w.text, sizeof w.text, v * def->scale, def->unit);
-	return w;
+	return ob_word_metric(v, &ob_paper_metrics[m]);
 }
 
 // "1.9 to 2.4"; empty if unknown
@@ -40,10 +18,10 @@ static ob_word interval(double low, double high)
 	return w;
 }
 
-ob_word ob_word_ratio(const ob_paper_ratio *r)
+ob_word ob_word_ratio(const ob_estimate *r)
 {
 	ob_word w;
-	snprintf(w.text, sizeof w.text, "%.20s times (%.42s)", ob_word_number(r->mean).text,
+	snprintf(w.text, sizeof w.text, "%.20s times (%.42s)", ob_word_number(r->value).text,
 		 interval(r->low, r->high).text);
 	return w;
 }

@@ -7,7 +7,6 @@
 
 #include "check.h"
 #include "compare/compare.h"
-#include "compare/table.h"
 #include "experiment/process.h"
 
 enum { RUNS = 7 };
@@ -91,21 +90,22 @@ static void test_ratio(void)
 	ob_comparison *c = make(1.2, 3, RUNS);
 	const ob_sweep_point *p = c->point;
 	// run by run, the drift of the machine cancels out
-	ob_spread r = ob_comparison_ratio(c, p, OB_CONFIGURATION_PROCESSES, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
-	CHECK_NEAR(r.median, 1.2, 1e-12);
+	ob_estimate r =
+		ob_comparison_ratio(c, p, OB_CONFIGURATION_PROCESSES, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
+	CHECK_NEAR(r.value, 1.2, 1e-12);
 	CHECK_NEAR(r.low, 1.2, 1e-12);
 	CHECK_NEAR(r.high, 1.2, 1e-12);
-	ob_spread cost = ob_comparison_spread(c, p, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
-	CHECK_NEAR(cost.median, 5e-6, 1e-18);
-	CHECK(cost.interval && cost.low < cost.median && cost.median < cost.high);
+	ob_estimate cost = ob_comparison_spread(c, p, OB_CONFIGURATION_THREADS, OB_COMPARE_COST);
+	CHECK_NEAR(cost.value, 5e-6, 1e-18);
+	CHECK(cost.interval && cost.low < cost.value && cost.value < cost.high);
 	CHECK(isnan(
-		ob_comparison_ratio(c, p, OB_CONFIGURATION_GROUPS, OB_CONFIGURATION_THREADS, OB_COMPARE_COST).median));
-	CHECK_NEAR(ob_comparison_spread(c, p, OB_CONFIGURATION_THREADS, OB_COMPARE_EXPLAINED).median, .95, 1e-12);
+		ob_comparison_ratio(c, p, OB_CONFIGURATION_GROUPS, OB_CONFIGURATION_THREADS, OB_COMPARE_COST).value));
+	CHECK_NEAR(ob_comparison_spread(c, p, OB_CONFIGURATION_THREADS, OB_COMPARE_EXPLAINED).value, .95, 1e-12);
 	// errors measured along one run of object simulators hold for all of them
-	CHECK(isnan(ob_comparison_spread(c, p, OB_CONFIGURATION_PROCESSES, OB_COMPARE_WORST).median));
+	CHECK(isnan(ob_comparison_spread(c, p, OB_CONFIGURATION_PROCESSES, OB_COMPARE_WORST).value));
 	add(c, OB_CONFIGURATION_THREADS, OB_COMPARE_MEASURED, 0, .004, "0123456789abcdef");
-	CHECK_NEAR(ob_comparison_spread(c, p, OB_CONFIGURATION_PROCESSES, OB_COMPARE_WORST).median, .004, 0);
-	CHECK(isnan(ob_comparison_spread(c, p, OB_CONFIGURATION_MONOLITH, OB_COMPARE_WORST).median));
+	CHECK_NEAR(ob_comparison_spread(c, p, OB_CONFIGURATION_PROCESSES, OB_COMPARE_WORST).value, .004, 0);
+	CHECK(isnan(ob_comparison_spread(c, p, OB_CONFIGURATION_MONOLITH, OB_COMPARE_WORST).value));
 	finish(c);
 }
 
@@ -170,7 +170,6 @@ static void test_prices(void)
 	t = ob_comparison_prices(c, c->point);
 	CHECK(t);
 	ob_table_print(t, f, 0);
-	ob_table_free(t);
 	fclose(f);
 	static const char *const lines[] = { "outboxes process pool 1.25 1.25 1.25 1.50 1.50 1.50",
 					     "with pages outboxes 1.20 1.20 1.20 1.00 1.00 1.00",

@@ -64,12 +64,9 @@ static ob_sync_comparison *make(made m)
 // hypothesis: -1 for the recommendation.
 static void expect(int hypothesis, made m, const char *const *words)
 {
-	char text[2048];
 	ob_sync_comparison *c = make(m);
-	if (hypothesis < 0)
-		ob_sync_recommend(c, c->point, text, sizeof text);
-	else
-		ob_sync_judge(c, hypothesis, text, sizeof text);
+	const ob_sync_text t = hypothesis < 0 ? ob_sync_recommend(c, c->point) : ob_sync_judge(c, hypothesis);
+	const char *text = t.words;
 	for (; *words; words++) {
 		if (!strstr(text, *words)) {
 			printf("\"%s\" is not in \"%s\"\n", *words, text);

@@ -9,6 +9,7 @@
 #include "../check.h"
 #include "lab/analysis.h"
 #include "experiment/page.h"
+#include "experiment/words.h"
 #include "lab/report.h"
 
 static const ob_engine_kind kinds[] = {
@@ -175,9 +176,9 @@ static void check_equal(void)
 
 static const char *quantity(double v, const char *unit)
 {
-	static char text[200];
-	ob_page_print_quantity(text, sizeof text, v, unit);
-	return text;
+	static ob_word word;
+	word = ob_word_quantity(v, unit);
+	return word.text;
 }
 
 static void write_word(ob_page *p, const void *with)
@@ -195,12 +196,9 @@ static void check_page(void)
 	CHECK(!strcmp(quantity(.0123456, "1"), "0.0123"));
 	CHECK(!strcmp(quantity(-35.94, "1"), "-35.9"));
 	CHECK(!strcmp(quantity(3, "m^2/s^3"), "3 m\u00b2/s\u00b3"));
+	CHECK(!strcmp(quantity(1e-6, "m^2/s^2"), "1e-6 m\u00b2/s\u00b2"));
+	CHECK(!strcmp(quantity(.5, "1"), "0.5"));
 	char text[100] = "";
-	ob_page_print_quantity(text, sizeof text, 1e-6, "m^2/s^2");
-	CHECK(!strcmp(text, "1e-6 m\u00b2/s\u00b2"));
-	ob_page_print_quantity(text, sizeof text, .5, "1");
-	CHECK(!strcmp(text, "0.5"));
-	text[0] = 0;
 	ob_page p = { .out = fmemopen(text, sizeof text, "w") };
 	ob_page_fill(&p, "a {{word}} b{{none}}{{word}}", &(ob_page_slot){ "word", write_word }, 1, "<&>");
 	fclose(p.out);

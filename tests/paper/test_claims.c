@@ -214,7 +214,7 @@ static void test_failed_runs(void)
 			r.records.record[i].metric[OB_PAPER_CPU] = 1e9;
 		}
 	expect(&r, "cpu", OB_PAPER_FAILS, NULL);
-	CHECK_NEAR(ob_paper_compare(&r, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU).mean, 1, .02);
+	CHECK_NEAR(ob_paper_compare(&r, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU).value, 1, .02);
 	CHECK(ob_paper_compare(&r, OB_PAPER_OBS, OB_PAPER_COMMON, OB_PAPER_CPU).n == 8);
 	ob_records_finish(&r.records);
 }

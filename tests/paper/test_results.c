@@ -29,14 +29,14 @@ static void test_ratio(void)
 			x.metric[OB_PAPER_STEP] = of[s][k];
 			ob_records_add(&r.records, &x);
 		}
-	ob_paper_ratio q = ob_paper_compare(&r, 0, 1, OB_PAPER_STEP);
+	ob_estimate q = ob_paper_compare(&r, 0, 1, OB_PAPER_STEP);
 	CHECK(q.n == 3);
-	CHECK_NEAR(q.mean, 4, 1e-12); // (2 * 8 * 4)^(1/3)
+	CHECK_NEAR(q.value, 4, 1e-12); // (2 * 8 * 4)^(1/3)
 	// logarithms ln 2, ln 8, ln 4: deviation ln 2; t(2) = 4.30265
 	double half = 4.302653 * log(2) / sqrt(3);
 	CHECK_NEAR(log(q.low), log(4) - half, 1e-5);
 	CHECK_NEAR(log(q.high), log(4) + half, 1e-5);
-	CHECK(isnan(ob_paper_compare(&r, 0, 1, OB_PAPER_FPS).mean));
+	CHECK(isnan(ob_paper_compare(&r, 0, 1, OB_PAPER_FPS).value));
 	ob_records_finish(&r.records);
 }
 
