@@ -115,28 +115,24 @@ static void add_result(ob_chart *chart, const ob_result *r, double x)
 	p->failed = is_failed(r);
 }
 
-static void name_axis(const ob_figure_def *def, char *to, size_t room)
+// Completes a chart, of one case unless c is NULL: y is its first figure, if it has no label. Returns NULL for an empty one.
+static ob_chart *finish(ob_chart *chart, const ob_lab_analysis *d, const ob_case *c, double width, double height)
 {
-	const bool bare = !strcmp(def->unit, "1");
-	snprintf(to, room, bare ? "%s" : "%s (%s)", def->name, ob_word_unit(def->unit).text);
-}
-
-static void mark_target(ob_chart *chart, const ob_case *c)
-{
-	if (!ob_lab_analysis_has_target(c, 0))
-		return;
-	chart->mark[0] = (ob_chart_mark){ .at = c->figure[0].target, .tinted = true };
-	OB_SAY(chart->mark[0].label, "target %s", ob_word_quantity(c->figure[0].target, c->figure[0].unit).text);
-	chart->marks = 1;
-}
-
-// Returns NULL for an empty chart.
-static ob_chart *end_curves(ob_chart *chart, const ob_result **list)
-{
-	free(list);
-	if (chart && !chart->points) {
+	if (!chart->points) {
 		ob_chart_free(chart);
 		return NULL;
+	}
+	add_configuration(chart, d, c);
+	chart->width = width;
+	chart->height = height;
+	if (!c || *chart->y.label)
+		return chart;
+	const ob_figure_def *def = &c->figure[0];
+	OB_SAY(chart->y.label, strcmp(def->unit, "1") ? "%s (%s)" : "%s", def->name, ob_word_unit(def->unit).text);
+	chart->y.scale = OB_SCALE_LOG;
+	if (ob_lab_analysis_has_target(c, 0)) {
+		chart->mark[chart->marks++] = (ob_chart_mark){ .at = def->target, .tinted = true };
+		OB_SAY(chart->mark[0].label, "target %s", ob_word_quantity(def->target, def->unit).text);
 	}
 	return chart;
 }
@@ -158,25 +154,18 @@ ob_chart *ob_lab_chart_cost(const ob_lab_analysis *d, const ob_case *c)
 				add_result(chart, list[j], ob_result_cost(list[j]) * 1e6);
 		}
 	}
-	chart = end_curves(chart, list);
-	if (!chart)
-		return NULL;
-	snprintf(chart->name, sizeof chart->name, "%s", c->name);
-	snprintf(chart->title, sizeof chart->title, "%s: error against cost", c->title);
+	free(list);
+	OB_SAY(chart->name, "%s", c->name);
+	OB_SAY(chart->title, "%s: error against cost", c->title);
 	bool others = false; // there are points off the curves, with other numbers of iterations
 	for (size_t i = 0; i < chart->series_count; i++)
 		others |= chart->series[i].count && !*chart->series[i].title;
-	snprintf(chart->subtitle, sizeof chart->subtitle,
-		 "down and left is better \u00b7 at the points: substeps a frame (obsim), steps a second (others)%s",
-		 others ? ", \u00d7 iterations" : "");
-	add_configuration(chart, d, c);
-	snprintf(chart->x.label, sizeof chart->x.label, "CPU per body and simulated second (\u00b5s)");
-	name_axis(&c->figure[0], chart->y.label, sizeof chart->y.label);
-	chart->x.scale = chart->y.scale = OB_SCALE_LOG;
-	mark_target(chart, c);
-	chart->width = 860;
-	chart->height = 500;
-	return chart;
+	OB_SAY(chart->subtitle,
+	       "down and left is better \u00b7 at the points: substeps a frame (obsim), steps a second (others)%s",
+	       others ? ", \u00d7 iterations" : "");
+	OB_SAY(chart->x.label, "CPU per body and simulated second (\u00b5s)");
+	chart->x.scale = OB_SCALE_LOG;
+	return finish(chart, d, c, 860, 500);
 }
 
 // Appends the observed order to an engine's name.
@@ -231,23 +220,15 @@ ob_chart *ob_lab_chart_convergence(const ob_lab_analysis *d, const ob_case *c)
 		for (size_t j = 0; j < count; j++)
 			add_result(chart, list[j], list[j]->settings.substeps);
 	}
-	chart = end_curves(chart, list);
-	if (!chart)
-		return NULL;
+	free(list);
 	for (size_t i = 0; i < chart->points; i++)
 		chart->point[i].label[0] = 0; // the axis has this information
 	add_guide(chart);
-	snprintf(chart->name, sizeof chart->name, "order-%s", c->name);
-	snprintf(chart->title, sizeof chart->title, "%s: order of convergence", c->title);
-	add_configuration(chart, d, c);
-	snprintf(chart->x.label, sizeof chart->x.label, "substeps a frame");
-	name_axis(&c->figure[0], chart->y.label, sizeof chart->y.label);
+	OB_SAY(chart->name, "order-%s", c ? c->name : "");
+	OB_SAY(chart->title, "%s: order of convergence", c ? c->title : "");
+	OB_SAY(chart->x.label, "substeps a frame");
 	chart->x.scale = OB_SCALE_LOG2;
-	chart->y.scale = OB_SCALE_LOG;
-	mark_target(chart, c);
-	chart->width = 860;
-	chart->height = 440;
-	return chart;
+	return finish(chart, d, c, 860, 440);
 }
 
 // ---- all cases, one below the other; and the cost of reading late
@@ -309,22 +290,14 @@ static size_t name_rows(ob_chart *chart, const ob_lab_analysis *d, const ob_engi
 	return rows;
 }
 
-static ob_chart *end_rows(ob_chart *chart, const ob_lab_analysis *d, const ob_engine_kind *beside)
+static ob_chart *finish_rows(ob_chart *chart, const ob_lab_analysis *d, const ob_engine_kind *beside)
 {
-	size_t rows = name_rows(chart, d, beside);
-	if (!rows) {
-		ob_chart_free(chart);
-		return NULL;
-	}
-	add_configuration(chart, d, NULL);
-	snprintf(chart->x.label, sizeof chart->x.label, "worst error of the case, over its target");
+	chart->categories = name_rows(chart, d, beside);
+	OB_SAY(chart->x.label, "worst error of the case, over its target");
 	chart->x.scale = OB_SCALE_LOG;
-	chart->categories = rows;
 	chart->mark[0] = (ob_chart_mark){ .at = 1, .label = "target", .vertical = true, .tinted = true };
 	chart->marks = 1;
-	chart->width = 1000;
-	chart->height = 150 + row_height * (double)rows;
-	return chart;
+	return finish(chart, d, NULL, 1000, 150 + row_height * (double)chart->categories);
 }
 
 ob_chart *ob_lab_chart_promises(const ob_lab_analysis *d)
@@ -337,13 +310,13 @@ ob_chart *ob_lab_chart_promises(const ob_lab_analysis *d)
 	for (size_t i = 0; i < d->engines; i++)
 		if (!ob_lab_analysis_is_obsim(d->engine[i]))
 			add_engine(chart, d, d->engine[i], NULL, .22 * ((double)done++ - (double)(others - 1) / 2));
-	snprintf(chart->name, sizeof chart->name, "all-cases");
-	snprintf(chart->title, sizeof chart->title, "Every case: error against its target, at usual settings");
-	snprintf(chart->subtitle, sizeof chart->subtitle,
-		 "left of the line: the target is met \u00b7 crosses: failed, or misses a target of 0 \u00b7 the "
-		 "number is the row of "
-		 "the table below");
-	return end_rows(chart, d, NULL);
+	OB_SAY(chart->name, "all-cases");
+	OB_SAY(chart->title, "Every case: error against its target, at usual settings");
+	OB_SAY(chart->subtitle,
+	       "left of the line: the target is met \u00b7 crosses: failed, or misses a target of 0 \u00b7 the "
+	       "number is the row of "
+	       "the table below");
+	return finish_rows(chart, d, NULL);
 }
 
 static const ob_engine_kind *engine_named(const ob_lab_analysis *d, const char *name)
@@ -357,14 +330,14 @@ static const ob_engine_kind *engine_named(const ob_lab_analysis *d, const char *
 ob_chart *ob_lab_chart_ghost(const ob_lab_analysis *d)
 {
 	const ob_engine_kind *ghost = engine_named(d, "obsim-ghost");
-	ob_chart *chart = ghost ? ob_chart_new() : NULL;
-	if (!chart)
+	if (!ghost)
 		return NULL;
+	ob_chart *chart = ob_chart_new();
 	add_engine(chart, d, NULL, ghost, -.15);
 	add_engine(chart, d, ghost, ghost, .15);
-	snprintf(chart->name, sizeof chart->name, "all-ghost");
-	snprintf(chart->title, sizeof chart->title, "Neighbours as ghosts of infinite mass: error against target");
-	return end_rows(chart, d, ghost);
+	OB_SAY(chart->name, "all-ghost");
+	OB_SAY(chart->title, "Neighbours as ghosts of infinite mass: error against target");
+	return finish_rows(chart, d, ghost);
 }
 
 // Adds the results of a free engine with a delay, as a series with its order.
@@ -393,35 +366,24 @@ static void add_delays(ob_chart *chart, const ob_lab_analysis *d, const ob_case 
 ob_chart *ob_lab_chart_delay(const ob_lab_analysis *d, const ob_case *c)
 {
 	ob_chart *chart = ob_chart_new();
-	for (size_t i = 0; chart && i < d->engines; i++)
+	for (size_t i = 0; i < d->engines; i++)
 		if (d->engine[i]->free)
 			add_delays(chart, d, c, d->engine[i]);
-	if (!chart || !chart->points) {
-		ob_chart_free(chart);
-		return NULL;
-	}
 	for (size_t i = 0; i < chart->points; i++)
 		chart->point[i].label[0] = 0; // the axis has this information
-	snprintf(chart->name, sizeof chart->name, "delay-%s", c->name);
-	snprintf(chart->title, sizeof chart->title, "%s: error of free simulators over the delay", c->title);
-	add_configuration(chart, d, c);
-	snprintf(chart->x.label, sizeof chart->x.label, "ms until a publication is seen");
-	name_axis(&c->figure[0], chart->y.label, sizeof chart->y.label);
-	chart->x.scale = chart->y.scale = OB_SCALE_LOG;
-	mark_target(chart, c);
-	chart->width = 860;
-	chart->height = 440;
-	return chart;
+	OB_SAY(chart->name, "delay-%s", c->name);
+	OB_SAY(chart->title, "%s: error of free simulators over the delay", c->title);
+	OB_SAY(chart->x.label, "ms until a publication is seen");
+	chart->x.scale = OB_SCALE_LOG;
+	return finish(chart, d, c, 860, 440);
 }
 
 ob_chart *ob_lab_chart_lag(const ob_lab_analysis *d)
 {
 	const ob_engine_kind *late = engine_named(d, "obsim-lag");
 	const ob_case *c = ob_case_find("lag");
-	ob_chart *chart = late && c ? ob_chart_new() : NULL;
-	if (!chart)
-		return NULL;
-	for (uint32_t figure = 0; figure < c->figures; figure++) {
+	ob_chart *chart = ob_chart_new();
+	for (uint32_t figure = 0; late && c && figure < c->figures; figure++) {
 		ob_chart_begin(chart, (int)figure, false, c->figure[figure].name);
 		for (size_t i = 0; i < d->results->count; i++) {
 			const ob_result *r = &d->results->result[i];
@@ -433,17 +395,10 @@ ob_chart *ob_lab_chart_lag(const ob_lab_analysis *d)
 			p->failed = failed;
 		}
 	}
-	if (!chart->points) {
-		ob_chart_free(chart);
-		return NULL;
-	}
-	snprintf(chart->name, sizeof chart->name, "lag");
-	snprintf(chart->title, sizeof chart->title, "Error of reading a partner late");
-	add_configuration(chart, d, c);
-	snprintf(chart->x.label, sizeof chart->x.label, "iterations that a partner's state is late");
-	snprintf(chart->y.label, sizeof chart->y.label, "relative error");
+	OB_SAY(chart->name, "lag");
+	OB_SAY(chart->title, "Error of reading a partner late");
+	OB_SAY(chart->x.label, "iterations that a partner's state is late");
+	OB_SAY(chart->y.label, "relative error");
 	chart->y.scale = OB_SCALE_LOG;
-	chart->width = 760;
-	chart->height = 400;
-	return chart;
+	return finish(chart, d, c, 760, 400);
 }

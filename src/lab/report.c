@@ -133,75 +133,57 @@ static void write_promises(ob_page *p, const void *with)
 	ob_chart_html(ob_lab_chart_promises(with), p, "");
 }
 
-static const char *const convergence_cases[] = { "stack-10", "pile", "sliding" };
-enum { CONVERGENCE_CASES = sizeof convergence_cases / sizeof *convergence_cases };
-
-static ob_chart *convergence_chart(const ob_lab_analysis *d, size_t i)
+// Writes a section's chart, below its heading and text unless an earlier one has them. Returns true if there is any so far.
+static bool write_section(ob_page *p, bool begun, ob_chart *chart, const char *id, const char *title, const char *text)
 {
-	const ob_case *c = ob_case_find(convergence_cases[i]);
-	return c ? ob_lab_chart_convergence(d, c) : NULL;
-}
-
-// Begins a section, if it has a chart.
-static bool begin_section(ob_page *p, const ob_chart *chart, const char *id, const char *title, const char *text)
-{
-	if (chart)
+	if (chart && !begun)
 		ob_page_markup(p, "<h2 id=\"%s\">%s</h2>\n<p>%s</p>\n", id, title, text);
-	return chart != NULL;
+	begun |= chart != NULL;
+	ob_chart_html(chart, p, "");
+	return begun;
 }
 
 static void write_convergence(ob_page *p, const void *with)
 {
+	static const char *const cases[] = { "stack-10", "pile", "sliding" };
 	bool begun = false;
-	for (size_t i = 0; i < CONVERGENCE_CASES; i++) {
-		ob_chart *chart = convergence_chart(with, i);
-		begun = begun || begin_section(p, chart, "order", "Order of convergence",
-					       "Gain of doubling the substeps. An error of first order halves, one "
-					       "of second order falls to a quarter; "
-					       "the observed order stands beside each name.");
-		ob_chart_html(chart, p, "");
-	}
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+		begun = write_section(p, begun, ob_lab_chart_convergence(with, ob_case_find(cases[i])), "order",
+				      "Order of convergence",
+				      "Gain of doubling the substeps. An error of first order halves, one "
+				      "of second order falls to a quarter; "
+				      "the observed order stands beside each name.");
 }
 
 static void write_ghost(ob_page *p, const void *with)
 {
-	ob_chart *chart = ob_lab_chart_ghost(with);
-	if (!begin_section(p, chart, "ghost", "Why neighbours must not be ghosts",
-			   "The first thing that comes to mind when every body is a simulator of its own: treat each "
-			   "neighbour as a body "
-			   "that nothing can move. Then both sides answer a hit with the whole of it, momentum is not "
-			   "kept, and energy "
-			   "comes from nowhere. (Where bodies touch nothing but the ground it makes no difference.) "
-			   "obsim can do so (<code>coupling=ghost</code>) only to show it."))
-		return;
-	ob_chart_html(chart, p, "");
+	write_section(p, false, ob_lab_chart_ghost(with), "ghost", "Why neighbours must not be ghosts",
+		      "The first thing that comes to mind when every body is a simulator of its own: treat each "
+		      "neighbour as a body "
+		      "that nothing can move. Then both sides answer a hit with the whole of it, momentum is not "
+		      "kept, and energy "
+		      "comes from nowhere. (Where bodies touch nothing but the ground it makes no difference.) "
+		      "obsim can do so (<code>coupling=ghost</code>) only to show it.");
 }
 
 static void write_lag(ob_page *p, const void *with)
 {
-	ob_chart *chart = ob_lab_chart_lag(with);
-	if (!begin_section(p, chart, "late", "Why partners must not be read late",
-			   "Two bodies hit each other, each in its own simulator, and each works with a state of the "
-			   "other that is some "
-			   "iterations old. Momentum is exact only where both sides see the same."))
-		return;
-	ob_chart_html(chart, p, "");
+	write_section(p, false, ob_lab_chart_lag(with), "late", "Why partners must not be read late",
+		      "Two bodies hit each other, each in its own simulator, and each works with a state of the "
+		      "other that is some "
+		      "iterations old. Momentum is exact only where both sides see the same.");
 }
 
 static void write_free(ob_page *p, const void *with)
 {
 	bool begun = false;
-	for (const ob_case *const *c = ob_cases; *c; c++) {
-		ob_chart *chart = ob_lab_chart_delay(with, *c);
-		begun = begun ||
-			begin_section(p, chart, "free", "Simulators that wait for nobody",
+	for (const ob_case *const *c = ob_cases; *c; c++)
+		begun = write_section(p, begun, ob_lab_chart_delay(with, *c), "free", "Simulators that wait for nobody",
 				      "Free simulators have times of their own. Their error over the delay "
 				      "after which a neighbour sees what they publish; the error over the rate "
 				      "of their steps stands with each case, lockstep beside it. A ledger "
 				      "computes a pair's impulse once; own: each side computes its own. Two "
 				      "runs of one setting differ.");
-		ob_chart_html(chart, p, "");
-	}
 }
 
 static void write_index(ob_page *p, const void *with)
@@ -217,98 +199,47 @@ static void write_index(ob_page *p, const void *with)
 
 // ---- one case
 
-typedef struct report_case {
-	const ob_lab_analysis *analysis;
-	const ob_case *of;
-} report_case;
-
-static void write_title(ob_page *p, const void *with)
+static void write_case(ob_page *p, const ob_lab_analysis *d, const ob_case *c)
 {
-	ob_page_text(p, ((const report_case *)with)->of->title);
-}
-
-static void write_badge(ob_page *p, const void *with)
-{
-	const report_case *c = with;
-	const ob_result *r = ob_lab_analysis_promised(c->analysis, c->of);
-	if (r)
-		ob_page_markup(p, "<span class=\"badge %s</span>",
-			       ob_lab_analysis_meets_all(r) ? "met\">met" : "missed\">missed");
-}
-
-static void write_reference(ob_page *p, const void *with)
-{
-	const report_case *c = with;
-	for (uint32_t i = 0; i < c->of->figures; i++) {
-		const ob_figure_def *def = &c->of->figure[i];
+	const ob_result *promised = ob_lab_analysis_promised(d, c);
+	const bool met = promised && ob_lab_analysis_meets_all(promised);
+	ob_page_markup(p, "<section id=\"%s\">\n<h3>", c->name);
+	ob_page_text(p, c->title);
+	ob_page_markup(p, " ");
+	if (promised)
+		ob_page_markup(p, "<span class=\"badge %s\">%s</span>", met ? "met" : "missed", met ? "met" : "missed");
+	ob_page_markup(p, "</h3>\n");
+	ob_page_paragraph(p, "", c->setup);
+	ob_page_markup(p, "<dl>\n<dt>Compared with</dt><dd>");
+	for (uint32_t i = 0; i < c->figures; i++) {
 		ob_page_markup(p, i ? "<br>" : "");
-		ob_page_text(p, def->name);
+		ob_page_text(p, c->figure[i].name);
 		ob_page_markup(p, ": ");
-		ob_page_text(p, def->reference);
+		ob_page_text(p, c->figure[i].reference);
 	}
-}
-
-static void write_engines(ob_page *p, const void *with)
-{
-	const report_case *c = with;
-	ob_table_html(ob_lab_table_engines(c->analysis, c->of), p);
-}
-
-static void write_runs(ob_page *p, const void *with)
-{
-	const report_case *c = with;
-	ob_table_html(ob_lab_table_runs(c->analysis, c->of), p);
-}
-
-static void write_id(ob_page *p, const void *with)
-{
-	ob_page_text(p, ((const report_case *)with)->of->name);
-}
-
-static void write_setup(ob_page *p, const void *with)
-{
-	ob_page_text(p, ((const report_case *)with)->of->setup);
-}
-
-static void write_others(ob_page *p, const void *with)
-{
-	const char *others = ((const report_case *)with)->of->others;
-	ob_page_text(p, others ? others : "not measured elsewhere");
-}
-
-// Chart of a case: error over cost, or over delay in the case of late partners.
-static ob_chart *case_chart(const ob_lab_analysis *d, const ob_case *c)
-{
-	return c == ob_case_find("lag") ? ob_lab_chart_lag(d) : ob_lab_chart_cost(d, c);
-}
-
-static void write_plot(ob_page *p, const void *with)
-{
-	const report_case *c = with;
-	ob_chart_html(case_chart(c->analysis, c->of), p, "");
+	ob_page_markup(p, "</dd>\n");
+	ob_page_term(p, "Known of other engines", c->others ? c->others : "not measured elsewhere");
+	ob_page_markup(p, "</dl>\n");
+	ob_table_html(ob_lab_table_engines(d, c), p);
+	// error over cost, or over delay in the case of late partners
+	ob_chart_html(c == ob_case_find("lag") ? ob_lab_chart_lag(d) : ob_lab_chart_cost(d, c), p, "");
+	ob_page_markup(p, "<details>\n<summary>All runs of this case</summary>\n");
+	ob_table_html(ob_lab_table_runs(d, c), p);
+	ob_page_markup(p, "</details>\n</section>\n");
 }
 
 static void write_all_cases(ob_page *p, const void *with)
 {
-	static const ob_page_slot slots[] = {
-		{ "id", write_id },           { "title", write_title },         { "badge", write_badge },
-		{ "setup", write_setup },     { "reference", write_reference }, { "others", write_others },
-		{ "figures", write_engines }, { "plot", write_plot },           { "runs", write_runs }
-	};
 	for (const ob_case *const *c = ob_cases; *c; c++)
 		if (ob_lab_analysis_ran(with, *c))
-			ob_page_fill(p, text_case_html, slots, sizeof slots / sizeof *slots,
-				     &(report_case){ .analysis = with, .of = *c });
+			write_case(p, with, *c);
 }
 
 static void write_setting(ob_page *p, const void *with)
 {
 	const ob_lab_analysis *d = with;
-	ob_page_markup(p, "<dt>Machine</dt><dd>");
-	ob_page_text(p, d->results->machine);
-	ob_page_markup(p, "</dd>\n<dt>obsim</dt><dd>commit <code>");
-	ob_page_text(p, d->results->commit);
-	ob_page_markup(p, "</code></dd>\n");
+	ob_page_term(p, "Machine", d->results->machine);
+	ob_page_markup(p, "<dt>obsim</dt><dd>commit <code>%s</code></dd>\n", d->results->commit);
 	for (size_t i = 0; i < d->engines; i++) {
 		const ob_engine_kind *k = d->engine[i];
 		ob_page_markup(p, "<dt>");
@@ -327,29 +258,16 @@ static void write_setting(ob_page *p, const void *with)
 
 // ---- the files
 
-static void write_rows_file(FILE *f, const void *with)
-{
-	ob_lab_print_rows(f, with, true);
-}
+typedef struct file {
+	const char *name;
+	void (*print)(FILE *f, const ob_lab_analysis *d, bool markdown);
+	const ob_lab_analysis *analysis;
+} file;
 
-static void write_conserved_file(FILE *f, const void *with)
+static void write_file(FILE *f, const void *with)
 {
-	ob_lab_print_conserved(f, with, true);
-}
-
-static void write_audit_file(FILE *f, const void *with)
-{
-	ob_lab_print_audit(f, with, true);
-}
-
-static void write_equal_file(FILE *f, const void *with)
-{
-	ob_lab_print_equal(f, with, true);
-}
-
-static void write_equal_csv(FILE *f, const void *with)
-{
-	ob_lab_write_equal(f, with);
+	const file *of = with;
+	of->print(f, of->analysis, true);
 }
 
 bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e)
@@ -361,12 +279,16 @@ bool ob_lab_report(const ob_results *r, const char *dir, ob_error *e)
 		{ "lag", write_lag },         { "free", write_free },       { "index", write_index },
 		{ "cases", write_all_cases }, { "setting", write_setting }
 	};
-	const ob_report report = { "obsim: accuracy, and speed against error", "", text_page_html, slots,
+	const ob_report report = { "obsim: accuracy, and speed against error", "", text_lab_html, slots,
 				   sizeof slots / sizeof *slots };
 	ob_lab_analysis d = ob_lab_analyse(r);
-	return ob_folder_make(dir, e) && ob_folder_write(dir, "rows.md", write_rows_file, &d, e) &&
-	       ob_folder_write(dir, "conserved.md", write_conserved_file, &d, e) &&
-	       ob_folder_write(dir, "audit.md", write_audit_file, &d, e) &&
-	       ob_folder_write(dir, "equal.md", write_equal_file, &d, e) &&
-	       ob_folder_write(dir, "equal.csv", write_equal_csv, &d, e) && ob_report_write(&report, dir, &d, e);
+	const file files[] = { { "rows.md", ob_lab_print_rows, &d },
+			       { "conserved.md", ob_lab_print_conserved, &d },
+			       { "audit.md", ob_lab_print_audit, &d },
+			       { "equal.md", ob_lab_print_equal, &d },
+			       { "equal.csv", ob_lab_print_equal_csv, &d } };
+	bool fine = ob_folder_make(dir, e);
+	for (size_t i = 0; fine && i < sizeof files / sizeof *files; i++)
+		fine = ob_folder_write(dir, files[i].name, write_file, &files[i], e);
+	return fine && ob_report_write(&report, dir, &d, e);
 }

@@ -275,7 +275,7 @@ void ob_lab_print_equal(FILE *f, const ob_lab_analysis *d, bool markdown)
 	print_sum(f, d);
 }
 
-void ob_lab_write_equal(FILE *f, const ob_lab_analysis *d)
+void ob_lab_print_equal_csv(FILE *f, const ob_lab_analysis *d, bool markdown)
 {
 	static const char *const heads[] = {
 		"case", "error", "unit", "error_is_target", "engine", "cpu_s_per_body_and_simulated_s", "over_obsim"

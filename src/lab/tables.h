@@ -27,6 +27,6 @@ void ob_lab_print_rows(FILE *f, const ob_lab_analysis *d, bool markdown);
 // with a line that names quantities that are not conserved
 void ob_lab_print_conserved(FILE *f, const ob_lab_analysis *d, bool markdown);
 void ob_lab_print_equal(FILE *f, const ob_lab_analysis *d, bool markdown);
-void ob_lab_write_equal(FILE *f, const ob_lab_analysis *d); // CSV
+void ob_lab_print_equal_csv(FILE *f, const ob_lab_analysis *d, bool markdown);
 
 #endif

@@ -67,7 +67,7 @@ static void test_tables(void)
 	free(text);
 	ob_results_finish(&alone);
 	f = begin();
-	ob_lab_write_equal(f, &d);
+	ob_lab_print_equal_csv(f, &d, false);
 	expect_in(f, (const char *[]){ "case,error,", "\nstack-10,0.5,mm,1,obsim,", "\nstack-10,0.5,mm,1,ode-world,,\n",
 				       NULL });
 	ob_results_finish(&r);
