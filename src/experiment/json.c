@@ -112,6 +112,14 @@ void ob_json_null(ob_json *j, const char *key)
 	fputs("null", j->f);
 }
 
+void ob_json_text(ob_json *j, const char *key, const char *value)
+{
+	if (*value)
+		ob_json_string(j, key, value);
+	else
+		ob_json_null(j, key);
+}
+
 // Skips the string that opens at s; NULL if it does not end.
 static const char *skip_string(const char *s)
 {

@@ -26,6 +26,7 @@ void ob_json_number(ob_json *j, const char *key, double value); // %.17g; null u
 void ob_json_count(ob_json *j, const char *key, uint64_t value);
 void ob_json_true(ob_json *j, const char *key, bool value);
 void ob_json_null(ob_json *j, const char *key);
+void ob_json_text(ob_json *j, const char *key, const char *value); // null for ""
 
 // Reading one flat object, as written above: start of the value of key; NULL = no such member.
 const char *ob_json_find(const char *text, const char *key);

@@ -60,10 +60,7 @@ static void put_result(ob_json *j, const ob_result *r)
 	ob_json_number(j, "wall_s", r->outcome.wall_s);
 	ob_json_number(j, "bodies_times_simulated_s", r->outcome.body_seconds);
 	ob_json_number(j, "cpu_s_per_body_and_simulated_s", ob_result_cost(r));
-	if (*r->outcome.failed)
-		ob_json_string(j, "failed", r->outcome.failed);
-	else
-		ob_json_null(j, "failed");
+	ob_json_text(j, "failed", r->outcome.failed);
 	put_figures(j, r);
 	put_conserved(j, r);
 	ob_json_close(j);

@@ -3,6 +3,7 @@
 #ifndef OB_PAPER_CLAIMS_H
 #define OB_PAPER_CLAIMS_H
 
+#include "experiment/words.h"
 #include "paper/results.h"
 
 typedef enum ob_paper_verdict {
@@ -26,5 +27,11 @@ typedef struct ob_paper_claim {
 // "holds", "holds only if", ..
 const char *ob_paper_verdict_text(ob_paper_verdict v);
 void ob_paper_judge(const ob_paper_results *r, ob_paper_claim claim[OB_PAPER_CLAIMS]);
+
+// Words of the figures.
+ob_word ob_word_value(double v, ob_paper_metric m); // in the metric's unit: "1.25 ms"
+ob_word ob_word_ratio(const ob_estimate *r); // "2.1 times (1.9 to 2.4)"
+ob_word ob_word_exponent(const ob_line *l); // "n^0.98 (0.95 to 1.01)"
+ob_word ob_word_odds(double logarithm); // "12 to 1", "more than a million to 1"
 
 #endif
