@@ -135,6 +135,7 @@ end
 
 -- Expects bodies to fall and come to rest by `duration`: limits of the mean and the worst penetration in the last second, of
 -- the worst ever, mm, and of the growth of energy over that at the start; nil: shown alone; growth = false: not shown.
+-- ground = false: there is none to fall through.
 function lab.heap(limit, duration)
 	local sum, looks, settled, depth, growth, start, lowest = 0, 0, 0, 0, 0, nil, nil
 	local names = limit.names or { "settled mean penetration", "settled worst penetration" }
@@ -149,7 +150,7 @@ function lab.heap(limit, duration)
 		start = start or energy
 		lowest = math.min(lowest or energy, energy)
 		growth = math.max(growth, (energy - lowest) / start)
-		lab.fell(run)
+		if limit.ground ~= false then lab.fell(run) end
 	end)
 	expect { names[1], unit = "mm", below = limit.mean, source = "no penetration" .. last, function(run)
 		lab.moved(run, .1)

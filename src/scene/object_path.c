@@ -17,7 +17,7 @@ enum { SINE, CIRCLE, SPLINE }; // numbers of the choices
 typedef struct draft {
 	uint32_t kind;
 	ob_vec3 amplitude, centre, axis;
-	double frequency, phase;
+	double frequency, rate, phase; // rate: rad/s
 	bool points, loop;
 } draft;
 
@@ -26,6 +26,7 @@ static const ob_field path_fields[] = {
 	F(kind, .kind = OB_FIELD_CHOICE, .choices = "sine|circle|spline", .required = true),
 	F(amplitude, .kind = OB_FIELD_VECTOR, .low = -1e6, .high = 1e6),
 	F(frequency, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e4),
+	F(rate, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 6e4),
 	F(phase, .kind = OB_FIELD_NUMBER, .low = -1e3, .high = 1e3),
 	F(centre, .kind = OB_FIELD_VECTOR, .low = -OB_PLACE_MOST, .high = OB_PLACE_MOST),
 	F(axis, .kind = OB_FIELD_DIRECTION),
@@ -57,7 +58,7 @@ static void check_said(lua_State *L, const char *where, const draft *d)
 	static const char *const kinds[] = { "sine", "circle", "spline" };
 	const said_field fields[] = {
 		{ "amplitude", !isnan(d->amplitude.x), 1 << SINE, 1 << SINE },
-		{ "frequency", !isnan(d->frequency), 1 << SINE | 1 << CIRCLE, 1 << SINE | 1 << CIRCLE },
+		{ "frequency", !isnan(d->frequency) || !isnan(d->rate), 1 << SINE | 1 << CIRCLE, 1 << SINE | 1 << CIRCLE },
 		{ "phase", !isnan(d->phase), 0, 1 << SINE },
 		{ "centre", !isnan(d->centre.x), 1 << CIRCLE, 1 << CIRCLE },
 		{ "axis", !isnan(d->axis.x), 0, 1 << CIRCLE },
@@ -77,7 +78,7 @@ static void keep_path(lua_State *L, const char *where, ob_object_def *o, const o
 static void make_sine(lua_State *L, const char *where, const draft *d, ob_object_def *o)
 {
 	const ob_path path =
-		ob_path_sine(&o->state, d->amplitude, 2 * M_PI * d->frequency, isnan(d->phase) ? 0 : d->phase);
+		ob_path_sine(&o->state, d->amplitude, d->rate, isnan(d->phase) ? 0 : d->phase);
 	keep_path(L, where, o, &path);
 }
 
@@ -87,7 +88,7 @@ static void make_circle(lua_State *L, const char *where, const draft *d, ob_obje
 	if (!(ob_norm(ob_cross(axis, r)) > 1e-9))
 		ob_sandbox_fail(L, "%s.centre: expected a point that the axis does not lead from to the object's place",
 				where);
-	const ob_path path = ob_path_circle(&o->state, d->centre, axis, 2 * M_PI * d->frequency);
+	const ob_path path = ob_path_circle(&o->state, d->centre, axis, d->rate);
 	keep_path(L, where, o, &path);
 }
 
@@ -182,11 +183,15 @@ void ob_builder_read_path(lua_State *L, const char *kind, ob_object_def *o)
 {
 	char where[64];
 	const ob_vec3 unsaid = { NAN, NAN, NAN };
-	draft d = { .amplitude = unsaid, .centre = unsaid, .axis = unsaid, .frequency = NAN, .phase = NAN };
+	draft d = { .amplitude = unsaid, .centre = unsaid, .axis = unsaid, .frequency = NAN, .rate = NAN, .phase = NAN };
 	snprintf(where, sizeof where, "%s.path", kind);
 	luaL_checkstack(L, 8, "nested too deep");
 	ob_fields_read(L, -1, where, path_fields, sizeof path_fields / sizeof *path_fields, &d);
 	check_said(L, where, &d);
+	if (!isnan(d.rate) && !isnan(d.frequency))
+		ob_sandbox_fail(L, "%s.rate: expected either frequency or rate, got both", where);
+	if (isnan(d.rate))
+		d.rate = 2 * M_PI * d.frequency;
 	if (d.kind == SINE)
 		make_sine(L, where, &d, o);
 	else if (d.kind == CIRCLE)

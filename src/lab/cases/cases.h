@@ -11,14 +11,6 @@
 	X(discs_plane) \
 	X(discs_box) \
 	X(oblique) \
-	X(rocking_blocks) \
-	X(rocking_cylinders) \
-	X(rolling_disk) \
-	X(shaking_tables) \
-	X(belts) \
-	X(turntables) \
-	X(shaken_stack) \
-	X(shaken_pile) \
 	X(pendulum_90) \
 	X(pendulum_179) \
 	X(double_pendulum) \
