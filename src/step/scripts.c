@@ -42,7 +42,7 @@ bool ob_scripts_due(ob_universe *u)
 	if (!count || ob_scripts_had_run(u))
 		return false;
 	ob_scripts_set_ran_for(count, (uint32_t)step + 1);
-	count->due = 0;
+	count->due = count->requests = 0;
 	for (uint32_t i = 0; i < count->cells && i < data->script_cells; i++)
 		if (ob_script_is_due(&data->script_turn[i], step))
 			data->script_due[count->due++] = i;
@@ -295,7 +295,6 @@ bool ob_scripts_carry_out(ob_sim *s)
 	ob_step_data *data = s->data;
 	ob_script_counts *count = data->script_counts;
 	bool other = false;
-	count->requests = 0;
 	count->calls += count->due;
 	for (uint32_t i = 0; i < count->due; i++) {
 		const uint32_t cell = data->script_due[i];

@@ -615,11 +615,12 @@ static ob_phase after_broadphase_start(const scheduler *c)
 	return merged ? next : OB_PHASE_PAUSE;
 }
 
-// Queries the neighbours of objects whose motion has changed. The host creates and removes objects at once.
+// Queries the neighbours of objects whose motion has changed. The host creates and removes objects at once. Where it resumes,
+// and no script is due, it comes here itself, as no simulator.
 static ob_phase after_scripts(const scheduler *c)
 {
 	uint32_t queries;
-	if (ob_scripts_carry_out(c->sim))
+	if (c->data->script_counts->due && ob_scripts_carry_out(c->sim))
 		count_awake(c);
 	ob_cluster_settle(c->cluster, c->u); // for motions that scripts have changed
 	if (ob_scripts_have_requests(c->u))
