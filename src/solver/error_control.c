@@ -19,7 +19,7 @@ uint32_t ob_error_control_substeps(const ob_solver *s, const ob_island_input *in
 	if (!(run->tolerance > 0))
 		return most;
 	for (uint32_t i = 0; i < in->members; i++) {
-		const bool of_lone_body = in->members > 1 && ob_is_refined(&in->object[i]);
+		const bool of_lone_body = in->members > 1 && !ob_flies_with_joints(in) && ob_is_refined(&in->object[i]);
 		uint32_t asked = of_lone_body ? 0 : in->object[i].motion->substeps;
 		most = asked > most && asked <= max_substeps ? asked : most;
 	}

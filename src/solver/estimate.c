@@ -3,6 +3,7 @@
 #include "motion/deviation.h"
 #include "shape/shape.h"
 #include "solver/island_solver.h"
+#include "solver/joints.h"
 #include "solver/probe.h"
 #include "solver/refinement.h"
 #include "solver/surfaces.h"
@@ -59,7 +60,7 @@ static bool lands(const ob_solver *s)
 static bool is_jolted(const ob_solver *s)
 {
 	const ob_island_work *w = &s->island;
-	return w->jolt * ob_coarse_time(w) > .5 * w->substeps * s->settings->tolerance;
+	return !ob_flies_with_joints(s->in) && w->jolt * ob_coarse_time(w) > .5 * w->substeps * s->settings->tolerance;
 }
 
 // Returns the deviation (m) at the end of the running second.
@@ -200,11 +201,13 @@ static rulers solve_beside(ob_solver *s)
 {
 	const ob_island_work *w = &s->island;
 	const uint32_t n = w->substeps;
-	const bool refined = w->bodies == 1 && ob_is_refined(&s->in->object[0]),
-		   finer = (refined || n < 2 || w->joints.count) && 2 * n <= OB_MAX_SUBSTEPS;
+	const bool flies = ob_flies_with_joints(s->in),
+		   refined = w->bodies == 1 && !flies && ob_is_refined(&s->in->object[0]),
+		   finer = flies ? ob_joints_finer(s, n)
+				 : (refined || n < 2 || w->joints.count) && 2 * n <= OB_MAX_SUBSTEPS;
 	const uint32_t other = finer ? 2 * n : coarser_than(n, w->bodies);
 	ob_probe_solve(s->estimate.probe, s, other, n);
-	return (rulers){ { { s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) } }, 1, !finer };
+	return (rulers){ { { s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) } }, 1, !finer && !flies };
 }
 
 // Solves the step of a lone body again, in place of its solution, with four times as many substeps, while its error half a
@@ -237,10 +240,12 @@ static void update_deviation(ob_solver *s, const rulers *r, uint32_t row, uint32
 	ob_estimate_count(s, s->in->step + 1, deviation_before(s, row), body->deviation);
 }
 
-// Returns a row's error (m) of a second in the units of the run.
-static double error_of_run(const ob_solver *s, const rulers *r, uint32_t row)
+// Returns a row's error (m) of a second; among contacts in the units of the run.
+static double error_of_second(const ob_solver *s, const rulers *r, uint32_t row)
 {
 	const ob_deviation error = error_by(s, r, row);
+	if (ob_flies_with_joints(s->in))
+		return ob_error_of_time(error.place, error.rate, s->settings->step_length, 1);
 	return ob_error_of_run(s, error.place, error.rate);
 }
 
@@ -274,7 +279,7 @@ void ob_estimate_update(ob_solver *s)
 			solve_event(s, &r);
 		const uint32_t n = w->substeps;
 		for (uint32_t row = 1; row <= w->bodies; row++)
-			error = ob_max(error, error_of_run(s, &r, row));
+			error = ob_max(error, error_of_second(s, &r, row));
 		if (r.coarser && 2 * n < OB_MAX_SUBSTEPS && is_doubtful(s, &r, weight)) {
 			ob_probe_solve(s->estimate.finer, s, 2 * n + 1, n);
 			r.by[r.count++] = (ruler){ s->estimate.finer, (2 * n + 1.) / (n + 1) };

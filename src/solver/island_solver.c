@@ -167,7 +167,7 @@ static bool solve_step(ob_solver *s, const ob_island_input *in)
 	ob_direct_begin(&w->direct);
 	w->jolt = 0;
 	s->counters.body_substeps += (uint64_t)in->members * w->substeps;
-	if (in->joints && !in->pairs) {
+	if (ob_flies_with_joints(in)) {
 		if (!fly(s) && !ob_budget_spent(s))
 			return false;
 	} else {

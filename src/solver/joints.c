@@ -18,7 +18,10 @@ static const double misplaced = 1e-9; // m, sine: more at a step's start is not 
 static const double block_rate = 1; // rad: largest swing in a block
 static const double flight_rate = .5; // rad: largest swing in a flight of a step without blocks
 
-enum { MOST_BLOCKS = 4 }; // for the run's substeps; beyond that single flights
+enum {
+	MOST_BLOCKS = 4,
+	MOST_OF_BLOCK = OB_MAX_SUBSTEPS / (2 * MOST_BLOCKS)
+}; // blocks in a step; beyond that single flights
 
 // ---- flights
 
@@ -365,11 +368,18 @@ typedef struct division {
 	double h;
 } division;
 
+// Returns the number of substeps for which a block stands: the run's, but so few that a step has room for more flights than
+// blocks have.
+static uint32_t substeps_of_block(const ob_solver *s)
+{
+	return s->settings->substeps < MOST_OF_BLOCK ? s->settings->substeps : MOST_OF_BLOCK;
+}
+
 static division divide(const ob_solver *s)
 {
-	const uint32_t usual = s->settings->substeps, n = s->island.substeps;
-	const bool blocks = n >= usual && n <= MOST_BLOCKS * usual;
-	const uint32_t parts = blocks && !s->island.joints.breakable ? n / usual : n;
+	const uint32_t block = substeps_of_block(s), n = s->island.substeps;
+	const bool blocks = n >= block && n <= MOST_BLOCKS * block;
+	const uint32_t parts = blocks && !s->island.joints.breakable ? (n + block - 1) / block : n;
 	return (division){ parts, blocks ? sizeof shares / sizeof *shares : 1, blocks ? shares : single,
 			   s->settings->step_length / parts };
 }
@@ -662,17 +672,23 @@ bool ob_joints_fly(ob_solver *s)
 uint32_t ob_joints_substeps(const ob_solver *s)
 {
 	const ob_joint_set *set = &s->island.joints;
-	const uint32_t usual = s->settings->substeps;
+	const uint32_t block = substeps_of_block(s);
 	const double swing = set->stiffness * s->settings->step_length;
-	uint32_t n = usual;
+	uint32_t n = s->settings->substeps;
 	if (set->failed)
 		return s->island.substeps < OB_MAX_SUBSTEPS / 2 ? 2 * s->island.substeps : OB_MAX_SUBSTEPS;
-	while (n < MOST_BLOCKS * usual && block_rate * n < swing * usual)
+	while (n < MOST_BLOCKS * block && block_rate * n < swing * block)
 		n *= 2;
-	if (block_rate * n < swing * usual)
+	if (block_rate * n < swing * block)
 		for (n *= 2; n < OB_MAX_SUBSTEPS && flight_rate * n < swing;)
 			n *= 2;
 	return n < OB_MAX_SUBSTEPS ? n : OB_MAX_SUBSTEPS;
+}
+
+uint32_t ob_joints_finer(const ob_solver *s, uint32_t n)
+{
+	const uint32_t blocks = MOST_BLOCKS * substeps_of_block(s);
+	return 2 * n <= blocks || (n > blocks && 2 * n <= OB_MAX_SUBSTEPS / 4) ? 2 * n : 0;
 }
 
 // ---- among contacts

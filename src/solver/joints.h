@@ -22,6 +22,8 @@
 bool ob_joints_fly(ob_solver *s);
 // Number of substeps that the joints need, by the forces of the last flight: at most OB_MAX_SUBSTEPS.
 uint32_t ob_joints_substeps(const ob_solver *s);
+// Number of substeps with twice as many flights of the same order as n have; 0: there are none.
+uint32_t ob_joints_finer(const ob_solver *s, uint32_t n);
 
 // Moves bodies with joints to the midpoint of the partial substep, and finds the rows there. Before the iterations.
 void ob_joints_begin(ob_solver *s);

@@ -1,5 +1,6 @@
 #include "solver/refinement.h"
 
+#include "solver/joints.h"
 #include "solver/probe.h"
 
 bool ob_refinement_is_doubted(const ob_solver *s)
@@ -37,12 +38,31 @@ static uint32_t find_substeps(ob_solver *s, double error)
 	return 0;
 }
 
+// Lets an island that only joints hold have twice as many flights while its second would exceed the tolerance.
+static void refine_flights(ob_solver *s, bool estimated, double error)
+{
+	enum { OFTEN = 256 }; // half as many flights have 64 times the error at most, and keep the tolerance
+	ob_island_work *w = &s->island;
+	const double tolerance = s->settings->tolerance;
+	uint32_t n = ob_is_refined(&s->in->object[0]) ? s->in->object[0].motion->substeps : 0;
+	if (estimated && !n && error > tolerance)
+		n = ob_joints_finer(s, w->substeps);
+	else if (estimated && OFTEN * error <= tolerance)
+		n = 0;
+	for (uint32_t row = 1; n && row <= w->bodies; row++) {
+		w->body[row].next_substeps = n;
+		w->body[row].refinement = OB_MOTION_REFINED;
+	}
+}
+
 void ob_refinement_update(ob_solver *s, bool estimated, double error)
 {
 	ob_body *body = &s->island.body[1];
 	const ob_motion *last = s->in->object[0].motion;
 	const bool refined = ob_is_refined(&s->in->object[0]), exceeds = estimated && error > s->settings->tolerance;
 	uint32_t n = refined ? last->substeps : 0, stage = last->flags & OB_MOTION_REFINEMENT;
+	if (ob_flies_with_joints(s->in))
+		refine_flights(s, estimated, error);
 	if (s->island.bodies > 1 || s->island.joints.count || ob_contacts_changed(&s->island))
 		return;
 	if (exceeds && (stage & OB_MOTION_DOUBTED || refined)) {

@@ -4,6 +4,8 @@
 //   errors exceed the tolerance ──> in four steps again ──> solved with 4, 8, 16 times as many: do they fall fast?
 //                                                              yes ──> so many, while contacts go on
 //                                                              no  ──> no more trials, while contacts go on
+//
+// Islands that only joints hold have twice as many flights of the same order while their second would exceed it.
 #ifndef OB_SOLVER_REFINEMENT_H
 #define OB_SOLVER_REFINEMENT_H
 
@@ -11,7 +13,7 @@
 
 // True if the step of a lone body is to be estimated so soon, as it was doubted.
 bool ob_refinement_is_doubted(const ob_solver *s);
-// Sets the next substeps of a lone body, and its stage. estimated: the step was; error: m, of a second.
+// Sets the next substeps of a lone body, and its stage, or of an island that only joints hold. estimated: the step was; error: m, of a second.
 void ob_refinement_update(ob_solver *s, bool estimated, double error);
 
 #endif

@@ -159,6 +159,12 @@ static inline bool ob_is_refined(const ob_island_object *member)
 	return member->motion->flags & OB_MOTION_REFINED;
 }
 
+// True if only joints hold the island's bodies: they fly (solver/joints.h).
+static inline bool ob_flies_with_joints(const ob_island_input *in)
+{
+	return in->joints && !in->pairs;
+}
+
 // Gravity and the constant force of the passport (m/s^2); 0 for static objects.
 static inline ob_vec3 ob_external_acceleration(const ob_run_settings *run, const ob_passport *p)
 {
