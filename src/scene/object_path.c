@@ -58,7 +58,8 @@ static void check_said(lua_State *L, const char *where, const draft *d)
 	static const char *const kinds[] = { "sine", "circle", "spline" };
 	const said_field fields[] = {
 		{ "amplitude", !isnan(d->amplitude.x), 1 << SINE, 1 << SINE },
-		{ "frequency", !isnan(d->frequency) || !isnan(d->rate), 1 << SINE | 1 << CIRCLE, 1 << SINE | 1 << CIRCLE },
+		{ "frequency", !isnan(d->frequency) || !isnan(d->rate), 1 << SINE | 1 << CIRCLE,
+		  1 << SINE | 1 << CIRCLE },
 		{ "phase", !isnan(d->phase), 0, 1 << SINE },
 		{ "centre", !isnan(d->centre.x), 1 << CIRCLE, 1 << CIRCLE },
 		{ "axis", !isnan(d->axis.x), 0, 1 << CIRCLE },
@@ -77,8 +78,7 @@ static void keep_path(lua_State *L, const char *where, ob_object_def *o, const o
 
 static void make_sine(lua_State *L, const char *where, const draft *d, ob_object_def *o)
 {
-	const ob_path path =
-		ob_path_sine(&o->state, d->amplitude, d->rate, isnan(d->phase) ? 0 : d->phase);
+	const ob_path path = ob_path_sine(&o->state, d->amplitude, d->rate, isnan(d->phase) ? 0 : d->phase);
 	keep_path(L, where, o, &path);
 }
 
@@ -183,7 +183,9 @@ void ob_builder_read_path(lua_State *L, const char *kind, ob_object_def *o)
 {
 	char where[64];
 	const ob_vec3 unsaid = { NAN, NAN, NAN };
-	draft d = { .amplitude = unsaid, .centre = unsaid, .axis = unsaid, .frequency = NAN, .rate = NAN, .phase = NAN };
+	draft d = {
+		.amplitude = unsaid, .centre = unsaid, .axis = unsaid, .frequency = NAN, .rate = NAN, .phase = NAN
+	};
 	snprintf(where, sizeof where, "%s.path", kind);
 	luaL_checkstack(L, 8, "nested too deep");
 	ob_fields_read(L, -1, where, path_fields, sizeof path_fields / sizeof *path_fields, &d);

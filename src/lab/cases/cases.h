@@ -10,7 +10,6 @@
 	X(plates_box) \
 	X(discs_plane) \
 	X(discs_box) \
-	X(oblique) \
 	X(pendulum_90) \
 	X(pendulum_179) \
 	X(double_pendulum) \

@@ -2,7 +2,6 @@
 // the spinning, spinning slows the sliding, and both end together.
 #include "lab/cases/cases.h"
 #include "lab/look.h"
-#include "reference/mechanics.h"
 #include "reference/plate.h"
 #include "shape/shape.h"
 #include "world/world.h"
