@@ -12,6 +12,7 @@
 #include "base/allocate.h"
 #include "base/clock.h"
 #include "base/spelling.h"
+#include "base/utf8.h"
 #include "cli/command.h"
 #include "host/ask.h"
 #include "host/joining.h"
@@ -155,6 +156,30 @@ static bool print_contacts(sending *s, ob_error *e)
 	return fflush(stdout) == 0 || ob_fail(e, "contacts: %s", strerror(errno));
 }
 
+// Prints the newest sample of a sensor, or of each: its name, the time, and the values.
+static bool print_sensors(sending *s, ob_error *e)
+{
+	double value[OB_SENSOR_VALUES_MAX], time;
+	ob_sensor_passport p;
+	uint64_t number;
+	bool found = !s->word[0];
+	for (uint32_t i = 0; i < ob_universe_sensors(s->u); i++) {
+		if (!ob_universe_get_sensor(s->u, i, &p) || (s->word[0] && strcmp(p.name, s->word[0]) != 0))
+			continue;
+		const bool taken = ob_universe_get_samples(s->u, i, 0, &number, &time, value, 1);
+		found = true;
+		ob_utf8_make_plain(p.name);
+		printf("%s  ", p.name);
+		printf(taken ? "%.9g " : "- ", time);
+		for (uint32_t k = 0; taken && k < p.width; k++)
+			printf(" %.9g", value[k]);
+		puts("");
+	}
+	if (!found)
+		return ob_fail(e, "sensors: there is no sensor \"%s\"", s->word[0]);
+	return fflush(stdout) == 0 || ob_fail(e, "sensors: %s", strerror(errno));
+}
+
 // ---- rows
 
 void ob_send_help(FILE *f)
@@ -227,6 +252,8 @@ static bool send(sending *s, ob_error *e)
 		return await_step(s, e);
 	case OB_LOOK_POINTS:
 		return print_contacts(s, e);
+	case OB_LOOK_SENSED:
+		return print_sensors(s, e);
 	default:
 		return find_target(s, e) && ob_ask(s->u, &s->request, e);
 	}

@@ -121,6 +121,8 @@ const ob_request_row ob_request_rows[] = {
 	  OB_LOOK_WAIT, OB_TO_RUN, OB_ROLE_WATCH, NONE },
 	{ "contacts", NULL, "prints those of the last step", FIELDS({ "object", "OBJECT", "", FIELD(TEXT, OB_NAME_MAX, values), OPTIONAL = 0 }),
 	  OB_LOOK_POINTS, OB_TO_RUN, OB_ROLE_WATCH, NONE },
+	{ "sensors", NULL, "prints their newest samples", FIELDS({ "sensor", "SENSOR", "", FIELD(TEXT, OB_NAME_MAX, values), OPTIONAL = 0 }),
+	  OB_LOOK_SENSED, OB_TO_RUN, OB_ROLE_WATCH, NONE },
 	{ NULL, "contacts", "", FIELDS({ "on", NULL, "", FIELD(FLAG, 1, on) }), OB_LOOK_CONTACTS, OB_TO_RUN, OB_ROLE_WATCH, NONE },
 	{ NULL, "joints", "", FIELDS({ "on", NULL, "", FIELD(FLAG, 1, on) }), OB_LOOK_JOINTS, OB_TO_RUN, OB_ROLE_WATCH, NONE },
 	{ NULL, "simulators", "", FIELDS({ "on", NULL, "", FIELD(FLAG, 1, on) }), OB_LOOK_SIMULATORS, OB_TO_RUN, OB_ROLE_WATCH, NONE },

@@ -945,6 +945,7 @@ int ob_script_calls_open(lua_State *L)
 		{ "joint_load", call_joint_load },
 		{ "motor", call_motor },
 		{ "ray", call_ray },
+		{ "sense", ob_script_call_sense },
 		{ "send", call_send },
 		{ "random", ob_scene_call_random },
 		{ "random_rotation", ob_scene_call_random_rotation },

@@ -91,6 +91,9 @@ void ob_script_check_frozen(lua_State *L, const ob_interpreter *p);
 // Replaces the table at this index, which may be frozen, by a plain copy.
 void ob_script_thaw(lua_State *L, int index);
 
+// Returns a list of the newest values of a sensor, by its name, and their time (s); nothing if there are none.
+int ob_script_call_sense(lua_State *L);
+
 // The first hit of a ray with another object within its length: from a point, in a unit direction.
 typedef struct ob_ray_hit {
 	uint32_t id;

@@ -44,6 +44,7 @@ typedef enum ob_request_kind {
 typedef enum ob_look_kind {
 	OB_LOOK_WAIT = OB_REQUEST_KINDS, // until so many steps are complete
 	OB_LOOK_POINTS, // contact points of the last step
+	OB_LOOK_SENSED, // newest samples of sensors
 	OB_LOOK_CONTACTS, // those of each step: on or off; likewise the next
 	OB_LOOK_JOINTS,
 	OB_LOOK_SIMULATORS,

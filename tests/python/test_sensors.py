@@ -508,6 +508,31 @@ class SameBits(unittest.TestCase):
             self.assertEqual(imu.time, before)
 
 
+class Scripts(unittest.TestCase):
+    """Scripts read sensors, as programs do."""
+
+    def test_sense(self):
+        """The newest values that no delay hides, and their time, in each way to run."""
+        text = """scene { step = 1/60 }
+            script('feels', [[
+                function on_step()
+                    local v, t = sense('lidar')
+                    assert(not sense('none'))
+                    if v then self:force(#v, v[1], t) end
+                end]])
+            ground {}
+            box { name = 'box', size = { 1, 1, 1 }, at = { 0, 0, 5 }, script = 'feels' }
+            lidar { on = 'box', name = 'lidar', beams = 3, fan = 60, rotation = { axis = { 0, 1, 0 }, degrees = 90 },
+                noise = .01, delay = .03, rate = 100 }"""
+        for options in {'workers': 1}, {'workers': 2, 'isolation': 'process', 'harden': True}:
+            with scene(text) as f, obsim.run(f.name, options=options) as u:
+                u.step(9)
+                s = u.sensors['lidar']
+                expected = (3, s.value[0], s.time)
+                u.step(1)
+                self.assertEqual(tuple(u['box'].force), expected)
+
+
 class Refusals(unittest.TestCase):
     """One clear line."""
 
@@ -551,6 +576,12 @@ class Refusals(unittest.TestCase):
             done = subprocess.run([os.environ['OBSIM'], 'run', f.name, '--sync', 'free'], capture_output=True, text=True, check=False)
             self.assertNotEqual(done.returncode, 0)
             self.assertIn('a free run has none, as this scene has', done.stderr)
+            with obsim.run(f.name) as u:
+                u.step(3)
+                for words, code, text in (('sensors',), 0, 'skin  0.05  0\n'), (('sensors', 'skin'), 0, 'skin  0.05  0\n'), \
+                        (('sensors', 'sikn'), 1, ''):
+                    done = subprocess.run([os.environ['OBSIM'], 'send', u.universe_name, *words], capture_output=True, text=True, check=False)
+                    self.assertEqual((done.returncode, done.stdout), (code, text), done.stderr)
             with obsim.run(f.name, inside=True) as u:
                 with self.assertRaisesRegex(obsim.Unknown, "no sensor 'sikn', did you mean 'skin'"):
                     u.sensors['sikn']
