@@ -39,6 +39,7 @@ typedef struct writer {
 	int parts, parts_max;
 	int *part_of; // [bodies]: part that moves with the body; WORLD: it stands still
 	int links; // written so far
+	bool *sensed; // [joints]: it has a name, as an encoder reads it
 	apart *joined; // pairs that a joint holds, or that are apart
 	int joined_count, joined_max;
 } writer;
@@ -606,6 +607,42 @@ static void write_ends(const writer *w, const char *kind, const char *child, con
 		fprintf(w->out, ", \"%s\"", parent);
 }
 
+// True if the scene may have the name.
+static bool is_clean(const char *name)
+{
+	size_t n = 0;
+	for (; name && name[n]; n++)
+		if (name[n] < ' ' || name[n] > '~' || strchr("#\"\\", name[n]))
+			return false;
+	return n > 0 && n < NAME;
+}
+
+static bool reads_joint(const writer *w, int sensor)
+{
+	return w->m->sensor_type[sensor] == mjSENS_JOINTPOS || w->m->sensor_type[sensor] == mjSENS_JOINTVEL;
+}
+
+// Writes a name of the model, or the kind and number.
+static void write_name(const writer *w, int type, const char *kind, int id)
+{
+	const char *name = mj_id2name(w->m, type, id);
+	if (is_clean(name))
+		fprintf(w->out, "\"%s\"", name);
+	else
+		fprintf(w->out, "\"%s %d\"", kind, id);
+}
+
+// Names a joint that an encoder reads.
+static void name_joint(writer *w, int joint)
+{
+	for (int i = 0; i < w->m->nsensor; i++)
+		w->sensed[joint] |= reads_joint(w, i) && w->m->sensor_objid[i] == joint;
+	if (!w->sensed[joint])
+		return;
+	fputs(", name = ", w->out);
+	write_name(w, mjOBJ_JOINT, "joint", joint);
+}
+
 static void write_joint(writer *w, int joint, const char *child, const char *parent)
 {
 	const int type = w->m->jnt_type[joint];
@@ -616,6 +653,7 @@ static void write_joint(writer *w, int joint, const char *child, const char *par
 	} else {
 		write_vec(w, ", axis", axis(w, joint));
 		write_axis(w, joint);
+		name_joint(w, joint);
 	}
 	fputs(" }\n", w->out);
 }
@@ -802,6 +840,87 @@ static void part_overlaps(writer *w)
 		}
 }
 
+// ---- sensors
+
+// First sensor of one of two types on the same thing; n: there is none.
+static int first_of(const writer *w, int type, int other, int id)
+{
+	int i = 0;
+	while (i < w->m->nsensor &&
+	       ((w->m->sensor_type[i] != type && w->m->sensor_type[i] != other) || w->m->sensor_objid[i] != id))
+		i++;
+	return i;
+}
+
+static void write_noise(const writer *w, const char *key, int type, int id)
+{
+	const int i = first_of(w, type, type, id);
+	if (i < w->m->nsensor && w->m->sensor_noise[i] > 0)
+		write_number(w, key, w->m->sensor_noise[i]);
+}
+
+// Writes the pose of a site in its object's frame.
+static void write_site(const writer *w, int site, const part *p, bool along_z)
+{
+	double q[4];
+	const double *x = w->d->data->site_xpos + 3 * site;
+	const ob_mat3 r = ob_quat_matrix(p->solid.pose.q);
+	ob_pose at = { .p = ob_rotate_back(&r, ob_sub(ob_v3(x[0], x[1], x[2]), p->solid.pose.p)) };
+	mju_mat2Quat(q, w->d->data->site_xmat + 9 * site);
+	at.q = ob_quat_mul(ob_quat_conjugate(p->solid.pose.q), (ob_quat){ q[0], q[1], q[2], q[3] });
+	if (along_z) // the first beam of a lidar is along x
+		at.q = ob_quat_mul(at.q, (ob_quat){ M_SQRT1_2, 0, -M_SQRT1_2, 0 });
+	write_vec(w, ", at", at.p);
+	fprintf(w->out, ", q = { %.17g, %.17g, %.17g, %.17g }", at.q.w, at.q.x, at.q.y, at.q.z);
+}
+
+// Writes a sensor, as far as the scene has one. Two that read the same thing become one.
+static void write_sensor(writer *w, int i)
+{
+	const mjModel *m = w->m;
+	const int type = m->sensor_type[i], id = m->sensor_objid[i];
+	const bool turns = type == mjSENS_ACCELEROMETER || type == mjSENS_GYRO, encodes = reads_joint(w, i);
+	const int first = turns     ? first_of(w, mjSENS_ACCELEROMETER, mjSENS_GYRO, id)
+			  : encodes ? first_of(w, mjSENS_JOINTPOS, mjSENS_JOINTVEL, id)
+				    : i;
+	const bool on_site = turns || type == mjSENS_TOUCH || type == mjSENS_RANGEFINDER;
+	const int on = on_site ? w->part_of[m->site_bodyid[id]] : WORLD;
+	const char *name = mj_id2name(m, mjOBJ_SENSOR, i);
+	if (first < i)
+		return;
+	if (encodes ? !w->sensed[id] : on == WORLD) {
+		leave_out(w, "%s is left out", name_of(w, mjOBJ_SENSOR, "sensor", i));
+		return;
+	}
+	if (encodes) {
+		fputs("encoder { joint = ", w->out);
+		write_name(w, mjOBJ_JOINT, "joint", id);
+		write_noise(w, "noise", mjSENS_JOINTPOS, id);
+		write_noise(w, "rate_noise", mjSENS_JOINTVEL, id);
+	} else {
+		const part *p = &w->part[on];
+		fprintf(w->out, "%s { on = \"%s\"", turns ? "imu" : type == mjSENS_TOUCH ? "touch" : "lidar", p->name);
+		if (type != mjSENS_TOUCH)
+			write_site(w, id, p, !turns);
+		if (turns) {
+			write_noise(w, "noise", mjSENS_ACCELEROMETER, id);
+			write_noise(w, "gyro_noise", mjSENS_GYRO, id);
+		} else {
+			write_noise(w, "noise", type, id);
+		}
+		if (type == mjSENS_RANGEFINDER) {
+			fputs(", beams = 1", w->out);
+			write_number(w, "reach", m->sensor_cutoff[i] > 0 ? m->sensor_cutoff[i] : 1e6);
+		}
+		if (type == mjSENS_TOUCH)
+			leave_out(w, "%s reads all contacts of its object, not those at its site alone",
+				  name_of(w, mjOBJ_SENSOR, "sensor", i));
+	}
+	if (is_clean(name))
+		fprintf(w->out, ", name = \"%s\"", name);
+	fputs(" }\n", w->out);
+}
+
 // ---- the rest of the model
 
 static void list_kind(writer *w, int type, const char *kind, int n)
@@ -818,7 +937,6 @@ static void list_rest(writer *w)
 		    servo_of(w, m->actuator_trnid[2 * a]) != a)
 			leave_out(w, "%s is left out", name_of(w, mjOBJ_ACTUATOR, "actuator", a));
 	list_kind(w, mjOBJ_TENDON, "tendon", m->ntendon);
-	list_kind(w, mjOBJ_SENSOR, "sensor", m->nsensor);
 	list_kind(w, mjOBJ_PAIR, "contact pair", m->npair);
 	list_kind(w, mjOBJ_CAMERA, "camera", m->ncam);
 	list_kind(w, mjOBJ_LIGHT, "light", m->nlight);
@@ -855,6 +973,8 @@ static void write_scene(writer *w, const char *path)
 	write_equalities(w);
 	write_excluded(w);
 	part_overlaps(w);
+	for (int i = 0; i < m->nsensor; i++)
+		write_sensor(w, i);
 	list_rest(w);
 }
 
@@ -865,7 +985,8 @@ static bool convert(const char *path, const char *folder, FILE *scene, FILE *omi
 		return false;
 	writer w = { .d = &d, .m = d.model, .out = scene, .omitted = omitted, .folder = folder };
 	w.part_of = calloc((size_t)d.model->nbody, sizeof *w.part_of);
-	if (!w.part_of)
+	w.sensed = calloc((size_t)d.model->njnt + 1, sizeof *w.sensed);
+	if (!w.part_of || !w.sensed)
 		return ob_fail(e, "%s: out of memory", path);
 	write_scene(&w, path);
 	return true; // its memory ends with the process

@@ -20,7 +20,7 @@
 typedef struct sensor {
 	const char *on, *joint, *name;
 	ob_vec3 at;
-	ob_quat rotation;
+	ob_quat q, rotation;
 	double rate, delay, fan, rise, reach; // degrees
 	uint32_t keep, beams, rows;
 	ob_sensor_noise noise[2];
@@ -40,7 +40,7 @@ typedef struct sensor {
 #define JOINT F(joint, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1, .required = true)
 #define POSE \
 	F(at, .kind = OB_FIELD_VECTOR, .low = -OB_LENGTH_MOST, .high = OB_LENGTH_MOST), \
-		F(rotation, .kind = OB_FIELD_ROTATION)
+		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION)
 
 static const ob_field imu_fields[] = { ON, POSE, COMMON, NOISES("gyro_", 1) };
 static const ob_field encoder_fields[] = { JOINT, COMMON, NOISES("rate_", 1) };
@@ -102,7 +102,12 @@ static void place(lua_State *L, const ob_scene *s, const char *kind, const senso
 	if (d->on) {
 		ob_builder_find_object(L, s, kind, d->on, &on);
 		p->object = on.id;
-		p->pose = in_body(s, &s->object[on.id].passport, (ob_pose){ d->at, d->rotation });
+		if (!isnan(d->q.w) && !isnan(d->rotation.w))
+			ob_sandbox_fail(L, "%s.q: expected either q or rotation, got both", kind);
+		p->pose = in_body(s, &s->object[on.id].passport,
+				  (ob_pose){ d->at, !isnan(d->q.w)          ? d->q
+						    : !isnan(d->rotation.w) ? d->rotation
+									    : ob_quat_identity() });
 		return;
 	}
 	p->joint = find_joint(L, s, kind, d->joint);
@@ -146,7 +151,13 @@ int ob_scene_call_sensor(lua_State *L)
 {
 	ob_builder *b = ob_sandbox_user(L);
 	ob_sensor_passport p = { .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
-	sensor d = { .rotation = ob_quat_identity(), .beams = 360, .rows = 1, .fan = 360, .rise = 30, .reach = 30 };
+	sensor d = { .q = { .w = NAN },
+		     .rotation = { .w = NAN },
+		     .beams = 360,
+		     .rows = 1,
+		     .fan = 360,
+		     .rise = 30,
+		     .reach = 30 };
 	const char *kind = ob_sensor_kind_name(p.kind);
 	lua_settop(L, 1);
 	ob_fields_read(L, 1, kind, calls[p.kind].field, calls[p.kind].fields, &d);

@@ -34,6 +34,11 @@ class Learning(unittest.TestCase):
         balance = runpy.run_path(os.path.join(os.path.dirname(__file__), '../../examples/balance.py'))
         self.assertTrue(balance['main']())
 
+    def test_course(self):
+        """The car drives a lap by its lidar, and touches no wall."""
+        course = runpy.run_path(os.path.join(os.path.dirname(__file__), '../../examples/course.py'))
+        self.assertTrue(course['main']())
+
 
 class Examples(unittest.TestCase):
     def setUp(self):

@@ -55,10 +55,12 @@ class Import(program.Case):
 	def test_arm(self):
 		scene, _, said = self.compare("arm.xml")
 		self.assertRegex(scene, r'\nhinge \{ "shoulder".*, low = -2.96\d*, high = 2.96')
-		for what in ('actuator "lifter" is left out', 'sensor "angle" is left out', 'light "lamp" is left out',
+		for what in ('actuator "lifter" is left out', 'light "lamp" is left out',
 				"hand: 1 geoms that are looks alone are left out: --out DIR writes them"):
 			self.assertIn(f"obsim: {what}\n", said)
 			self.assertIn(f"-- {what}\n", scene)
+		self.assertRegex(scene, r'\nhinge \{ "upper".*, name = "lift" \}')
+		self.assertIn('\nencoder { joint = "lift", name = "angle" }\n', scene)
 		self.assertRegex(scene, r'\nplane \{ name = "floor"')
 		self.assertRegex(scene, r'\nuniversal \{ "hand", "fore"')
 		self.assertRegex(scene, r'\nslider \{ "finger", "hand"')
@@ -230,6 +232,29 @@ class Import(program.Case):
 		self.assertIn(", low = -0.017", scene)
 		self.assertIn("attribute gravcomp is left out, 1 times: MuJoCo 2.2 has none", said)
 		self.assertIn("element jointactuatorfrc is left out, 2 times: MuJoCo 2.2 has none", said)
+
+	def test_sensors(self):
+		"""Sensors of sites and joints that the scene has; two of the same thing are one; others are listed."""
+		path = self.write("sensors.xml", """<mujoco><worldbody><body name="box" pos="1 2 3"><joint name="turn" axis="0 0 1"/>
+			<geom type="box" size=".3 .2 .1"/><site name="s" pos=".1 .2 .3" quat="0 0 1 0"/>
+			<body pos="1 0 0"><joint name="odd#" type="slide"/><geom type="sphere" size=".1"/></body></body></worldbody>
+			<sensor><gyro name="unit" site="s" noise=".01"/><touch name="skin" site="s"/><accelerometer site="s" noise=".2"/>
+			<rangefinder name="beam" site="s" cutoff="7"/><jointpos name="angle" joint="turn"/><jointvel joint="turn" noise=".3"/>
+			<jointvel joint="odd#"/><framepos name="place" objtype="site" objname="s"/><force name="pull" site="s"/></sensor></mujoco>""")
+		scene, _, said = self.convert(path)
+		site = r"at = \{ 0.1\d*, 0.2\d*, 0.(3|29)\d* \}, q = \{ "
+		for line in (r'hinge \{ "box", .*, name = "turn" \}', r'slider \{ .*, name = "joint 1" \}',
+				r'imu \{ on = "box", ' + site + r'0, 0, 1, 0 \}, noise = 0.2\d*, gyro_noise = 0.01\d*, name = "unit" \}',
+				r'touch \{ on = "box", name = "skin" \}',
+				r'lidar \{ on = "box", ' + site + r'0.707\d*, 0, 0.707\d*, 0 \}, beams = 1, reach = 7, name = "beam" \}',
+				r'encoder \{ joint = "turn", rate_noise = 0.(3|29)\d*, name = "angle" \}', r'encoder \{ joint = "joint 1" \}'):
+			self.assertRegex(scene, "\n" + line.replace("0, 0, 1, 0", "-?0, -?0, 1, -?0") + "\n")
+		for what in ('sensor "place" is left out', 'sensor "pull" is left out',
+				'sensor "skin" reads all contacts of its object, not those at its site alone'):
+			self.assertIn(what, said)
+		with open(self.path("sensors.lua"), "w", encoding="utf-8") as f:
+			f.write(scene)
+		program.report(self.path("sensors.lua"), "--duration", ".1")
 
 	def test_odd_moments(self):
 		"""A body whose shape is far too small for its moments keeps these, and touches nothing."""
