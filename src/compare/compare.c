@@ -12,40 +12,29 @@
 #include "experiment/json.h"
 #include "experiment/process.h"
 
+#define ROW(id, key, title, arch, isolation, workers, most, other, harden) \
+	[OB_CONFIGURATION_##id] = { key, title, arch, isolation, OB_WORKERS_##workers, most, other, harden }
+#define POOL(id, key, title, harden) ROW(id, "processes_" key, title, "obs", "process", POOL, 0, false, harden)
 const ob_configuration ob_configuration_table[OB_CONFIGURATIONS] = {
-	[OB_CONFIGURATION_MONOLITH] = { "monolith", "monolith", "monolith", "thread", OB_WORKERS_ONE, 0, false, NULL },
-	[OB_CONFIGURATION_THREAD] = { "thread_1", "1 thread", "obs", "thread", OB_WORKERS_ONE, 0, false, NULL },
-	[OB_CONFIGURATION_THREADS_2] = { "threads_2", "2 threads", "obs", "thread", OB_WORKERS_TWO, 0, false, NULL },
-	[OB_CONFIGURATION_THREADS] = { "threads", "thread pool", "obs", "thread", OB_WORKERS_POOL, 0, false, NULL },
-	[OB_CONFIGURATION_PROCESSES] = { "processes", "process pool", "obs", "process", OB_WORKERS_POOL, 0, false,
-					 NULL },
-	[OB_CONFIGURATION_GROUPS] = { "process_groups", "groups of 60", "obs", "process", OB_WORKERS_GROUPS, 0, false,
-				      NULL },
+	ROW(MONOLITH, "monolith", "monolith", "monolith", "thread", ONE, 0, false, NULL),
+	ROW(THREAD, "thread_1", "1 thread", "obs", "thread", ONE, 0, false, NULL),
+	ROW(THREADS_2, "threads_2", "2 threads", "obs", "thread", TWO, 0, false, NULL),
+	ROW(THREADS, "threads", "thread pool", "obs", "thread", POOL, 0, false, NULL),
+	ROW(PROCESSES, "processes", "process pool", "obs", "process", POOL, 0, false, NULL),
+	ROW(GROUPS, "process_groups", "groups of 60", "obs", "process", GROUPS, 0, false, NULL),
 	// with more than these, scheduling dominates on one workstation
-	[OB_CONFIGURATION_THREADS_EACH] = { "threads_each", "thread each", "obs", "thread", OB_WORKERS_EACH, 4096,
-					    false, NULL },
-	[OB_CONFIGURATION_PROCESSES_EACH] = { "processes_each", "process each", "obs", "process", OB_WORKERS_EACH, 1024,
-					      false, NULL },
-	[OB_CONFIGURATION_OUTBOX] = { "processes_outbox", "outboxes", "obs", "process", OB_WORKERS_POOL, 0, false,
-				      "outbox" },
-	[OB_CONFIGURATION_CHECKSUM] = { "processes_checksum", "with checksum", "obs", "process", OB_WORKERS_POOL, 0,
-					false, "checksum" },
-	[OB_CONFIGURATION_PAGES] = { "processes_pages", "with pages", "obs", "process", OB_WORKERS_POOL, 0, false,
-				     "pages" },
-	[OB_CONFIGURATION_PRIVILEGES] = { "processes_privileges", "privileges", "obs", "process", OB_WORKERS_POOL, 0,
-					  false, "privileges" },
-	[OB_CONFIGURATION_LIMITS] = { "processes_limits", "limits", "obs", "process", OB_WORKERS_POOL, 0, false,
-				      "limits" },
-	[OB_CONFIGURATION_CALLS] = { "processes_calls", "system calls", "obs", "process", OB_WORKERS_POOL, 0, false,
-				     "calls" },
-	[OB_CONFIGURATION_HARDENED] = { "processes_hardened", "hardened pool", "obs", "process", OB_WORKERS_POOL, 0,
-					false, "" },
-	[OB_CONFIGURATION_HARDENED_EACH] = { "processes_each_hardened", "hardened each", "obs", "process",
-					     OB_WORKERS_EACH, 1024, false, "" },
-	[OB_CONFIGURATION_MONOLITH_OTHER] = { "monolith_other", "monolith", "monolith", "thread", OB_WORKERS_ONE, 0,
-					      true, NULL },
-	[OB_CONFIGURATION_THREADS_OTHER] = { "threads_other", "thread pool", "obs", "thread", OB_WORKERS_POOL, 0, true,
-					     NULL },
+	ROW(THREADS_EACH, "threads_each", "thread each", "obs", "thread", EACH, 4096, false, NULL),
+	ROW(PROCESSES_EACH, "processes_each", "process each", "obs", "process", EACH, 1024, false, NULL),
+	POOL(OUTBOX, "outbox", "outboxes", "outbox"),
+	POOL(CHECKSUM, "checksum", "with checksum", "checksum"),
+	POOL(PAGES, "pages", "with pages", "pages"),
+	POOL(PRIVILEGES, "privileges", "privileges", "privileges"),
+	POOL(LIMITS, "limits", "limits", "limits"),
+	POOL(CALLS, "calls", "system calls", "calls"),
+	POOL(HARDENED, "hardened", "hardened pool", ""),
+	ROW(HARDENED_EACH, "processes_each_hardened", "hardened each", "obs", "process", EACH, 1024, false, ""),
+	ROW(MONOLITH_OTHER, "monolith_other", "monolith", "monolith", "thread", ONE, 0, true, NULL),
+	ROW(THREADS_OTHER, "threads_other", "thread pool", "obs", "thread", POOL, 0, true, NULL),
 };
 
 #define METRIC(id, key, title, unit, scale, group, meaning, kind, ...) \

@@ -5,10 +5,10 @@
 #include <math.h>
 #include <poll.h>
 #include <signal.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -17,17 +17,21 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "ranks/ranks.h"
 
 static const double tick_s = .2, shortest_nap_s = 1e-3;
+static const double wall_for_cpu = 4; // a slow machine is not the trial's fault
 static const int grace_ms = 2000; // from SIGTERM to SIGKILL
 static const int stops[] = { SIGINT, SIGTERM, SIGHUP };
 enum { STOPS = sizeof stops / sizeof *stops, PROGRAM_TEXT = 1 << 20 };
 
-// Header of the answer in the pipe; the following bytes may be of any type.
-typedef struct verdict {
-	_Alignas(max_align_t) bool fine;
+// What a child sends through the pipe, which holds as much.
+typedef struct answer {
+	bool fine;
 	ob_error why;
-} verdict;
+	ob_record record;
+} answer;
+_Static_assert(sizeof(answer) < 65536, "it fits a pipe");
 
 // Tail of a child's standard error.
 typedef struct tail {
@@ -38,9 +42,9 @@ typedef struct tail {
 typedef struct child {
 	pid_t pid; // and its process group
 	int exit, answer, said; // file descriptors: readable at its exit, its answer, its standard error
-	double begun;
-	ob_process_cost cost; // so far
-	bool called_off; // by `hear`
+	double begun, wall_s, cpu_s; // the times so far
+	double wall_limit_s, cpu_limit_s; // 0 = none
+	bool called_off; // by attend
 } child;
 
 static volatile sig_atomic_t interrupted;
@@ -102,21 +106,17 @@ static void begin_child(pid_t parent, int said)
 	sigprocmask(SIG_SETMASK, &mask_before, NULL);
 }
 
-static void work(const ob_process *p, const void *answer, int to)
+static void work(const ob_experiment *x, const ob_trial *t, const ob_record *r, int to)
 {
-	char *message = malloc(sizeof(verdict) + p->size);
-	if (!message)
-		_exit(1);
-	verdict v = { .fine = false };
-	memcpy(message + sizeof v, answer, p->size);
-	v.fine = p->work(p->with, message + sizeof v, &v.why);
-	memcpy(message, &v, sizeof v);
-	while (write(to, message, sizeof v + p->size) < 0 && errno == EINTR)
+	answer a = { .record = *r };
+	ob_ranks_forget(); // a trial is alone, even in an experiment on several ranks
+	a.fine = x->run(t, &a.record, &a.why);
+	while (write(to, &a, sizeof a) < 0 && errno == EINTR)
 		;
 	_exit(0);
 }
 
-static bool start(const ob_process *p, const void *answer, child *c, ob_error *e)
+static bool start(const ob_experiment *x, const ob_trial *t, const ob_record *r, child *c, ob_error *e)
 {
 	int home[2], said[2];
 	if (pipe2(home, O_CLOEXEC | O_NONBLOCK) != 0)
@@ -129,10 +129,16 @@ static bool start(const ob_process *p, const void *answer, child *c, ob_error *e
 	}
 	fflush(NULL);
 	pid_t parent = getpid();
-	*c = (child){ .pid = fork(), .exit = -1, .answer = home[0], .said = said[0], .begun = ob_clock_wall() };
+	*c = (child){ .pid = fork(),
+		      .exit = -1,
+		      .answer = home[0],
+		      .said = said[0],
+		      .begun = ob_clock_wall(),
+		      .cpu_limit_s = x->limit_s,
+		      .wall_limit_s = ob_trial_wall_limit(x) };
 	if (c->pid == 0) {
 		begin_child(parent, said[1]);
-		work(p, answer, home[1]);
+		work(x, t, r, home[1]);
 	}
 	int why = errno;
 	close(home[1]);
@@ -173,27 +179,26 @@ static bool listen_to(int fd, tail *t)
 }
 
 // Seconds until one of the limits may be reached.
-static double time_left(const ob_process *p, child *c)
+static double time_left(child *c)
 {
 	double left = INFINITY;
-	c->cost.wall_s = ob_clock_wall() - c->begun;
-	c->cost.cpu_s =
-		fmax(c->cost.cpu_s, 1e-9 * (double)ob_clock_cpu_of_process(c->pid)); // which is 0 once it has ended
-	if (p->cpu_limit_s > 0)
-		left = p->cpu_limit_s - c->cost.cpu_s;
-	if (p->wall_limit_s > 0)
-		left = fmin(left, p->wall_limit_s - c->cost.wall_s);
+	c->wall_s = ob_clock_wall() - c->begun;
+	c->cpu_s = fmax(c->cpu_s, 1e-9 * (double)ob_clock_cpu_of_process(c->pid)); // which is 0 once it has ended
+	if (c->cpu_limit_s > 0)
+		left = c->cpu_limit_s - c->cpu_s;
+	if (c->wall_limit_s > 0)
+		left = fmin(left, c->wall_limit_s - c->wall_s);
 	return left;
 }
 
 // Waits for the child's end; returns false if its time is over, or the parent's is.
-static bool await(const ob_process *p, child *c, tail *t)
+static bool await(const ob_meanwhile *p, child *c, tail *t)
 {
 	struct pollfd polls[] = { { .fd = c->exit, .events = POLLIN },
 				  { .fd = c->said, .events = POLLIN },
 				  { .fd = p->attend ? p->ear : -1, .events = POLLIN } };
 	for (;;) {
-		double left = time_left(p, c), nap = fmax(fmin(left, tick_s), shortest_nap_s);
+		double left = time_left(c), nap = fmax(fmin(left, tick_s), shortest_nap_s);
 		struct timespec time = { .tv_nsec = (long)(nap * 1e9) };
 		int n = ppoll(polls, 3, &time, &mask_before);
 		if (interrupted)
@@ -231,108 +236,85 @@ static const char *last_line(tail *t)
 	return line ? line + 1 : t->text;
 }
 
-static ob_process_end explain_crash(int status, tail *t, ob_error *e)
+static void explain_crash(int status, tail *t, ob_record *r)
 {
 	const char *last = last_line(t), *colon = *last ? ": " : "";
 	const char *name = WIFSIGNALED(status) ? sigabbrev_np(WTERMSIG(status)) : NULL;
+	r->failure = OB_FAILURE_CRASH;
 	if (name)
-		ob_fail(e, "crashed, SIG%s%s%.100s", name, colon, last);
+		snprintf(r->reason, sizeof r->reason, "crashed, SIG%s%s%.100s", name, colon, last);
 	else if (WIFSIGNALED(status))
-		ob_fail(e, "crashed, signal %d%s%.100s", WTERMSIG(status), colon, last);
+		snprintf(r->reason, sizeof r->reason, "crashed, signal %d%s%.100s", WTERMSIG(status), colon, last);
 	else
-		ob_fail(e, "ended with status %d%s%.100s", WEXITSTATUS(status), colon, last);
-	return OB_PROCESS_CRASHED;
+		snprintf(r->reason, sizeof r->reason, "ended with status %d%s%.100s", WEXITSTATUS(status), colon, last);
 }
 
-static ob_process_end finish(const ob_process *p, child *c, bool ended, tail *t, void *answer, ob_error *e)
+// Waits for the child and the end of its processes; takes its answer, or the reason why there is none.
+static void finish(child *c, bool ended, tail *t, ob_record *r)
 {
 	struct rusage used = { 0 };
 	int status = 0;
-	char *message = malloc(sizeof(verdict) + p->size);
+	answer a;
 	end_group(c, ended);
 	while (wait4(c->pid, &status, 0, &used) < 0 && errno == EINTR)
 		;
-	c->cost.wall_s = ob_clock_wall() - c->begun;
-	c->cost.cpu_s = fmax(c->cost.cpu_s, (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
-						    1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec));
+	c->wall_s = ob_clock_wall() - c->begun;
+	c->cpu_s = fmax(c->cpu_s, (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+					  1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec));
 	listen_to(c->said, t);
-	ssize_t size = (ssize_t)(sizeof(verdict) + p->size);
-	bool answered = message && ended && read(c->answer, message, (size_t)size) == size;
-	ob_process_end end = OB_PROCESS_ANSWERED;
-	verdict v = { .fine = false };
-	if (answered)
-		memcpy(&v, message, sizeof v);
-	if (answered && v.fine)
-		memcpy(answer, message + sizeof v, p->size);
-	else if (answered)
-		end = OB_PROCESS_GAVE_UP;
-	if (answered && !v.fine)
-		ob_fail(e, "%s", v.why.text);
-	if (!ended && (interrupted || c->called_off)) {
-		ob_fail(e, "interrupted");
-		end = OB_PROCESS_INTERRUPTED;
-	} else if (!ended) {
-		bool cpu = p->cpu_limit_s > 0 && c->cost.cpu_s >= p->cpu_limit_s;
-		ob_fail(e, "ran longer than %g s%s", cpu ? p->cpu_limit_s : p->wall_limit_s, cpu ? " of CPU" : "");
-		end = OB_PROCESS_OUT_OF_TIME;
-	} else if (!answered) {
-		end = explain_crash(status, t, e);
+	const bool answered = ended && read(c->answer, &a, sizeof a) == sizeof a;
+	const bool cpu = c->cpu_limit_s > 0 && c->cpu_s >= c->cpu_limit_s;
+	if (answered && a.fine) {
+		*r = a.record;
+		r->failure = *r->reason ? OB_FAILURE_OUTCOME : OB_FAILURE_NONE;
+	} else if (answered) {
+		r->failure = OB_FAILURE_ERROR;
+		snprintf(r->reason, sizeof r->reason, "%.159s", *a.why.text ? a.why.text : "it failed without a word");
+	} else if (ended) {
+		explain_crash(status, t, r);
+	} else {
+		r->failure = OB_FAILURE_TIME;
+		snprintf(r->reason, sizeof r->reason, "ran longer than %g s%s", cpu ? c->cpu_limit_s : c->wall_limit_s,
+			 cpu ? " of CPU" : "");
 	}
-	free(message);
-	return end;
+	r->took_s = c->wall_s;
+	r->took_cpu_s = c->cpu_s;
+	for (char *at = r->reason; (at = strpbrk(at, "\r\n"));)
+		*at = ' '; // a record is a line of the file
 }
 
-ob_process_end ob_process_run(const ob_process *p, void *answer, ob_process_cost *cost, ob_error *e)
+bool ob_trial_run(const ob_experiment *x, const ob_trial *t, const ob_meanwhile *meanwhile, ob_record *r, ob_error *e)
 {
 	child c = { 0 };
-	tail t = { 0 };
-	*cost = (ob_process_cost){ 0 };
-	if (p->size > OB_PROCESS_ANSWER) {
-		ob_fail(e, "%zu bytes are too long an answer", p->size);
-		return OB_PROCESS_NOT_STARTED;
-	}
-	if (!start(p, answer, &c, e))
-		return OB_PROCESS_NOT_STARTED;
-	bool ended = await(p, &c, &t);
-	ob_process_end end = finish(p, &c, ended, &t, answer, e);
-	*cost = c.cost;
+	tail said = { 0 };
+	if (!start(x, t, r, &c, e))
+		return false;
+	const bool ended = await(meanwhile, &c, &said), stopped = !ended && (interrupted || c.called_off);
+	finish(&c, ended, &said, r);
 	close(c.exit);
 	close(c.answer);
 	close(c.said);
-	return end;
+	return !stopped || ob_fail(e, "interrupted");
+}
+
+ob_record ob_trial_record(const ob_records *of, const ob_trial *t)
+{
+	ob_record r = { .repeat = t->repeat, .seed = t->seed };
+	memcpy(r.of, t->of, sizeof r.of);
+	memcpy(r.configuration, t->configuration, sizeof r.configuration);
+	memcpy(r.machine, of->machine, sizeof r.machine);
+	memcpy(r.commit, of->commit, sizeof r.commit);
+	for (int i = 0; i < OB_METRICS; i++)
+		r.metric[i] = NAN;
+	return r;
+}
+
+double ob_trial_wall_limit(const ob_experiment *x)
+{
+	return wall_for_cpu * x->limit_s;
 }
 
 // ---- this program, started anew
-
-typedef struct text {
-	char *bytes;
-	size_t length;
-} text;
-
-// Returns false at the end of the pipe. Beyond PROGRAM_TEXT, output is read and dropped, so that the child can go on.
-static bool collect_some(int fd, text *t)
-{
-	char buffer[4096];
-	ssize_t n = read(fd, buffer, sizeof buffer);
-	if (n < 0)
-		return errno == EINTR;
-	size_t room = PROGRAM_TEXT - 1 - t->length, take = (size_t)n < room ? (size_t)n : room;
-	memcpy(t->bytes + t->length, buffer, take);
-	t->length += take;
-	t->bytes[t->length] = 0;
-	return n > 0;
-}
-
-static void collect(int out, int said, text texts[2])
-{
-	struct pollfd polls[2] = { { .fd = out, .events = POLLIN }, { .fd = said, .events = POLLIN } };
-	while (polls[0].fd >= 0 || polls[1].fd >= 0) {
-		int n = poll(polls, 2, -1);
-		for (int i = 0; n > 0 && i < 2; i++)
-			if (polls[i].revents && !collect_some(polls[i].fd, &texts[i]))
-				polls[i].fd = -1;
-	}
-}
 
 // Finds the last line that begins with "obsim: ", and removes that prefix.
 static void find_complaint(const char *said, char to[256])
@@ -358,38 +340,6 @@ static pid_t start_program(char *const argv[], int out, int said)
 	_exit(127);
 }
 
-bool ob_program_run(char *const argv[], ob_program_result *r, ob_error *e)
-{
-	int out[2], said[2], status = 0;
-	text texts[2] = { { calloc(1, PROGRAM_TEXT), 0 }, { calloc(1, PROGRAM_TEXT), 0 } };
-	*r = (ob_program_result){ .out = texts[0].bytes };
-	bool fine = (texts[0].bytes && texts[1].bytes) || ob_fail(e, "out of memory");
-	if (fine && (pipe2(out, O_CLOEXEC) != 0 || pipe2(said, O_CLOEXEC) != 0))
-		fine = ob_fail(e, "cannot make a pipe: %s", strerror(errno));
-	if (fine) {
-		pid_t pid = start_program(argv, out[1], said[1]);
-		int why = errno;
-		close(out[1]);
-		close(said[1]);
-		if (pid > 0)
-			collect(out[0], said[0], texts);
-		close(out[0]);
-		close(said[0]);
-		while (pid > 0 && waitpid(pid, &status, 0) < 0 && errno == EINTR)
-			;
-		r->code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-		fine = pid > 0 || ob_fail(e, "cannot start a process: %s", strerror(why));
-	}
-	if (texts[1].bytes)
-		find_complaint(texts[1].bytes, r->complaint);
-	free(texts[1].bytes);
-	if (!fine) {
-		free(r->out);
-		r->out = NULL;
-	}
-	return fine;
-}
-
 void ob_program_free_arguments(char **argv)
 {
 	for (char **at = argv; at && *at; at++)
@@ -397,15 +347,39 @@ void ob_program_free_arguments(char **argv)
 	free(argv);
 }
 
+// Text of a file, malloc'd; NULL: no memory.
+static char *text_of(int file)
+{
+	char *text = calloc(1, PROGRAM_TEXT);
+	if (text && pread(file, text, PROGRAM_TEXT - 1, 0) < 0)
+		*text = 0;
+	return text;
+}
+
 char *ob_program_report(char **argv, ob_error *e)
 {
-	ob_program_result r = { 0 };
-	bool fine = argv ? ob_program_run(argv, &r, e) : ob_fail(e, "out of memory");
-	if (fine && r.code != 0)
-		fine = ob_fail(e, "%s", *r.complaint ? r.complaint : "it died without a word");
+	const int out = memfd_create("obsim-out", MFD_CLOEXEC), said = memfd_create("obsim-said", MFD_CLOEXEC);
+	bool fine =
+		argv ? (out >= 0 && said >= 0) || ob_fail(e, "cannot make a file: %m") : ob_fail(e, "out of memory");
+	char *report = NULL, *words = NULL, complaint[256];
+	int status = 0;
+	if (fine) {
+		const pid_t pid = start_program(argv, out, said);
+		fine = pid > 0 || ob_fail(e, "cannot start a process: %m");
+		while (pid > 0 && waitpid(pid, &status, 0) < 0 && errno == EINTR)
+			;
+		report = text_of(out);
+		words = text_of(said);
+		find_complaint(words ? words : "", complaint);
+		fine = fine && ((report && words) || ob_fail(e, "out of memory")) &&
+		       (status == 0 || ob_fail(e, "%s", *complaint ? complaint : "it died without a word"));
+	}
+	close(out);
+	close(said);
+	free(words);
 	ob_program_free_arguments(argv);
 	if (fine)
-		return r.out;
-	free(r.out);
+		return report;
+	free(report);
 	return NULL;
 }

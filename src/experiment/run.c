@@ -13,7 +13,6 @@
 #include "experiment/progress.h"
 #include "experiment/result_line.h"
 #include "experiment/spread.h"
-#include "experiment/trial.h"
 
 static const double tick_s = .2;
 static const double worth_telling_s = 5; // shorter runs are over before their estimate is read
@@ -398,7 +397,7 @@ static bool attend_to_others(void *of)
 static bool run_own(session *s, ob_error *e)
 {
 	const ob_trial *t = &s->trials->trial[s->seat[0].trial];
-	const ob_process meanwhile = { .tick = s->experiment->quiet ? NULL : tick,
+	const ob_meanwhile meanwhile = { .tick = s->experiment->quiet ? NULL : tick,
 				       .attend = s->courier ? attend_to_others : NULL,
 				       .ear = s->courier ? ob_courier_socket(s->courier) : -1,
 				       .of = s };

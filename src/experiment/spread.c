@@ -5,7 +5,6 @@
 #include "base/clock.h"
 #include "base/hash.h"
 #include "experiment/process.h"
-#include "experiment/trial.h"
 
 static const double look_s = 1; // between polls while no message comes
 static const double grace_s = 60; // after which it leaves by itself
@@ -51,7 +50,7 @@ static bool await_order(helper *h, ob_error *e)
 
 static bool help(helper *h, const ob_experiment *x, const ob_trials *s, const ob_records *own, ob_error *e)
 {
-	const ob_process meanwhile = { .attend = attend, .ear = ob_courier_socket(h->courier), .of = h };
+	const ob_meanwhile meanwhile = { .attend = attend, .ear = ob_courier_socket(h->courier), .of = h };
 	ob_spread_message said = { .kind = OB_SPREAD_JOIN,
 				   .trial = ob_spread_digest(x, s),
 				   .record = ob_trial_record(own, &(ob_trial){ .repeat = 0 }) };

@@ -68,17 +68,11 @@ bool ob_results_add(ob_results *r, const ob_result *one)
 	return true;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-	return by_number(*(const double *)a, *(const double *)b);
-}
-
 static double median(const double *value, size_t n)
 {
 	double sorted[OB_REPEATS];
 	memcpy(sorted, value, n * sizeof *value);
-	qsort(sorted, n, sizeof *sorted, compare_numbers);
-	return (sorted[(n - 1) / 2] + sorted[n / 2]) / 2;
+	return ob_reference_summarise(n, sorted).median;
 }
 
 void ob_result_repeat(ob_result *r, const ob_case_result *again)
