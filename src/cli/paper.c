@@ -9,7 +9,6 @@
 #include "experiment/words.h"
 #include "paper/claims.h"
 #include "paper/paper.h"
-#include "paper/report.h"
 #include "ranks/ranks.h"
 #include "render/render.h"
 

@@ -10,7 +10,7 @@
 //      ob_experiment_run ------>  one child process a trial (process.h): time limits, crashes, Ctrl-C; a line of
 //          |     ^                progress (progress.h), and an estimate of the total time at the start
 //          v     |                skips trials that the records already have
-//          |     |                runs on several ranks at once, if started by mpirun (spread.h)
+//          |     |                runs on several ranks at once, if started by mpirun
 //      ob_records  <---------->   DIR/results.csv: a line for each trial, appended as trials end
 //          |
 //          v
@@ -148,6 +148,9 @@ void ob_records_finish(ob_records *r);
 // CSV file (base/csv.h): a line for each record, columns by name; numbers read back to the same bits. A missing file is
 // empty. An unterminated last line, from an interrupted write, is ignored.
 bool ob_records_read(ob_records *r, const ob_experiment *x, const char *path, ob_error *e);
+// Lines of such a file, for appending to it.
+void ob_result_head_write(FILE *f, const ob_experiment *x);
+void ob_result_line_write(FILE *f, const ob_experiment *x, const ob_record *r);
 // Replaces the file atomically: readers see the old one or the new one.
 bool ob_records_write(const ob_records *r, const ob_experiment *x, const char *path, ob_error *e);
 

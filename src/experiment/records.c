@@ -9,7 +9,6 @@
 #include "experiment/experiment.h"
 #include "experiment/folder.h"
 #include "experiment/json.h"
-#include "experiment/result_line.h"
 
 bool ob_records_add(ob_records *r, const ob_record *one)
 {

@@ -1,4 +1,4 @@
-// Runs the trials of an experiment, one after the other on each rank, each in a process of its own.
+// Runs the trials of an experiment, one after the other on each rank, each in a process of its own (process.h).
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -7,12 +7,12 @@
 
 #include "base/allocate.h"
 #include "base/clock.h"
+#include "base/hash.h"
 #include "experiment/experiment.h"
 #include "experiment/folder.h"
 #include "experiment/process.h"
 #include "experiment/progress.h"
-#include "experiment/result_line.h"
-#include "experiment/spread.h"
+#include "ranks/courier.h"
 
 static const double tick_s = .2;
 static const double worth_telling_s = 5; // shorter runs are over before their estimate is read
@@ -92,6 +92,120 @@ bool ob_experiment_open(const ob_experiment *x, const char *folder, ob_records *
 }
 
 // ---- remaining trials, and their time
+
+// ---- several ranks: the first has the records and the file, and hands out one trial after the
+// other, to itself as well; the others run them.
+//
+//      rank 0                                        each other (run_as_helper)
+//          <-------- JOIN, a digest of its schedule --------
+//          --------- RUN trial 17 ------------------------->  in a process of its own
+//          <-------- RAN trial 17, its record --------------
+//          --------- LEAVE: all is done ------------------->
+//
+// Ranks wait for the slowest only at the end. A rank that fails sends FAILED instead, or is interrupted, or dies. The
+// first rank then ends with an error, and the launcher ends the others; the file has all results received by then.
+
+typedef enum message_kind { JOIN, RUN, RAN, LEAVE, FAILED } message_kind;
+
+typedef struct message {
+	message_kind kind;
+	uint64_t trial; // its number in the schedule; JOIN: the digest
+	ob_record record; // RAN: of the trial; JOIN: machine and commit alone; FAILED: the reason alone
+} message;
+_Static_assert(sizeof(message) <= OB_COURIER_BYTES, "it fits");
+
+static const double look_s = 1; // between polls while no message comes
+static const double grace_s = 60; // after which it leaves by itself
+
+// Digest of a schedule: two ranks with the same one agree on the numbers of trials.
+static uint64_t digest_of(const ob_experiment *x, const ob_trials *s)
+{
+	uint64_t hash = ob_hash_on(OB_HASH_BEGIN, x->name, strlen(x->name));
+	hash = ob_hash_on(hash, &x->limit_s, sizeof x->limit_s);
+	for (size_t i = 0; i < s->count; i++) {
+		const ob_trial *t = &s->trial[i];
+		hash = ob_hash_on(hash, t->of, strlen(t->of) + 1);
+		hash = ob_hash_on(hash, t->configuration, strlen(t->configuration) + 1);
+		hash = ob_hash_on(hash, &t->repeat, sizeof t->repeat);
+		hash = ob_hash_on(hash, &t->seed, sizeof t->seed);
+	}
+	return hash;
+}
+
+typedef struct helper {
+	ob_courier *courier;
+	message last; // from the first rank
+	ob_courier_news news; // kind of the last message
+	ob_error why; // reason for which the first has gone
+} helper;
+
+static bool attend_first(void *of)
+{
+	helper *h = of;
+	uint32_t from;
+	h->news = ob_courier_receive(h->courier, &h->last, &from, &h->why);
+	return h->news == OB_COURIER_NOTHING; // the first sends nothing while a trial runs
+}
+
+// Returns false if interrupted.
+static bool await_order(helper *h, ob_error *e)
+{
+	while (attend_first(h) && !ob_processes_interrupted())
+		ob_processes_wait(ob_courier_socket(h->courier), look_s);
+	if (h->news == OB_COURIER_GONE)
+		return ob_fail(e, "%s", h->why.text);
+	return h->news == OB_COURIER_MESSAGE || ob_fail(e, "interrupted");
+}
+
+static bool help(helper *h, const ob_experiment *x, const ob_trials *s, const ob_records *own, ob_error *e)
+{
+	const ob_meanwhile meanwhile = { .attend = attend_first, .ear = ob_courier_socket(h->courier), .of = h };
+	message said = { .kind = JOIN,
+			 .trial = digest_of(x, s),
+			 .record = ob_trial_record(own, &(ob_trial){ .repeat = 0 }) };
+	for (;;) {
+		if (!ob_courier_send(h->courier, 0, &said, e) || !await_order(h, e))
+			return false;
+		if (h->last.kind == LEAVE)
+			return true;
+		const ob_trial *t = &s->trial[h->last.trial];
+		said = (message){ RAN, h->last.trial, ob_trial_record(own, t) };
+		if (!ob_trial_run(x, t, &meanwhile, &said.record, e))
+			return h->news == OB_COURIER_GONE ? ob_fail(e, "%s", h->why.text) : false;
+	}
+}
+
+// The launcher may have interrupted all ranks, and kills the rest as soon as one leaves. The first must leave first, as
+// it has results to store and to report.
+static void fail(helper *h, const ob_error *why)
+{
+	message said = { .kind = FAILED };
+	snprintf(said.record.reason, sizeof said.record.reason, "%.150s", why->text);
+	ob_courier_send(h->courier, 0, &said, NULL);
+	for (double end = ob_clock_wall() + grace_s; ob_clock_wall() < end && h->news != OB_COURIER_GONE;
+	     attend_first(h))
+		ob_processes_wait(ob_courier_socket(h->courier), look_s);
+}
+
+// Work of a rank other than the first. Returns false and e if interrupted, or if the others cannot be reached.
+static bool run_as_helper(const ob_experiment *x, const ob_trials *s, const ob_records *own, const ob_ranks *ranks,
+			  ob_error *e)
+{
+	ob_error why;
+	helper h = { .courier = ob_courier_start(ranks, sizeof(message), &why) };
+	ob_processes_begin();
+	bool fine = h.courier && help(&h, x, s, own, &why);
+	if (h.courier && !fine)
+		fail(&h, &why);
+	ob_processes_end();
+	if (fine)
+		fine = ob_courier_end(h.courier, &why);
+	else
+		ob_courier_abandon(h.courier);
+	return fine || ob_fail(e, "rank %u: %s", ranks->rank, why.text);
+}
+
+// ---- the first rank
 
 // Known times of the trials of one case.
 typedef struct timing {
@@ -335,9 +449,7 @@ static bool hand_out(session *s, uint32_t rank, ob_error *e)
 		if (!coarser) {
 			s->state[i] = UNDER_WAY;
 			s->seat[rank] = (seat){ true, true, i, ob_clock_wall() };
-			return rank == 0 ||
-			       ob_courier_send(s->courier, rank,
-					       &(ob_spread_message){ .kind = OB_SPREAD_RUN, .trial = i }, e);
+			return rank == 0 || ob_courier_send(s->courier, rank, &(message){ .kind = RUN, .trial = i }, e);
 		}
 		ob_record r = ob_trial_record(s->records, t);
 		r.failure = coarser->failure;
@@ -349,13 +461,13 @@ static bool hand_out(session *s, uint32_t rank, ob_error *e)
 	}
 }
 
-static bool admit(session *s, uint32_t rank, const ob_spread_message *m, ob_error *e)
+static bool admit(session *s, uint32_t rank, const message *m, ob_error *e)
 {
 	const ob_records *own = s->records;
 	if (strcmp(m->record.commit, own->commit) != 0)
 		return ob_fail(e, "rank %u is obsim %s, not %s: what is measured with different ones is not mixed",
 			       rank, m->record.commit, own->commit);
-	if (m->trial != ob_spread_digest(s->experiment, s->trials))
+	if (m->trial != digest_of(s->experiment, s->trials))
 		return ob_fail(e, "rank %u has other trials: give all ranks the same command", rank);
 	if (strcmp(m->record.machine, own->machine) != 0)
 		return ob_fail(
@@ -370,14 +482,14 @@ static bool attend(session *s, uint32_t from, ob_error *e)
 {
 	bool fine = true;
 	for (bool more = s->courier; fine && more;) {
-		ob_spread_message m;
+		message m;
 		uint32_t rank;
 		ob_courier_news news = ob_courier_receive(s->courier, &m, &rank, e);
 		more = news == OB_COURIER_MESSAGE;
-		if (more && m.kind == OB_SPREAD_FAILED)
+		if (more && m.kind == FAILED)
 			fine = ob_fail(e, "rank %u: %s", rank, m.record.reason);
 		else if (more)
-			fine = m.kind == OB_SPREAD_JOIN ? admit(s, rank, &m, e) : end_trial(s, rank, &m.record, e);
+			fine = m.kind == JOIN ? admit(s, rank, &m, e) : end_trial(s, rank, &m.record, e);
 		else
 			fine = news == OB_COURIER_NOTHING;
 	}
@@ -398,9 +510,9 @@ static bool run_own(session *s, ob_error *e)
 {
 	const ob_trial *t = &s->trials->trial[s->seat[0].trial];
 	const ob_meanwhile meanwhile = { .tick = s->experiment->quiet ? NULL : tick,
-				       .attend = s->courier ? attend_to_others : NULL,
-				       .ear = s->courier ? ob_courier_socket(s->courier) : -1,
-				       .of = s };
+					 .attend = s->courier ? attend_to_others : NULL,
+					 .ear = s->courier ? ob_courier_socket(s->courier) : -1,
+					 .of = s };
 	ob_record r = ob_trial_record(s->records, t);
 	if (!s->experiment->quiet)
 		tick(s);
@@ -434,7 +546,7 @@ static bool run_trials(session *s, ob_error *e)
 		}
 	}
 	for (uint32_t rank = 1; rank < s->seats; rank++)
-		if (!ob_courier_send(s->courier, rank, &(ob_spread_message){ .kind = OB_SPREAD_LEAVE }, e))
+		if (!ob_courier_send(s->courier, rank, &(message){ .kind = LEAVE }, e))
 			return false;
 	return true;
 }
@@ -458,7 +570,7 @@ bool ob_experiment_run(const ob_experiment *x, const ob_trials *trials, ob_recor
 {
 	const ob_ranks ranks = ob_ranks_started();
 	if (ranks.rank > 0)
-		return ob_spread_help(x, trials, r, &ranks, e);
+		return run_as_helper(x, trials, r, &ranks, e);
 	session s = { .experiment = x, .trials = trials, .records = r, .seats = ranks.ranks };
 	char *path = folder ? ob_folder_path(folder, "results.csv") : NULL;
 	s.path = path;
@@ -467,7 +579,7 @@ bool ob_experiment_run(const ob_experiment *x, const ob_trials *trials, ob_recor
 	if (fine && path && !(s.file = fopen(path, "ae")))
 		fine = ob_fail(e, "%s cannot be written: %s", path, strerror(errno));
 	if (fine && ranks.ranks > 1)
-		fine = (s.courier = ob_courier_start(&ranks, sizeof(ob_spread_message), e));
+		fine = (s.courier = ob_courier_start(&ranks, sizeof(message), e));
 	fine = fine && run_all(&s, e);
 	if (s.file)
 		fclose(s.file);

@@ -28,4 +28,11 @@ bool ob_paper_schedule(const ob_paper_plan *p, ob_trials *s, ob_error *e);
 bool ob_paper_run(const ob_paper_plan *p, const char *commit, const char *folder, bool fresh, ob_paper_results *r,
 		  ob_error *e);
 
+// Writes report.html and tables.md into an existing folder. The same results give the same files. One thread at a time per
+// folder.
+bool ob_paper_report(const ob_paper_results *r, const char *dir, ob_error *e);
+
+// Writes claims, means and all runs as one object of JSON.
+void ob_paper_write_json(const ob_paper_results *r, const char *version, FILE *f);
+
 #endif

@@ -1,4 +1,4 @@
-#include "paper/report.h"
+#include "paper/paper.h"
 
 #include <math.h>
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "made.h"
-#include "paper/report.h"
+#include "paper/paper.h"
 
 static double line(double n)
 {
