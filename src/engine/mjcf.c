@@ -12,7 +12,8 @@ enum {
 	DEPTH = 48, // of bodies in a file
 };
 
-static const double impedance = .9999; // of equality constraints: as hard as MuJoCo lets them be
+// Ends an equality constraint, as hard as MuJoCo lets it be.
+#define HARD " solimp=\".9999 .9999 .001\"/>\n"
 
 bool ob_mjcf_moves(const ob_passport *o)
 {
@@ -45,13 +46,16 @@ static void write_spring(FILE *f, const char *name, double e, double h)
 
 // ---- joints of the tree
 
-static void write_limits(FILE *f, const ob_joint_axis *a, double h)
+// Spring, damper and friction of a driven axis or tendon, and its limits. rest: the spring's attribute
+static void write_acting(const ob_mjcf *m, FILE *f, const ob_joint_axis *a, const char *rest)
 {
 	static const double far = 1e10;
+	fprintf(f, " stiffness=\"%.17g\" %s=\"%.17g\" damping=\"%.17g\" frictionloss=\"%.17g\"", a->stiffness, rest,
+		a->rest, a->damping, a->friction);
 	if (isinf(a->low) && isinf(a->high))
 		return;
 	fprintf(f, " limited=\"true\" range=\"%.17g %.17g\"", fmax(a->low, -far), fmin(a->high, far));
-	write_spring(f, "solreflimit", a->restitution, h);
+	write_spring(f, "solreflimit", a->restitution, m->step);
 }
 
 // second: 1 of a universal's second axis
@@ -66,52 +70,32 @@ static void write_axis(const ob_mjcf *m, FILE *f, uint32_t joint, int second, co
 	if (j->kind == OB_JOINT_BALL)
 		a.low = isinf(a.high) ? a.low : 0;
 	if (j->flags & OB_JOINT_DRIVEN) {
-		fprintf(f,
-			" stiffness=\"%.17g\" springref=\"%.17g\" damping=\"%.17g\" frictionloss=\"%.17g\" "
-			"armature=\"%.17g\"",
-			a.stiffness, a.rest, a.damping, a.friction, a.armature);
-		write_limits(f, &a, m->step);
+		fprintf(f, " armature=\"%.17g\"", a.armature);
+		write_acting(m, f, &a, "springref");
 	}
 	fputs("/>", f);
 }
 
-// Axes of a universal in the child's frame, as the world begins: that of the parent comes first.
-static void write_cross(const ob_mjcf *m, FILE *f, uint32_t joint, int child, double sign, ob_vec3 at)
-{
-	const ob_joint_passport *j = &m->world->joint[joint];
-	const ob_mat3 axes = ob_quat_matrix(j->frame[child].q);
-	for (int i = 0; i < 2; i++) {
-		const int second = i == child; // the first object has the first axis
-		write_axis(m, f, joint, second, "hinge", at, ob_scale(ob_column(&axes, second), sign));
-	}
-}
-
-// A value is that of the first object relative to the second, so axes turn round where the first is the parent.
+// A value is that of the first object relative to the second, so axes turn round where the first is the parent. Axes of a
+// universal are in the child's frame, as the world begins: that of the parent comes first.
 static void write_joint(const ob_mjcf *m, FILE *f, uint32_t id)
 {
+	static const char *const type[OB_JOINT_KINDS] = { [OB_JOINT_BALL] = "ball",
+							  [OB_JOINT_HINGE] = "hinge",
+							  [OB_JOINT_SLIDER] = "slide",
+							  [OB_JOINT_UNIVERSAL] = "hinge" };
 	if (m->tree[id] == OB_JOINT_WORLD) {
 		fputs("<freejoint/>", f);
 		return;
 	}
 	const ob_joint_passport *j = &m->world->joint[m->tree[id]];
+	const bool cross = j->kind == OB_JOINT_UNIVERSAL;
 	const int child = j->object[0] != id;
-	const double sign = child ? -1 : 1;
 	const ob_mat3 axes = ob_quat_matrix(j->frame[child].q);
-	const ob_vec3 at = j->frame[child].p, z = ob_scale(ob_column(&axes, 2), sign);
-	switch ((ob_joint_kind)j->kind) {
-	case OB_JOINT_BALL:
-		write_axis(m, f, m->tree[id], 0, "ball", at, z);
-		break;
-	case OB_JOINT_HINGE:
-		write_axis(m, f, m->tree[id], 0, "hinge", at, z);
-		break;
-	case OB_JOINT_SLIDER:
-		write_axis(m, f, m->tree[id], 0, "slide", at, z);
-		break;
-	case OB_JOINT_UNIVERSAL:
-		write_cross(m, f, m->tree[id], child, sign, at);
-		break;
-	default:;
+	for (int i = 0; type[j->kind] && i < 1 + cross; i++) {
+		const int second = cross && i == child; // the first object has the first axis
+		write_axis(m, f, m->tree[id], second, type[j->kind], j->frame[child].p,
+			   ob_scale(ob_column(&axes, cross ? second : 2), child ? -1 : 1));
 	}
 }
 
@@ -212,11 +196,6 @@ static bool write_bodies(ob_mjcf *m, FILE *f, uint32_t parent, uint32_t depth)
 
 // ---- contacts
 
-static bool usual_pair(const ob_passport *a, const ob_passport *b)
-{
-	return a->friction == b->friction && a->restitution == b->restitution;
-}
-
 // First of the joints that let these two pass through each other; their number: none.
 static uint32_t parted_by(const ob_world *w, uint32_t a, uint32_t b)
 {
@@ -239,7 +218,8 @@ static bool write_pairs(const ob_mjcf *m, FILE *f)
 	for (uint32_t i = 0; i < w->objects; i++) {
 		for (uint32_t j = 0; j < i; j++) {
 			const ob_passport *a = &w->passport[i], *b = &w->passport[j];
-			if ((!ob_mjcf_moves(a) && !ob_mjcf_moves(b)) || !a->shape || !b->shape || usual_pair(a, b) ||
+			if ((!ob_mjcf_moves(a) && !ob_mjcf_moves(b)) || !a->shape || !b->shape ||
+			    (a->friction == b->friction && a->restitution == b->restitution) ||
 			    parted_by(w, i, j) < w->joints)
 				continue;
 			if (++declared > OB_MJCF_PAIRS)
@@ -274,16 +254,10 @@ static bool is_in_tree(const ob_mjcf *m, uint32_t joint)
 	return false;
 }
 
-// Ends a constraint's element.
-static void write_impedance(FILE *f)
-{
-	fprintf(f, " solimp=\"%.17g %.17g .001\"/>\n", impedance, impedance);
-}
-
 static void write_hard(const ob_mjcf *m, FILE *f)
 {
 	write_spring(f, "solref", 0, m->step);
-	write_impedance(f);
+	fputs(HARD, f);
 }
 
 static void write_between(FILE *f, const char *kind, const ob_joint_passport *j)
@@ -330,9 +304,8 @@ static void write_held(const ob_mjcf *m, FILE *f, uint32_t joint, int second)
 	const ob_joint_passport *j = &m->world->joint[joint];
 	const double damping = 1 / m->step, rate = second ? j->second.target : j->axis.target;
 	const char *kind = element_of(j);
-	fprintf(f, "<%s %s1=\"%u%s\" polycoef=\"%.17g 1 0 0 0\" solref=\"%.17g %.17g\"", kind, kind, joint,
+	fprintf(f, "<%s %s1=\"%u%s\" polycoef=\"%.17g 1 0 0 0\" solref=\"%.17g %.17g\"" HARD, kind, kind, joint,
 		second ? ".2" : "", rate * far, -damping / far, -damping);
-	write_impedance(f);
 }
 
 static void write_equalities(const ob_mjcf *m, FILE *f)
@@ -358,16 +331,11 @@ static void write_tendons(const ob_mjcf *m, FILE *f)
 {
 	for (uint32_t i = 0; i < m->world->joints; i++) {
 		const ob_joint_passport *j = &m->world->joint[i];
-		const ob_joint_axis *a = &j->axis;
 		if (j->kind != OB_JOINT_DISTANCE)
 			continue;
 		fprintf(f, "<spatial name=\"%u\"", i);
-		if (j->flags & OB_JOINT_DRIVEN) {
-			fprintf(f,
-				" stiffness=\"%.17g\" springlength=\"%.17g\" damping=\"%.17g\" frictionloss=\"%.17g\"",
-				a->stiffness, a->rest, a->damping, a->friction);
-			write_limits(f, a, m->step);
-		}
+		if (j->flags & OB_JOINT_DRIVEN)
+			write_acting(m, f, &j->axis, "springlength");
 		fprintf(f, "><site site=\"%u.0\"/><site site=\"%u.1\"/></spatial>\n", i, i);
 	}
 }
