@@ -447,9 +447,9 @@ static verdict judge_momentum(const ob_sync_comparison *c, const ob_sync_point *
 	const ob_estimate ledger = ob_sync_estimate(c, p, l, OB_SYNC_MOMENTUM),
 			  own = ob_sync_estimate(c, p, o, OB_SYNC_MOMENTUM);
 	if (!ledger.n || !own.n) {
-		OB_SAY(t->words, " Something is fixed in this scene, and takes up momentum. (The program's tests hold "
-				 "the ledger, "
-				 "with the mail under way, to 1e-12 for random lags, jitter, orders and kills.)");
+		OB_SAY(t->words,
+		       " Something is fixed in this scene, and takes up momentum. (The program's tests hold the "
+		       "ledger, with the mail under way, to 1e-12 for random lags, jitter, orders and kills.)");
 		return NOT_TESTED;
 	}
 	OB_SAY(t->words, " Change of momentum, without the mail under way: ");
@@ -488,8 +488,7 @@ static verdict judge_energy(const ob_sync_comparison *c, const ob_sync_point *p,
 	const size_t length = strlen(t->words);
 	t->words[length - (t->words[length - 1] == ';')] = 0;
 	OB_SAY(t->words, ". What hits lose is not measured apart, so late mail may have added more than was gained, "
-			 "but it cannot "
-			 "be shown to be the only source.");
+			 "but it cannot be shown to be the only source.");
 	return v;
 }
 
@@ -607,8 +606,7 @@ ob_sync_text ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point 
 	if (lag > 0)
 		OB_SAY(t.words,
 		       " Free simulators of this coupling stay within %.0f %% of the bodies' size up to a latency of "
-		       "%.3g "
-		       "ms, which is a lag of %.2g sizes at these speeds.",
+		       "%.3g ms, which is a lag of %.2g sizes at these speeds.",
 		       100 * share, 1e3 * lag, lag * p->speed / p->size);
 	else if (lag < 0)
 		OB_SAY(t.words, " Even without an injected lag it may sink in by more than %.0f %% of their size.",

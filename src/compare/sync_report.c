@@ -262,13 +262,13 @@ static void write_slopes(ob_page *p, const ob_sync_comparison *c, const ob_sync_
 static void write_diagrams(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
 {
 	ob_chart_html(chart_error(c, at), p,
-		      "Bars: intervals of 95 % (Student). The first point of each curve has no injected "
-		      "lag. A slope is that over the injected lags alone.");
+		      "Bars: intervals of 95 % (Student). The first point of each curve has no injected lag. A slope "
+		      "is that over the injected lags alone.");
 	write_slopes(p, c, at);
 	ob_chart_html(chart_rates(c, at), p, "Bars: intervals of 95 % (Student). No injected lag.");
 	ob_chart_html(chart_energy(c, at), p,
-		      "Bars: intervals of 95 % (Student). Gained: the most above the start, 0 if never. "
-		      "By late mail: its work, at the end of the run.");
+		      "Bars: intervals of 95 % (Student). Gained: the most above the start, 0 if never. By late mail: "
+		      "its work, at the end of the run.");
 	ob_chart_html(chart_cost(c, at), p, "Bars: intervals of 95 % of the CPU (Student).");
 }
 
@@ -331,14 +331,13 @@ static void write_threats(ob_page *p, const void *with)
 	if (least < FEW)
 		ob_page_markup(
 			p,
-			"<li><b>%" PRIu32 " seed%s</b> of a configuration give no interval, which takes %d: free runs "
-			"of one scene differ by a factor of up to two. The same command with the same --out adds "
-			"seeds.</li>\n",
+			"<li><b>%" PRIu32
+			" seed%s</b> of a configuration give no interval, which takes %d: free runs of one scene "
+			"differ by a factor of up to two. The same command with the same --out adds seeds.</li>\n",
 			least, least == 1 ? "" : "s", FEW);
 	if (c->points < 2)
-		ob_page_markup(
-			p, "<li>One number of objects. --vary n=10,100,1000 compares several, where the scene has a "
-			   "parameter for it.</li>\n");
+		ob_page_markup(p, "<li>One number of objects. --vary n=10,100,1000 compares several, where the scene "
+				  "has a parameter for it.</li>\n");
 	size_t from = 0, failed = 0;
 	for (uint32_t i = 0; i < c->points; i++, from = 0)
 		while (next_failure(c, &c->point[i], &from))

@@ -29,90 +29,87 @@ static ob_estimate cost_over_pool(const ob_comparison *c, const ob_sweep_point *
 }
 
 // Names the cheaper of the two pools, if any, and compares it with a worker per object.
-static void write_headline(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+static void write_headline(ob_verdict *v, const ob_comparison *c, const ob_sweep_point *p)
 {
 	ob_estimate r = cost_over_pool(c, p, OB_CONFIGURATION_PROCESSES);
 	ob_estimate each = cost_over_pool(c, p, OB_CONFIGURATION_THREADS_EACH);
 	if (isnan(r.value))
 		return;
 	if (r.n < runs_least) {
-		ob_say(to, room, "Undecided after so few runs: use --repeats 6.");
+		OB_SAY(v->headline, "Undecided after so few runs: use --repeats 6.");
 		return;
 	}
 	if (r.low > 1 + alike)
-		ob_say(to, room, "Threads");
+		OB_SAY(v->headline, "Threads");
 	else if (r.high < 1 - alike)
-		ob_say(to, room, "Processes");
+		OB_SAY(v->headline, "Processes");
 	else
-		ob_say(to, room, "Either: they cost the same");
+		OB_SAY(v->headline, "Either: they cost the same");
 	if (each.low > 1 + alike)
-		ob_say(to, room, "; but let objects share them: one for each object costs %.1f times as much.",
+		OB_SAY(v->headline, "; but let objects share them: one for each object costs %.1f times as much.",
 		       each.value);
 	else
-		ob_say(to, room, ".");
+		OB_SAY(v->headline, ".");
 }
 
-static void compare_pools(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+static void compare_pools(ob_verdict *v, const ob_comparison *c, const ob_sweep_point *p)
 {
 	const ob_configuration_id threads = OB_CONFIGURATION_THREADS, processes = OB_CONFIGURATION_PROCESSES;
 	ob_estimate r = cost_over_pool(c, p, processes);
 	if (isnan(r.value)) {
-		ob_say(to, room, "One of the two pools did not run. ");
+		OB_SAY(v->answer, "One of the two pools did not run. ");
 		return;
 	}
-	ob_say(to, room, "A pool of processes takes %.2f times the CPU of a pool of threads%s. ", r.value,
+	OB_SAY(v->answer, "A pool of processes takes %.2f times the CPU of a pool of threads%s. ", r.value,
 	       range(r).text);
-	ob_say(to, room, "Threads start in %s and need %s of memory, processes %s and %s. ",
+	OB_SAY(v->answer, "Threads start in %s and need %s of memory, processes %s and %s. ",
 	       value(c, p, threads, OB_COMPARE_STARTUP).text, value(c, p, threads, OB_COMPARE_MEMORY).text,
 	       value(c, p, processes, OB_COMPARE_STARTUP).text, value(c, p, processes, OB_COMPARE_MEMORY).text);
 }
 
-static void compare_worker_counts(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+static void compare_worker_counts(ob_verdict *v, const ob_comparison *c, const ob_sweep_point *p)
 {
-	ob_estimate groups = cost_over_pool(c, p, OB_CONFIGURATION_GROUPS);
-	ob_estimate threads = cost_over_pool(c, p, OB_CONFIGURATION_THREADS_EACH);
-	ob_estimate processes = cost_over_pool(c, p, OB_CONFIGURATION_PROCESSES_EACH);
-	if (!isnan(groups.value))
-		ob_say(to, room, "Process groups of %d, which confine a crash, cost %.2f times the thread pool%s. ",
-		       OB_COMPARE_GROUP, groups.value, range(groups).text);
-	if (!isnan(threads.value))
-		ob_say(to, room, "A thread for each object costs %.2f times the thread pool%s. ", threads.value,
-		       range(threads).text);
-	if (!isnan(processes.value))
-		ob_say(to, room, "A process for each object costs %.2f times the thread pool%s. ", processes.value,
-		       range(processes).text);
+	static const struct {
+		ob_configuration_id id;
+		const char *what;
+	} counts[] = { { OB_CONFIGURATION_GROUPS, "Process groups of 60, which confine a crash, cost" },
+		       { OB_CONFIGURATION_THREADS_EACH, "A thread for each object costs" },
+		       { OB_CONFIGURATION_PROCESSES_EACH, "A process for each object costs" } };
+	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+		const ob_estimate r = cost_over_pool(c, p, counts[i].id);
+		if (!isnan(r.value))
+			OB_SAY(v->answer, "%s %.2f times the thread pool%s. ", counts[i].what, r.value, range(r).text);
+	}
 }
 
-static void compare_architectures(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+static void compare_architectures(ob_verdict *v, const ob_comparison *c, const ob_sweep_point *p)
 {
 	const ob_configuration_id pool = OB_CONFIGURATION_THREADS, monolith = OB_CONFIGURATION_MONOLITH;
 	ob_estimate r = ob_comparison_ratio(c, p, pool, monolith, OB_COMPARE_COST);
 	if (isnan(r.value))
 		return;
-	ob_say(to, room,
+	OB_SAY(v->architecture,
 	       "One world or many? Object simulators in the thread pool take %.2f times the CPU of the monolith%s; the "
-	       "deepest "
-	       "penetration is %s, in the monolith %s.",
+	       "deepest penetration is %s, in the monolith %s.",
 	       r.value, range(r).text, value(c, p, pool, OB_COMPARE_WORST).text,
 	       value(c, p, monolith, OB_COMPARE_WORST).text);
 }
 
-static void compare_narrow_phases(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p,
+static void compare_narrow_phases(ob_verdict *v, const ob_comparison *c, const ob_sweep_point *p,
 				  ob_configuration_id aabb, ob_configuration_id obb, const char *who)
 {
 	ob_estimate r = ob_comparison_ratio(c, p, aabb, obb, OB_COMPARE_COST);
 	if (isnan(r.value))
 		return;
-	ob_say(to, room,
+	OB_SAY(v->narrow,
 	       "In the %s boxes along the axes take %.2f times the CPU of true shapes%s; they leave contacts %s apart "
-	       "(%s), "
-	       "penetrate by %s at most (%s). ",
+	       "(%s), penetrate by %s at most (%s). ",
 	       who, r.value, range(r).text, value(c, p, aabb, OB_COMPARE_SEPARATION).text,
 	       value(c, p, obb, OB_COMPARE_SEPARATION).text, value(c, p, aabb, OB_COMPARE_WORST).text,
 	       value(c, p, obb, OB_COMPARE_WORST).text);
 }
 
-static void explain_time(char *to, size_t room, const ob_comparison *c, const ob_sweep_point *p)
+static void explain_time(ob_verdict *v, const ob_comparison *c, const ob_sweep_point *p)
 {
 	double least = INFINITY;
 	const char *where = "";
@@ -125,10 +122,9 @@ static void explain_time(char *to, size_t room, const ob_comparison *c, const ob
 		}
 	}
 	if (isfinite(least))
-		ob_say(to, room,
+		OB_SAY(v->sum,
 		       "Work, waiting for a core, at the gate and for the host account for at least %.1f %% of the "
-		       "workers' "
-		       "time (%s).",
+		       "workers' time (%s).",
 		       100 * least, where);
 }
 
@@ -141,12 +137,12 @@ void ob_verdict_make(ob_verdict *v, const ob_comparison *c, const ob_sweep_point
 		      { OB_CONFIGURATION_MONOLITH, OB_CONFIGURATION_MONOLITH_OTHER, "monolith" } };
 	bool obb_first = strcmp(c->narrow, "obb") == 0;
 	memset(v, 0, sizeof *v);
-	write_headline(v->headline, sizeof v->headline, c, p);
-	compare_pools(v->answer, sizeof v->answer, c, p);
-	compare_worker_counts(v->answer, sizeof v->answer, c, p);
-	compare_architectures(v->architecture, sizeof v->architecture, c, p);
+	write_headline(v, c, p);
+	compare_pools(v, c, p);
+	compare_worker_counts(v, c, p);
+	compare_architectures(v, c, p);
 	for (int i = 0; i < 2; i++)
-		compare_narrow_phases(v->narrow, sizeof v->narrow, c, p, obb_first ? pairs[i].other : pairs[i].own,
+		compare_narrow_phases(v, c, p, obb_first ? pairs[i].other : pairs[i].own,
 				      obb_first ? pairs[i].own : pairs[i].other, pairs[i].who);
-	explain_time(v->sum, sizeof v->sum, c, p);
+	explain_time(v, c, p);
 }

@@ -105,8 +105,8 @@ static bool load(ob_engine *p, ob_mjcf *m, ob_error *e)
 		mj_defaultVFS(files);
 	if (done && !ob_mjcf_write(m))
 		done = ob_fail(e,
-			       "MuJoCo: no room for %u bodies, or more than %d pairs with a friction or restitution "
-			       "of their own",
+			       "MuJoCo: no room for %u bodies, or more than %d pairs with a friction or restitution of "
+			       "their own",
 			       p->objects, OB_MJCF_PAIRS);
 	for (uint32_t i = 0; i < m->files; i++) {
 		if (done && !add_file(files, i, &m->file[i]))

@@ -312,10 +312,8 @@ ob_chart *ob_lab_chart_promises(const ob_lab_analysis *d)
 			add_engine(chart, d, d->engine[i], NULL, .22 * ((double)done++ - (double)(others - 1) / 2));
 	OB_SAY(chart->name, "all-cases");
 	OB_SAY(chart->title, "Every case: error against its target, at usual settings");
-	OB_SAY(chart->subtitle,
-	       "left of the line: the target is met \u00b7 crosses: failed, or misses a target of 0 \u00b7 the "
-	       "number is the row of "
-	       "the table below");
+	OB_SAY(chart->subtitle, "left of the line: the target is met \u00b7 crosses: failed, or misses a target of 0 "
+				"\u00b7 the number is the row of the table below");
 	return finish_rows(chart, d, NULL);
 }
 

@@ -91,18 +91,18 @@ static void write_verdict(ob_page *p, const void *with)
 	if (l.compared > l.ahead && ob_lab_analysis_count_others(d))
 		ob_page_markup(p,
 			       "Of the %d cases where another engine is cheaper at equal error, obsim is within twice "
-			       "its cost "
-			       "in %d.",
+			       "its cost in %d.",
 			       l.compared - l.ahead, l.within);
 }
 
 static void write_equal(ob_page *p, const void *with)
 {
 	ob_table_html(ob_lab_table_equal(with, true, false), p);
-	ob_page_markup(p, "<p class=\"note\">\u00b5s of CPU per body and simulated second; small: over obsim\u2019s. "
-			  "* No engine gets to the target: the error is obsim\u2019s least. "
-			  "\u201cnever\u201d: no setting that was tried gets there without failing. "
-			  "Variants of obsim\u2019s coupling are shown, but not ranked.</p>\n");
+	ob_page_markup(
+		p,
+		"<p class=\"note\">\u00b5s of CPU per body and simulated second; small: over obsim\u2019s. * No engine "
+		"gets to the target: the error is obsim\u2019s least. \u201cnever\u201d: no setting that was tried "
+		"gets there without failing. Variants of obsim\u2019s coupling are shown, but not ranked.</p>\n");
 }
 
 static void write_rows(ob_page *p, const void *with)
@@ -120,11 +120,10 @@ static void write_audit(ob_page *p, const void *with)
 	ob_table *t = ob_lab_table_audit(with);
 	if (!t)
 		return;
-	ob_page_markup(
-		p, "<h2 id=\"audit\">Does the error fall?</h2>\n<p>obsim\u2019s errors over their targets, the worst "
-		   "of each case, as its tolerance shrinks and as its substeps grow, and the order at which they "
-		   "fall with the length of a substep. RISES: an error that is above its target is larger at a "
-		   "finer setting; <code>audit.md</code> says which.</p>\n");
+	ob_page_markup(p, "<h2 id=\"audit\">Does the error fall?</h2>\n<p>obsim\u2019s errors over their targets, the "
+			  "worst of each case, as its tolerance shrinks and as its substeps grow, and the order at "
+			  "which they fall with the length of a substep. RISES: an error that is above its target is "
+			  "larger at a finer setting; <code>audit.md</code> says which.</p>\n");
 	ob_table_html(t, p);
 }
 
@@ -150,28 +149,24 @@ static void write_convergence(ob_page *p, const void *with)
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
 		begun = write_section(p, begun, ob_lab_chart_convergence(with, ob_case_find(cases[i])), "order",
 				      "Order of convergence",
-				      "Gain of doubling the substeps. An error of first order halves, one "
-				      "of second order falls to a quarter; "
-				      "the observed order stands beside each name.");
+				      "Gain of doubling the substeps. An error of first order halves, one of second "
+				      "order falls to a quarter; the observed order stands beside each name.");
 }
 
 static void write_ghost(ob_page *p, const void *with)
 {
 	write_section(p, false, ob_lab_chart_ghost(with), "ghost", "Why neighbours must not be ghosts",
 		      "The first thing that comes to mind when every body is a simulator of its own: treat each "
-		      "neighbour as a body "
-		      "that nothing can move. Then both sides answer a hit with the whole of it, momentum is not "
-		      "kept, and energy "
-		      "comes from nowhere. (Where bodies touch nothing but the ground it makes no difference.) "
-		      "obsim can do so (<code>coupling=ghost</code>) only to show it.");
+		      "neighbour as a body that nothing can move. Then both sides answer a hit with the whole of it, "
+		      "momentum is not kept, and energy comes from nowhere. (Where bodies touch nothing but the ground "
+		      "it makes no difference.) obsim can do so (<code>coupling=ghost</code>) only to show it.");
 }
 
 static void write_lag(ob_page *p, const void *with)
 {
 	write_section(p, false, ob_lab_chart_lag(with), "late", "Why partners must not be read late",
-		      "Two bodies hit each other, each in its own simulator, and each works with a state of the "
-		      "other that is some "
-		      "iterations old. Momentum is exact only where both sides see the same.");
+		      "Two bodies hit each other, each in its own simulator, and each works with a state of the other "
+		      "that is some iterations old. Momentum is exact only where both sides see the same.");
 }
 
 static void write_free(ob_page *p, const void *with)
@@ -179,11 +174,10 @@ static void write_free(ob_page *p, const void *with)
 	bool begun = false;
 	for (const ob_case *const *c = ob_cases; *c; c++)
 		begun = write_section(p, begun, ob_lab_chart_delay(with, *c), "free", "Simulators that wait for nobody",
-				      "Free simulators have times of their own. Their error over the delay "
-				      "after which a neighbour sees what they publish; the error over the rate "
-				      "of their steps stands with each case, lockstep beside it. A ledger "
-				      "computes a pair's impulse once; own: each side computes its own. Two "
-				      "runs of one setting differ.");
+				      "Free simulators have times of their own. Their error over the delay after which "
+				      "a neighbour sees what they publish; the error over the rate of their steps "
+				      "stands with each case, lockstep beside it. A ledger computes a pair's impulse "
+				      "once; own: each side computes its own. Two runs of one setting differ.");
 }
 
 static void write_index(ob_page *p, const void *with)

@@ -247,10 +247,10 @@ static void judge_kept(const evidence *c)
 	OB_SAY(claim->because, "; the added sum, which stands for a better test, makes it %s. ",
 	       ob_word_ratio(&load).text);
 	OB_SAY(claim->because, "%s",
-	       claim->verdict == OB_PAPER_HOLDS   ? "A better test costs at least as much again."
-	       : claim->verdict == OB_PAPER_FAILS ? "A better test does not double it: its cost is no reason to keep "
-						    "boxes along the axes."
-						  : "These runs do not decide whether it doubles.");
+	       claim->verdict == OB_PAPER_HOLDS ? "A better test costs at least as much again."
+	       : claim->verdict == OB_PAPER_FAILS
+		       ? "A better test does not double it: its cost is no reason to keep boxes along the axes."
+		       : "These runs do not decide whether it doubles.");
 	OB_SAY(claim->itself, "It has no run with another test.");
 }
 
@@ -344,10 +344,10 @@ static void judge_growth(const evidence *c)
 	OB_SAY(claim->because, "CPU of all simulators for each simulated second: ");
 	say_growth(claim, "in the common environment", &common);
 	say_growth(claim, "; in OBS", &obs);
-	say_growth(claim,
-		   ". As a share of real time, as a system monitor shows it, which ends where the cores are busy: "
-		   "in OBS",
-		   &obs_shown);
+	say_growth(
+		claim,
+		". As a share of real time, as a system monitor shows it, which ends where the cores are busy: in OBS",
+		&obs_shown);
 	OB_SAY(claim->because, ".");
 	if (ob_paper_prefers(&common) > 0 && ob_paper_prefers(&obs) < 0) {
 		claim->verdict = OB_PAPER_HOLDS;

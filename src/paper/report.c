@@ -263,12 +263,11 @@ static void write_busy(ob_page *p, const void *with)
 	static const double free_enough = .3;
 	const model *m = with;
 	if (m->here->busy > free_enough)
-		ob_page_markup(
-			p,
-			"<p class=\"warning\"><strong>The machine was busy with other work</strong> before these runs "
-			"began (load average %.1f). The step, the frame rate and the pace suffer from that, CPU "
-			"times much less.</p>\n",
-			m->here->busy);
+		ob_page_markup(p,
+			       "<p class=\"warning\"><strong>The machine was busy with other work</strong> before "
+			       "these runs began (load average %.1f). The step, the frame rate and the pace suffer "
+			       "from that, CPU times much less.</p>\n",
+			       m->here->busy);
 }
 
 static void write_claims(ob_page *p, const void *with)
@@ -381,8 +380,8 @@ static void write_setting(ob_page *p, const void *with)
 	ob_page_term(p, "Machine", m->here->records.machine);
 	ob_page_markup(p,
 		       "<dt>obsim</dt><dd>commit <code>%s</code></dd>\n<dt>Runs</dt><dd>%u experiments with %u boxes "
-		       "in each scenario, %zu runs in "
-		       "all</dd>\n<dt>Step</dt><dd>%.3f&nbsp;s, %d substep; at most %d iterations</dd>\n",
+		       "in each scenario, %zu runs in all</dd>\n<dt>Step</dt><dd>%.3f&nbsp;s, %d substep; at most %d "
+		       "iterations</dd>\n",
 		       m->here->records.commit, m->here->experiments, m->here->objects, m->here->records.count,
 		       OB_PAPER_STEP_LENGTH, OB_PAPER_SUBSTEPS, OB_PAPER_ITERATIONS);
 	for (size_t i = 0; i < m->here->records.count; i++) {
