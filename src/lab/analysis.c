@@ -47,15 +47,23 @@ int ob_lab_analysis_style(const ob_lab_analysis *d, const ob_engine_kind *k)
 	return KNOWN;
 }
 
+const ob_result *ob_lab_analysis_next(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k,
+				      const ob_result *after)
+{
+	const ob_result *end = d->results->result + d->results->count;
+	for (const ob_result *r = after ? after + 1 : d->results->result; r && r < end; r++)
+		if ((!c || r->of == c) && (!k || r->engine == k))
+			return r;
+	return NULL;
+}
+
 static const ob_result *find(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k, uint32_t lag)
 {
-	const ob_run_settings *usual = &k->usual;
-	for (size_t i = 0; i < d->results->count; i++) {
-		const ob_result *r = &d->results->result[i];
-		const ob_run_settings *s = &r->settings;
-		if (r->of == c && r->engine == k && s->substeps == usual->substeps &&
-		    s->iterations == usual->iterations && s->tolerance == usual->tolerance && s->lag == lag &&
-		    s->sleeping == usual->sleeping)
+	const ob_run_settings *usual = &k->usual, *s;
+	for (const ob_result *r = NULL; (r = ob_lab_analysis_next(d, c, k, r));) {
+		s = &r->settings;
+		if (s->substeps == usual->substeps && s->iterations == usual->iterations &&
+		    s->tolerance == usual->tolerance && s->lag == lag && s->sleeping == usual->sleeping)
 			return r;
 	}
 	return NULL;
@@ -74,14 +82,6 @@ const ob_result *ob_lab_analysis_promised(const ob_lab_analysis *d, const ob_cas
 			    "obsim-lag")) // the case's target holds for engines without late partners
 			r = find(d, c, d->engine[i], 0);
 	return r;
-}
-
-bool ob_lab_analysis_ran(const ob_lab_analysis *d, const ob_case *c)
-{
-	for (size_t i = 0; i < d->results->count; i++)
-		if (d->results->result[i].of == c)
-			return true;
-	return false;
 }
 
 bool ob_lab_analysis_has_target(const ob_case *c, uint32_t figure)
@@ -157,13 +157,10 @@ ob_lab_analysis_rows ob_lab_analysis_count_rows(const ob_lab_analysis *d)
 const ob_result *ob_lab_analysis_finest(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k)
 {
 	const ob_result *best = NULL;
-	for (size_t i = 0; i < d->results->count; i++) {
-		const ob_result *r = &d->results->result[i];
-		if (r->of != c || r->engine != k || r->outcome.failed[0] || !isfinite(r->outcome.figure[0]))
-			continue;
-		if (!best || r->outcome.figure[0] < best->outcome.figure[0])
+	for (const ob_result *r = NULL; (r = ob_lab_analysis_next(d, c, k, r));)
+		if (!r->outcome.failed[0] && isfinite(r->outcome.figure[0]) &&
+		    (!best || r->outcome.figure[0] < best->outcome.figure[0]))
 			best = r;
-	}
 	return best;
 }
 
@@ -186,4 +183,25 @@ ob_lab_analysis_equal ob_lab_analysis_compare(const ob_lab_analysis *d, const ob
 	for (size_t i = 0; i < d->engines; i++)
 		q.ahead &= ob_lab_analysis_is_obsim(d->engine[i]) || !(q.cost[i] < q.own);
 	return q;
+}
+
+ob_lab_analysis_lead ob_lab_analysis_measure_lead(const ob_lab_analysis *d)
+{
+	ob_lab_analysis_lead l = { 0 };
+	for (const ob_case *const *c = ob_cases; *c; c++) {
+		if (!(*c)->compared || !ob_lab_analysis_next(d, *c, NULL, NULL))
+			continue;
+		const ob_lab_analysis_equal q = ob_lab_analysis_compare(d, *c);
+		double best = INFINITY; // of the other engines
+		for (size_t i = 0; i < d->engines; i++)
+			if (!ob_lab_analysis_is_obsim(d->engine[i]) && q.cost[i] < best)
+				best = q.cost[i];
+		l.compared++;
+		l.ahead += q.ahead;
+		l.within += !q.ahead && q.own <= 2 * best;
+		l.never |= isnan(q.own);
+		if (!q.ahead && best > 0)
+			l.worst = fmax(l.worst, q.own / best);
+	}
+	return l;
 }

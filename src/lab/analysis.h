@@ -21,11 +21,14 @@ size_t ob_lab_analysis_count_others(const ob_lab_analysis *d); // engines in the
 int ob_lab_analysis_style(const ob_lab_analysis *d,
 			  const ob_engine_kind *k); // style of its curves, the same in every report
 
+// Next result after one (NULL: the first) of a case and an engine; NULL for either: of any. NULL: none
+const ob_result *ob_lab_analysis_next(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k,
+				      const ob_result *after);
+
 // Result at an engine's usual settings; NULL: not run.
 const ob_result *ob_lab_analysis_usual(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k);
 // Result for which a case's targets are promised; NULL: not run.
 const ob_result *ob_lab_analysis_promised(const ob_lab_analysis *d, const ob_case *c);
-bool ob_lab_analysis_ran(const ob_lab_analysis *d, const ob_case *c); // with any engine
 
 bool ob_lab_analysis_has_target(const ob_case *c, uint32_t figure);
 bool ob_lab_analysis_meets(const ob_result *r, uint32_t figure); // also false if the run failed
@@ -53,6 +56,13 @@ typedef struct ob_lab_analysis_equal {
 	bool ahead; // obsim reaches it, and no other engine does at less cost
 } ob_lab_analysis_equal;
 ob_lab_analysis_equal ob_lab_analysis_compare(const ob_lab_analysis *d, const ob_case *c);
+// All compared cases at equal error.
+typedef struct ob_lab_analysis_lead {
+	int compared, ahead, within; // cases; those with obsim ahead; other ones where it is within twice the cost of the best
+	bool never; // there are errors that obsim does not reach
+	double worst; // its largest cost over that of another engine, where it is not ahead; 0: none
+} ob_lab_analysis_lead;
+ob_lab_analysis_lead ob_lab_analysis_measure_lead(const ob_lab_analysis *d);
 // Result of an engine with its least error in a case; NULL: all failed
 const ob_result *ob_lab_analysis_finest(const ob_lab_analysis *d, const ob_case *c, const ob_engine_kind *k);
 

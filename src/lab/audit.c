@@ -25,12 +25,9 @@ static bool is_setting(const ob_run_settings *s, int setting)
 // Ignores results that ran out of time.
 static const ob_result *find(const ob_lab_analysis *d, const ob_case *c, int setting)
 {
-	for (size_t i = 0; i < d->results->count; i++) {
-		const ob_result *r = &d->results->result[i];
-		if (r->of == c && r->engine == d->own && is_setting(&r->settings, setting) &&
-		    !isnan(r->outcome.body_seconds))
+	for (const ob_result *r = NULL; d->own && (r = ob_lab_analysis_next(d, c, d->own, r));)
+		if (is_setting(&r->settings, setting) && !isnan(r->outcome.body_seconds))
 			return r;
-	}
 	return NULL;
 }
 

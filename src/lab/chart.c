@@ -11,10 +11,9 @@
 // True if the engine has results in a case, or, with none named, in the chart so far.
 static bool takes_part(const ob_chart *c, const ob_lab_analysis *d, const ob_case *of, const ob_engine_kind *k)
 {
-	for (size_t i = 0; of && i < d->results->count; i++)
-		if (d->results->result[i].of == of && d->results->result[i].engine == k)
-			return true;
-	for (size_t i = 0; !of && i < c->series_count; i++)
+	if (of)
+		return ob_lab_analysis_next(d, of, k, NULL);
+	for (size_t i = 0; i < c->series_count; i++)
 		if (c->series[i].count && c->series[i].style == ob_lab_analysis_style(d, k))
 			return true;
 	return false;
@@ -82,11 +81,9 @@ static size_t gather(const ob_lab_analysis *d, const ob_case *c, const ob_engine
 		     const ob_result **list)
 {
 	size_t count = 0;
-	for (size_t i = 0; i < d->results->count; i++) {
-		const ob_result *r = &d->results->result[i];
-		if (r->of == c && r->engine == k && family_of(r) == f)
+	for (const ob_result *r = NULL; (r = ob_lab_analysis_next(d, c, k, r));)
+		if (family_of(r) == f)
 			list[count++] = r;
-	}
 	qsort(list, count, sizeof *list, by_fineness);
 	return count;
 }
@@ -346,9 +343,8 @@ static void add_delays(ob_chart *chart, const ob_lab_analysis *d, const ob_case 
 	double lag[MOST] = { 0 }, error[MOST] = { 0 };
 	char title[128];
 	size_t n = 0;
-	for (size_t i = 0; i < d->results->count && n < MOST; i++) {
-		const ob_result *r = &d->results->result[i];
-		if (r->of != c || r->engine != k || r->settings.lag == 0)
+	for (const ob_result *r = NULL; n < MOST && (r = ob_lab_analysis_next(d, c, k, r));) {
+		if (r->settings.lag == 0)
 			continue;
 		lag[n] = r->settings.lag;
 		error[n] = is_failed(r) ? NAN : r->outcome.figure[0];
@@ -383,10 +379,7 @@ ob_chart *ob_lab_chart_lag(const ob_lab_analysis *d)
 	ob_chart *chart = ob_chart_new();
 	for (uint32_t figure = 0; late && c && figure < c->figures; figure++) {
 		ob_chart_begin(chart, (int)figure, false, c->figure[figure].name);
-		for (size_t i = 0; i < d->results->count; i++) {
-			const ob_result *r = &d->results->result[i];
-			if (r->of != c || r->engine != late)
-				continue;
+		for (const ob_result *r = NULL; (r = ob_lab_analysis_next(d, c, late, r));) {
 			bool failed = r->outcome.failed[0] || !isfinite(r->outcome.figure[figure]);
 			ob_chart_point *p =
 				ob_chart_add(chart, r->settings.lag, failed ? NAN : r->outcome.figure[figure], "", "");

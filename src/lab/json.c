@@ -96,7 +96,7 @@ void ob_lab_write_json(const ob_results *r, const char *version, FILE *f)
 	ob_json_close_list(&j);
 	ob_json_open_list(&j, "cost_at_equal_error");
 	for (const ob_case *const *c = ob_cases; *c; c++)
-		if ((*c)->compared && ob_lab_analysis_ran(&d, *c))
+		if ((*c)->compared && ob_lab_analysis_next(&d, *c, NULL, NULL))
 			put_equal(&j, &d, *c);
 	ob_json_close_list(&j);
 	ob_json_close(&j);

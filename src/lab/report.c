@@ -11,33 +11,6 @@
 
 // ---- summary: the verdict, cost at equal error, all targets
 
-typedef struct lead {
-	int compared, ahead, within; // cases; those without obsim ahead, but within twice the cost of the best
-} lead;
-
-static double best_other_cost(const ob_lab_analysis *d, const ob_lab_analysis_equal *q)
-{
-	double best = INFINITY;
-	for (size_t i = 0; i < d->engines; i++)
-		if (!ob_lab_analysis_is_obsim(d->engine[i]) && q->cost[i] < best)
-			best = q->cost[i];
-	return best;
-}
-
-static lead measure_lead(const ob_lab_analysis *d)
-{
-	lead l = { 0 };
-	for (const ob_case *const *c = ob_cases; *c; c++) {
-		if (!(*c)->compared || !ob_lab_analysis_ran(d, *c))
-			continue;
-		ob_lab_analysis_equal q = ob_lab_analysis_compare(d, *c);
-		l.compared++;
-		l.ahead += q.ahead;
-		l.within += !q.ahead && q.own <= 2 * best_other_cost(d, &q);
-	}
-	return l;
-}
-
 static void write_card(ob_page *p, int part, int whole, const char *what)
 {
 	ob_page_markup(p, "<li><b>%d of %d</b><span>%s</span></li>\n", part, whole, what);
@@ -47,7 +20,7 @@ static void write_cards(ob_page *p, const void *with)
 {
 	const ob_lab_analysis *d = with;
 	ob_lab_analysis_rows rows = ob_lab_analysis_count_rows(d);
-	lead l = measure_lead(d);
+	const ob_lab_analysis_lead l = ob_lab_analysis_measure_lead(d);
 	if (rows.measured)
 		write_card(p, rows.met, rows.measured,
 			   "rows of hard cases: obsim meets every target, at 60 frames a second");
@@ -82,7 +55,7 @@ static void write_missed(ob_page *p, const ob_lab_analysis *d)
 static void write_verdict(ob_page *p, const void *with)
 {
 	const ob_lab_analysis *d = with;
-	lead l = measure_lead(d);
+	const ob_lab_analysis_lead l = ob_lab_analysis_measure_lead(d);
 	if (!d->own) {
 		ob_page_markup(p, "obsim itself did not take part in these runs.");
 		return;
@@ -183,7 +156,7 @@ static void write_free(ob_page *p, const void *with)
 static void write_index(ob_page *p, const void *with)
 {
 	for (const ob_case *const *c = ob_cases; *c; c++) {
-		if (!ob_lab_analysis_ran(with, *c))
+		if (!ob_lab_analysis_next(with, *c, NULL, NULL))
 			continue;
 		ob_page_markup(p, "<li><a href=\"#%s\">", (*c)->name);
 		ob_page_text(p, (*c)->title);
@@ -225,7 +198,7 @@ static void write_case(ob_page *p, const ob_lab_analysis *d, const ob_case *c)
 static void write_all_cases(ob_page *p, const void *with)
 {
 	for (const ob_case *const *c = ob_cases; *c; c++)
-		if (ob_lab_analysis_ran(with, *c))
+		if (ob_lab_analysis_next(with, *c, NULL, NULL))
 			write_case(p, with, *c);
 }
 

@@ -152,7 +152,7 @@ void ob_lab_print_conserved(FILE *f, const ob_lab_analysis *d, bool markdown)
 
 static bool is_shown(const ob_lab_analysis *d, const ob_case *c)
 {
-	return c->compared && ob_lab_analysis_ran(d, c);
+	return c->compared && ob_lab_analysis_next(d, c, NULL, NULL);
 }
 
 // Collects the engines in compared cases; obsim itself comes first.
@@ -162,9 +162,8 @@ static size_t gather(const ob_lab_analysis *d, size_t place[OB_LAB_ANALYSIS_ENGI
 	for (int own = 1; own >= 0; own--) {
 		for (size_t i = 0; i < d->engines; i++) {
 			bool part = false;
-			for (size_t j = 0; j < d->results->count; j++)
-				part |= d->results->result[j].engine == d->engine[i] &&
-					d->results->result[j].of->compared;
+			for (const ob_result *r = NULL; (r = ob_lab_analysis_next(d, NULL, d->engine[i], r));)
+				part |= r->of->compared;
 			if (part && (d->engine[i] == d->own) == own)
 				place[count++] = i;
 		}
@@ -240,27 +239,13 @@ ob_table *ob_lab_table_equal(const ob_lab_analysis *d, bool in_page, bool short_
 // Prints the number of cases with obsim ahead of all other engines, and its worst ratio otherwise.
 static void print_sum(FILE *f, const ob_lab_analysis *d)
 {
-	int cases = 0, ahead = 0, never = 0;
-	double worst = 0;
-	if (!ob_lab_analysis_count_others(d)) // no other engine
+	const ob_lab_analysis_lead l = ob_lab_analysis_measure_lead(d);
+	if (!ob_lab_analysis_count_others(d) || !d->own || !l.compared)
 		return;
-	for (const ob_case *const *c = ob_cases; *c; c++) {
-		if (!is_shown(d, *c) || !d->own)
-			continue;
-		ob_lab_analysis_equal q = ob_lab_analysis_compare(d, *c);
-		cases++;
-		ahead += q.ahead;
-		never += isnan(q.own);
-		for (size_t i = 0; i < d->engines && !q.ahead; i++)
-			if (!ob_lab_analysis_is_obsim(d->engine[i]) && q.cost[i] > 0)
-				worst = fmax(worst, q.own / q.cost[i]);
-	}
-	if (cases)
-		fprintf(f, "\nobsim is ahead in %d of %d", ahead, cases);
-	if (cases && worst > 0)
-		fprintf(f, "; at worst it takes %.2g times as long", worst);
-	if (cases)
-		fprintf(f, "%s.\n", never ? "; there are errors that it does not reach" : "");
+	fprintf(f, "\nobsim is ahead in %d of %d", l.ahead, l.compared);
+	if (l.worst > 0)
+		fprintf(f, "; at worst it takes %.2g times as long", l.worst);
+	fprintf(f, "%s.\n", l.never ? "; there are errors that it does not reach" : "");
 }
 
 void ob_lab_print_equal(FILE *f, const ob_lab_analysis *d, bool markdown)
@@ -360,11 +345,8 @@ ob_table *ob_lab_table_engines(const ob_lab_analysis *d, const ob_case *c)
 ob_table *ob_lab_table_runs(const ob_lab_analysis *d, const ob_case *c)
 {
 	ob_table *t = begin_case(c, "engine", "setting");
-	for (size_t i = 0; i < d->results->count; i++) {
-		const ob_result *r = &d->results->result[i];
+	for (const ob_result *r = NULL; (r = ob_lab_analysis_next(d, c, NULL, r));) {
 		char setting[32], lag[24] = "";
-		if (r->of != c)
-			continue;
 		ob_lab_chart_setting(r, setting, sizeof setting);
 		if (r->settings.lag)
 			snprintf(lag, sizeof lag, ", lag %u", r->settings.lag);
