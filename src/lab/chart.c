@@ -221,8 +221,8 @@ ob_chart *ob_lab_chart_convergence(const ob_lab_analysis *d, const ob_case *c)
 	for (size_t i = 0; i < chart->points; i++)
 		chart->point[i].label[0] = 0; // the axis has this information
 	add_guide(chart);
-	OB_SAY(chart->name, "order-%s", c ? c->name : "");
-	OB_SAY(chart->title, "%s: order of convergence", c ? c->title : "");
+	OB_SAY(chart->name, "order-%s", c->name);
+	OB_SAY(chart->title, "%s: order of convergence", c->title);
 	OB_SAY(chart->x.label, "substeps a frame");
 	chart->x.scale = OB_SCALE_LOG2;
 	return finish(chart, d, c, 860, 440);

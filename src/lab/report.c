@@ -119,11 +119,13 @@ static void write_convergence(ob_page *p, const void *with)
 {
 	static const char *const cases[] = { "stack-10", "pile", "sliding" };
 	bool begun = false;
-	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-		begun = write_section(p, begun, ob_lab_chart_convergence(with, ob_case_find(cases[i])), "order",
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		const ob_case *c = ob_case_find(cases[i]);
+		begun = write_section(p, begun, c ? ob_lab_chart_convergence(with, c) : NULL, "order",
 				      "Order of convergence",
 				      "Gain of doubling the substeps. An error of first order halves, one of second "
 				      "order falls to a quarter; the observed order stands beside each name.");
+	}
 }
 
 static void write_ghost(ob_page *p, const void *with)
