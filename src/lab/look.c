@@ -61,12 +61,6 @@ void ob_look_fail_still(ob_case_run_state *t)
 		t->failed = "nothing moved";
 }
 
-ob_state ob_look_end(const ob_case_run_state *t, const ob_joint_passport *j, int side)
-{
-	return j->object[side] == OB_JOINT_WORLD ? (ob_state){ .pose.q = ob_quat_identity() }
-						 : ob_look_at(t, j->object[side]);
-}
-
 double ob_look_parted(const ob_case_run_state *t)
 {
 	return ob_measure_gap(&t->now);

@@ -13,8 +13,6 @@ double ob_look_farthest(const ob_case_run_state *t); // m: largest distance of a
 bool ob_look_fail_below(ob_case_run_state *t);
 // Fails the trial if no body is elsewhere than at its start.
 void ob_look_fail_still(ob_case_run_state *t);
-// The object at a side of a joint; the world's frame where there is none.
-ob_state ob_look_end(const ob_case_run_state *t, const ob_joint_passport *j, int side);
 double ob_look_parted(const ob_case_run_state *t); // m: largest distance of the two places of a joint that must be one
 // Penetrations now; keeps the worst (mm).
 ob_penetration ob_look_penetration(const ob_case_run_state *t, double *worst);

@@ -19,6 +19,7 @@
 // Fields of a call; NaN = not set.
 typedef struct joint {
 	ob_vec3 at, axis, across, from, to;
+	ob_quat q;
 	double length;
 	const char *name;
 	bool collide, motor, breaks_at, second;
@@ -30,6 +31,7 @@ typedef struct joint {
 #define REQUIRED_PLACE(member) \
 	F(member, .kind = OB_FIELD_VECTOR, .low = -OB_PLACE_MOST, .high = OB_PLACE_MOST, .required = true)
 #define DIRECTION(member) F(member, .kind = OB_FIELD_DIRECTION, .required = true)
+#define AXIS_OR_FRAME F(axis, .kind = OB_FIELD_DIRECTION), F(q, .kind = OB_FIELD_QUATERNION)
 #define ALONG(member, ...) OB_FIELD(joint, along.member, .name = #member, .kind = OB_FIELD_NUMBER, __VA_ARGS__)
 #define AXIS(most_value) \
 	ALONG(low, .low = -(most_value), .high = (most_value)), \
@@ -51,8 +53,8 @@ static const ob_field ball_fields[] = { REQUIRED_PLACE(at),
 					ALONG(armature, .high = OB_JOINT_MOST),
 					COMMON };
 static const ob_field fixed_fields[] = { PLACE(at), COMMON };
-static const ob_field hinge_fields[] = { REQUIRED_PLACE(at), DIRECTION(axis), AXIS(2 * M_PI), COMMON };
-static const ob_field slider_fields[] = { PLACE(at), DIRECTION(axis), AXIS(2 * OB_PLACE_MOST), COMMON };
+static const ob_field hinge_fields[] = { REQUIRED_PLACE(at), AXIS_OR_FRAME, AXIS(2 * M_PI), COMMON };
+static const ob_field slider_fields[] = { PLACE(at), AXIS_OR_FRAME, AXIS(2 * OB_PLACE_MOST), COMMON };
 static const ob_field universal_fields[] = { REQUIRED_PLACE(at),
 					     DIRECTION(axis),
 					     DIRECTION(across),
@@ -222,6 +224,7 @@ static void set_frames(lua_State *L, const ob_joined end[2], const joint *d, ob_
 	} else {
 		frame[0].p = isnan(d->at.x) ? first : d->at;
 		frame[0].q = j->kind == OB_JOINT_UNIVERSAL ? cross_frame(L, d->axis, d->across)
+			     : !isnan(d->q.w)              ? d->q
 			     : isnan(d->axis.x)            ? ob_quat_identity()
 							   : ob_scene_turn_to(d->axis);
 		frame[1] = frame[0];
@@ -354,12 +357,17 @@ int ob_scene_call_joint(lua_State *L)
 	ob_joint_passport j = { .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
 	ob_joined end[2];
 	const ob_vec3 none = { NAN, NAN, NAN };
-	joint d = { none, none,  none,  none,  none,  NAN,
-		    NULL, false, false, false, false, { .low = NAN, .high = NAN, .rest = NAN } };
+	joint d = { .at = none, .axis = none, .across = none, .from = none, .to = none };
+	d.q.w = d.length = d.along.low = d.along.high = d.along.rest = NAN;
 	const char *kind = ob_joint_kind_name(j.kind);
 	lua_settop(L, 1);
 	read_objects(L, b, kind, end, &j);
 	ob_fields_read(L, 1, kind, calls[j.kind].field, calls[j.kind].fields, &d);
+	if ((j.kind == OB_JOINT_HINGE || j.kind == OB_JOINT_SLIDER) && isnan(d.axis.x) == isnan(d.q.w))
+		ob_sandbox_fail(L,
+				"%s.axis: expected a direction {x, y, z}, or q, the attitude of a frame whose z is the "
+				"axis, got %s",
+				kind, isnan(d.q.w) ? "nothing" : "both");
 	j.flags = d.collide ? OB_JOINT_COLLIDES : 0;
 	set_frames(L, end, &d, &j);
 	set_axes(L, kind, &d, &j);

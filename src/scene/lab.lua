@@ -68,6 +68,16 @@ function lab.integrate(rate, y, until_time, tolerance)
 	return y
 end
 
+-- A function that follows y' = rate(y) from a start, to ascending times: it returns y there, to 1e-13 a step.
+function lab.follow(rate, start)
+	local y, now = start, 0
+	return function(time)
+		if time > now then y = lab.integrate(rate, y, time - now, 1e-13) end
+		now = time
+		return y
+	end
+end
+
 local node = { -.96028985649753623168, -.79666647741362673959, -.52553240991632898582, -.18343464249564980494,
 	.18343464249564980494, .52553240991632898582, .79666647741362673959, .96028985649753623168 }
 local weight = { .10122853629037625915, .22238103445337447054, .31370664587788728734, .36268378337836198297,
@@ -106,6 +116,23 @@ function lab.moved(run, distance)
 	local moved = lab.farthest(run) > (distance or 0)
 	if not moved then run:fail("nothing moved") end
 	return moved
+end
+
+-- A function that returns the worst of f over all looks so far.
+function lab.worst(f)
+	local worst = 0
+	watch(function(run) worst = math.max(worst, f(run)) end)
+	return function() return worst end
+end
+
+-- Expects joints to hold, bodies to move, and an error, of position unless it is named, to stay below a limit.
+function lab.held(limit, source, error_of, name, unit)
+	local gap = lab.worst(function(run) return run.gap end)
+	expect { name or "error of position", below = limit, unit = unit or "m", source = source, worst = true, error_of }
+	expect { "gap of a joint", below = 1e-9, unit = "m", source = "its two places are one", function(run)
+		lab.moved(run)
+		return gap()
+	end }
 end
 
 -- Expects a structure to stand: limits of the worst penetration and of the drift aside, mm. every: steps between looks;

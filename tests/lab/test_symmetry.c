@@ -103,7 +103,10 @@ static void reverse_order(ob_world *w)
 
 static void build_seen(ob_world *w, uint32_t run, const double *variant)
 {
-	original->build(w, run, variant);
+	ob_scene *scene;
+	ob_error e;
+	CHECK(ob_case_build(original, run, w, &scene, &e));
+	ob_scene_free(scene);
 	CHECK(w->objects <= MOST);
 	for (uint32_t i = 0; i < w->objects; i++) {
 		place_of[i] = i;
@@ -132,7 +135,7 @@ static void run(const ob_case *c, const relation *x, double duration)
 	ob_case_result out;
 	ob_error e;
 	original = c, as = x;
-	seen_case.build = build_seen, seen_case.observe = observe_end, seen_case.judge = accept;
+	seen_case.text = NULL, seen_case.build = build_seen, seen_case.observe = observe_end, seen_case.judge = accept;
 	seen_case.duration = duration, seen_case.runs = 1;
 	if (!ob_case_run(&seen_case, &ob_engine_obsim, &ob_engine_obsim.usual, &out, &e)) {
 		fprintf(stderr, "%s: %s\n", c->name, e.text);

@@ -10,17 +10,6 @@
 	X(plates_box) \
 	X(discs_plane) \
 	X(discs_box) \
-	X(pendulum_90) \
-	X(pendulum_179) \
-	X(double_pendulum) \
-	X(spherical_pendulum) \
-	X(top) \
-	X(chain_100) \
-	X(four_bar) \
-	X(slider_crank) \
-	X(furuta) \
-	X(bricard) \
-	X(breaking_door) \
 	X(plank_bridge) \
 	X(ragdoll) \
 	X(car)

@@ -1,134 +1,19 @@
-// Mechanisms: a linkage that moves against Kutzbach's count, a door that breaks off, a bridge of planks, a ragdoll, a car.
+// Mechanisms: a bridge of planks, ragdolls, a car.
 #include <stdlib.h>
 
 #include "lab/cases/cases.h"
 #include "base/random.h"
 #include "lab/look.h"
-#include "motion/joint_value.h"
 #include "world/world.h"
 
 static const double g = OB_WORLD_GRAVITY;
 static const ob_quat y_axis = { M_SQRT1_2, -M_SQRT1_2, 0, 0 }; // a joint's z axis along y
-
-// Turn of a hinge (rad) since the start.
-static double turn_of(const ob_case_run_state *t, uint32_t joint)
-{
-	const ob_joint_passport *j = &t->world->joint[joint];
-	double value = NAN, rate;
-	ob_joint_value(j, (ob_state[]){ ob_look_end(t, j, 0), ob_look_end(t, j, 1) }, &value, &rate);
-	return value;
-}
 
 static void hold_rate(ob_joint_passport *j, double rate, double most)
 {
 	j->flags |= OB_JOINT_DRIVEN;
 	j->axis.motor = OB_MOTOR_RATE, j->axis.target = rate, j->axis.most = most;
 }
-
-// ---- Bricard's linkage: six links of 1 m, six hinges, each across the next; the angles of all odd hinges are alike, and
-// those of all even ones
-
-enum { SIX = 6 };
-static const double first_angle = -1.2, bricard_rate = -.6; // rad, rad/s of the driven hinge, an odd one
-
-// Angle of the even hinges at that of the odd ones, and the other way round: cos a + cos b + cos a cos b = 0 (Chen, You and
-// Tarnai 2005).
-static double other_angle(double angle)
-{
-	return acos(-cos(angle) / (1 + cos(angle)));
-}
-
-// Pose of the next hinge's frame: this one turned by its angle, 1 m along x, turned by a right angle about x.
-static ob_pose next_frame(ob_pose frame, double angle, int way)
-{
-	const ob_quat turn = { cos(angle / 2), 0, 0, sin(angle / 2) }, twist = { M_SQRT1_2, way * M_SQRT1_2, 0, 0 };
-	const ob_quat q = ob_quat_mul(frame.q, turn);
-	const ob_mat3 r = ob_quat_matrix(q);
-	return (ob_pose){ ob_add(frame.p, ob_column(&r, 0)), ob_quat_normalize(ob_quat_mul(q, twist)) };
-}
-
-// The link between the hinges 0 and 1 stands still.
-static void build_bricard(ob_world *w, uint32_t run, const double *variant)
-{
-	ob_pose frame[SIX + 1] = { { .q = ob_quat_identity() } };
-	for (int i = 0; i < SIX; i++)
-		frame[i + 1] = next_frame(frame[i], i % 2 ? first_angle : other_angle(first_angle), i % 2 ? -1 : 1);
-	for (int i = 1; i < SIX; i++)
-		ob_world_sphere(w, 1, .1, ob_scale(ob_add(frame[i].p, frame[i + 1].p), .5));
-	for (uint32_t i = 1; i <= SIX; i++) { // the last one is hinge 0
-		const uint32_t link = i < SIX ? i - 1 : OB_JOINT_WORLD, before = i > 1 ? i - 2 : OB_JOINT_WORLD;
-		const bool world = link == OB_JOINT_WORLD;
-		ob_world_join(w, OB_JOINT_HINGE, world ? before : link, world ? link : before, frame[i]);
-	}
-	hold_rate(&w->joint[0], bricard_rate, INFINITY);
-}
-
-static void observe_bricard(ob_case_run_state *t)
-{
-	const double odd = first_angle + bricard_rate * t->time, even = other_angle(odd) - other_angle(first_angle);
-	for (uint32_t i = 0; i < SIX; i++) {
-		const double sign = i + 1 < SIX ? 1 : -1, expected = i % 2 ? even : bricard_rate * t->time;
-		ob_look_keep(&t->figure[0], fabs(sign * turn_of(t, i) - expected));
-	}
-	ob_look_keep(&t->figure[1], ob_look_parted(t));
-}
-
-const ob_case ob_case_bricard = {
-	.row = 52,
-	.name = "bricard",
-	.title = "Bricard's linkage",
-	.setup = "Six links of 1 m in a ring of six hinges, each across the next: it moves, although 30 rows hold 30 "
-		 "freedoms. One "
-		 "hinge turns at .6 rad/s for 1.2 s.",
-	.duration = 1.2,
-	.figures = 2,
-	.figure = { { "error of an angle", "rad", 1e-9, "cos a + cos b + cos a cos b = 0 (Chen, You and Tarnai 2005)" },
-		    { "gap of a joint", "m", 1e-9, "its two places are one" } },
-	.build = build_bricard,
-	.observe = observe_bricard,
-	.judge = ob_look_fail_still,
-};
-
-// ---- a door that a motor turns faster and faster until its hinge breaks
-
-static const double door_half = .5, door_torque = 30, door_strength = 900; // m, N m, N
-enum { DOOR_MASS = 20 };
-
-static void build_door(ob_world *w, uint32_t run, const double *variant)
-{
-	ob_world_box(w, DOOR_MASS, ob_v3(door_half, .03, 1), ob_v3(door_half, 0, 3));
-	ob_joint_passport *j =
-		ob_world_join(w, OB_JOINT_HINGE, 0, OB_JOINT_WORLD, (ob_pose){ { 0, 0, 3 }, ob_quat_identity() });
-	hold_rate(j, 1e3, door_torque);
-	j->breaks_force = door_strength;
-}
-
-static void judge_door(ob_case_run_state *t)
-{
-	const ob_state x = ob_look_at(t, 0);
-	const double inertia = t->world->passport[0].inertia.z + DOOR_MASS * door_half * door_half,
-		     acceleration = door_torque / inertia, across = DOOR_MASS * acceleration * door_half,
-		     inward = sqrt(door_strength * door_strength - across * across - DOOR_MASS * g * (DOOR_MASS * g)),
-		     rate = sqrt(inward / (DOOR_MASS * door_half));
-	const double speed = ob_norm(ob_v3(x.v.x, x.v.y, 0));
-	t->figure[0] = fabs(speed / door_half - rate) / acceleration;
-	t->figure[1] = fabs(speed / door_half - x.w.z);
-	t->figure[2] = fabs(x.v.z + g * (t->time - speed / door_half / acceleration));
-}
-
-const ob_case ob_case_breaking_door = {
-	.row = 53,
-	.name = "breaking-door",
-	.title = "Door that breaks off",
-	.setup = "A torque of 30 N m turns a door of 20 kg faster and faster; its hinge holds 900 N.",
-	.duration = 3,
-	.figures = 3,
-	.figure = { { "error of the instant", "s", 1. / 480, "m r^2 (w^4 + a^2) + g^2 m^2 = F^2; within a substep" },
-		    { "turn after it, off speed / radius", "rad/s", 1e-6, "it flies as it was" },
-		    { "fall after it", "m/s", .02, "g t, from the instant found" } },
-	.build = build_door,
-	.judge = judge_door,
-};
 
 // ---- a bridge of planks, a box on the middle one
 
