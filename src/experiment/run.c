@@ -91,8 +91,6 @@ bool ob_experiment_open(const ob_experiment *x, const char *folder, ob_records *
 	return fine;
 }
 
-// ---- remaining trials, and their time
-
 // ---- several ranks: the first has the records and the file, and hands out one trial after the
 // other, to itself as well; the others run them.
 //
@@ -205,7 +203,7 @@ static bool run_as_helper(const ob_experiment *x, const ob_trials *s, const ob_r
 	return fine || ob_fail(e, "rank %u: %s", ranks->rank, why.text);
 }
 
-// ---- the first rank
+// ---- the first rank: remaining trials, and their time
 
 // Known times of the trials of one case.
 typedef struct timing {
