@@ -33,9 +33,9 @@ const ob_paper_setup ob_paper_setups[OB_PAPER_SCENARIOS] = {
 				.each = true },
 };
 
-#define METRIC(key, title, unit, scale) \
+#define METRIC(k, t, u, s) \
 	{ \
-		key, title, unit, scale, NAN, NULL, title \
+		.key = k, .title = t, .unit = u, .scale = s, .target = NAN, .meaning = t \
 	}
 const ob_metric ob_paper_metrics[OB_PAPER_METRICS] = {
 	[OB_PAPER_STEP] = METRIC("step_s", "step, until the last is done", "ms", 1e3),
