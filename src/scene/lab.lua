@@ -39,11 +39,11 @@ local tableau = {
 }
 local differs = { 71 / 57600, 0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40 }
 
--- Integrates y' = rate(y), a list of numbers, from 0 to the time `until_time`, with an error of a step below the tolerance.
--- Returns y there.
-function lab.integrate(rate, y, until_time, tolerance)
+-- Integrates y' = rate(y), a list of numbers, from 0 to the time `until_time`, with an error of a step below the tolerance, or until
+-- ends(y). Returns y there.
+function lab.integrate(rate, y, until_time, tolerance, ends)
 	local t, h, n = 0, 1e-3 * until_time, #y
-	while t < until_time do
+	while t < until_time and not (ends and ends(y)) do
 		local last, rates, following = t + h >= until_time, {}, nil
 		local length = last and until_time - t or h
 		for stage = 1, 7 do
@@ -78,12 +78,15 @@ function lab.follow(rate, start)
 	end
 end
 
+-- Gauss's rule of eight points from -1 to 1.
 local node = { -.96028985649753623168, -.79666647741362673959, -.52553240991632898582, -.18343464249564980494,
 	.18343464249564980494, .52553240991632898582, .79666647741362673959, .96028985649753623168 }
 local weight = { .10122853629037625915, .22238103445337447054, .31370664587788728734, .36268378337836198297,
 	.36268378337836198297, .31370664587788728734, .22238103445337447054, .10122853629037625915 }
 
--- Integral of f from a to b by n pieces of Gauss's rule of eight points.
+lab.gauss = { node = node, weight = weight }
+
+-- Integral of f from a to b by n pieces of that rule.
 function lab.quadrature(f, a, b, n)
 	local sum, half = 0, .5 * (b - a) / n
 	for part = 0, n - 1 do

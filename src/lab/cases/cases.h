@@ -6,10 +6,6 @@
 
 #define OB_CASES(X) \
 	X(spin) \
-	X(plates_plane) \
-	X(plates_box) \
-	X(discs_plane) \
-	X(discs_box) \
 	X(plank_bridge) \
 	X(ragdoll) \
 	X(car)
