@@ -41,7 +41,7 @@ end
 
 local function asinh(x) return x < 0 and -asinh(-x) or math.log(x + math.sqrt(x * x + 1)) end
 
--- Of a rectangle, by primitives of x / r, and of r, in both coordinates; the centre lies at cx, cy.
+-- A rectangle, by primitives of x / r, and of r, in both coordinates; the centre lies at cx, cy.
 local function rectangle_means(p, cx, cy)
 	local function direction(x, y)
 		local r = hypot(x, y)
@@ -78,7 +78,7 @@ local function rectangle_from_afar(p, vx, vy, w)
 	return x, y, turn
 end
 
--- Of a disc, in polar coordinates about the instantaneous centre, at distance d from the disc's along -x.
+-- A disc, in polar coordinates about the instantaneous centre, at distance d from the disc's along -x.
 local points, whole_sine, whole_cosine, half_sine, half_cosine = 1024, {}, {}, {}, {}
 for i = 0, points - 1 do
 	local f, e = 2 * math.pi * i / points, math.pi * (i + .5) / points - math.pi / 2

@@ -105,7 +105,10 @@ static ob_table *new_table(void)
 
 static void add_case(ob_table *t, const ob_case *c, const ob_audit *a)
 {
-	ob_table_add(t, "%d", c->row);
+	if (c->row > 0)
+		ob_table_add(t, "%d", c->row);
+	else
+		ob_table_add(t, "%s", "");
 	ob_table_add(t, "%s", c->title);
 	ob_table_link(t, c->name);
 	for (int i = 0; i < OB_AUDIT_SETTINGS; i++) {

@@ -114,7 +114,10 @@ ob_table *ob_lab_table_conserved(const ob_lab_analysis *d)
 		const ob_result *r = ob_lab_analysis_promised(d, *c);
 		if (!r)
 			continue;
-		ob_table_add(t, "%d", (*c)->row);
+		if ((*c)->row > 0)
+			ob_table_add(t, "%d", (*c)->row);
+		else
+			ob_table_add(t, "%s", "");
 		ob_table_add(t, "%s", (*c)->title);
 		ob_table_link(t, (*c)->name);
 		for (ob_conserved i = 0; i < OB_CONSERVED; i++) {

@@ -60,7 +60,8 @@ _obsim()
 		top:*) mapfile -t COMPREPLY < <(compgen -W "$(cd /dev/shm 2>/dev/null && printf '%s\n' obsim.* |
 			sed -n 's/^obsim\.\([^*]\)/\1/p')" -- "$word") ;;
 		lab:*) mapfile -t COMPREPLY < <(compgen -W "$("$program" lab --list 2>/dev/null |
-			sed -n 's/^ *[0-9]* *\([^ ]*\) .*/\1/p')" -- "$word") ;;
+			sed -n 's/^ *[0-9]* *\([^ ]*\) .*/\1/p')" -- "$word"
+			compgen -f -X '!*.lua' -- "$word") ;;
 		*) mapfile -t COMPREPLY < <(compgen -d -S / -- "$word"
 			compgen -f -X '!*.lua' -- "$word") ;;
 		esac
