@@ -207,7 +207,7 @@ static bool await(const ob_meanwhile *p, child *c, tail *t)
 			polls[1].fd = -1;
 		if (n > 0 && polls[0].revents)
 			return true;
-		c->called_off = n > 0 && polls[2].revents && !p->attend(p->of);
+		c->called_off = n > 0 && polls[2].revents && p->attend && !p->attend(p->of);
 		if (left <= 0 || c->called_off)
 			return false;
 		if (p->tick)
@@ -358,9 +358,12 @@ static char *text_of(int file)
 
 char *ob_program_report(char **argv, ob_error *e)
 {
+	if (!argv) {
+		ob_fail(e, "out of memory");
+		return NULL;
+	}
 	const int out = memfd_create("obsim-out", MFD_CLOEXEC), said = memfd_create("obsim-said", MFD_CLOEXEC);
-	bool fine =
-		argv ? (out >= 0 && said >= 0) || ob_fail(e, "cannot make a file: %m") : ob_fail(e, "out of memory");
+	bool fine = (out >= 0 && said >= 0) || ob_fail(e, "cannot make a file: %m");
 	char *report = NULL, *words = NULL, complaint[256];
 	int status = 0;
 	if (fine) {

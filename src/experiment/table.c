@@ -148,12 +148,13 @@ static size_t *measure(const ob_table *t, size_t least)
 		abort();
 	for (size_t i = 0; i < t->columns; i++)
 		width[i] = least;
-	for (size_t i = 0; i < t->count; i++) {
-		char *text = text_of(t, i);
-		size_t w = ob_utf8_count(text), *widest = &width[i % t->columns];
-		*widest = w > *widest && !t->cell[i].heading ? w : *widest;
-		free(text);
-	}
+	for (size_t row = 0; row < t->count; row += t->columns)
+		for (size_t i = 0; i < t->columns && row + i < t->count; i++) {
+			char *text = text_of(t, row + i);
+			const size_t w = ob_utf8_count(text);
+			width[i] = w > width[i] && !t->cell[row + i].heading ? w : width[i];
+			free(text);
+		}
 	return width;
 }
 
