@@ -80,6 +80,15 @@ class Lab(program.Case):
 		again = self.lab("lab", path, "--engines", "obsim", "--sweep", "none", "--json")
 		self.assertEqual([len(x["figures"]) for x in json.loads(again.stdout)["results"]], [3, 3])
 
+	def test_run_and_lab_agree(self):
+		"""A case of the lab, run as any scene and found by its name, has the same figures to the last bit."""
+		told = json.loads(self.lab("lab", "sliding", "apexes", "slider-crank", "--engines", "obsim", "--sweep", "none", "--json").stdout)
+		figures = {x["case"]: [f["value"] for f in x["figures"]] for x in told["results"]}
+		for case, scene, *more in (("sliding", "lab/sliding"), ("apexes", "scenes/lab/bounces.lua", "-D", "variant=apexes"),
+				("slider-crank", "lab/linkages", "-D", "variant=slider-crank")):
+			report = program.report(scene, *more, "--set", "sleeping=off", "--strict", cwd=self.directory.name)
+			self.assertEqual([x["value"] for x in report["expectations"]], figures[case])
+
 	def test_wrong_cases(self):
 		ball = 'sphere { name = "ball", radius = 1 }\n'
 		expect = 'expect { "x", worst = true, function(run) return run["ball"].at.x end }\n'
