@@ -61,6 +61,17 @@ class Record:
         return pandas.DataFrame({'time': e['time'], 'step': e['step'], 'id': e['id'], 'generation': e['generation'],
                                  'name': [n.decode() for n in e['name']], 'what': [EVENTS[k] for k in e['kind']]})
 
+    def samples(self, sensor: str) -> Any:
+        """Samples of a sensor: arrays of numbers, times (s) and values, shape (samples, width)."""
+        known = [n.decode() for n in self._file['sensors']['name']] if 'sensors' in self._file else []
+        if sensor not in known:
+            raise KeyError(f'no sensor {sensor!r}, expected one of {known}')
+        width = int(self._file['sensors']['width'][known.index(sensor)])
+        rows = self._file['samples'][:]
+        rows = rows[rows['sensor'] == known.index(sensor)]
+        whole = rows[rows['first'] == 0]
+        return whole['number'], whole['time'], rows['value'].reshape(len(whole), -1)[:, :width]
+
     def close(self) -> None:
         """Closes the file."""
         self._file.close()

@@ -125,6 +125,8 @@ static bool take_snapshot(run *r, ob_error *e)
 	const unsigned with = (f->contacts ? OB_SNAPSHOT_CONTACTS : 0) | (f->reads ? OB_SNAPSHOT_BOUNDS : 0);
 	uint64_t begin = ob_clock_ns();
 	bool taken = ob_snapshot_take(&r->now, ob_host_universe(r->host), with, e);
+	if (taken && r->recorder && r->now.step % r->scene->record_every == 0)
+		taken = ob_recorder_sense(r->recorder, ob_host_universe(r->host), e);
 	ob_host_trace(r->host, OB_TRACE_SNAPSHOT, begin, 0);
 	return taken;
 }

@@ -135,7 +135,8 @@ static bool record(serving *s, ob_error *e)
 	if (!s->recorder || step % s->scene->record_every != 0 || step == s->recorded)
 		return true;
 	s->recorded = step;
-	return ob_snapshot_take(&s->shown, ob_host_universe(s->host), 0, e) &&
+	return ob_recorder_sense(s->recorder, ob_host_universe(s->host), e) &&
+	       ob_snapshot_take(&s->shown, ob_host_universe(s->host), 0, e) &&
 	       ob_recorder_append(s->recorder, &s->shown, e);
 }
 

@@ -125,6 +125,38 @@ const ob_record_table ob_record_hulls = {
 	hull_members,
 };
 
+#define SENSOR(name, type) MEMBER(#name, type, offsetof(ob_sensor_passport, name), 0)
+static const ob_record_member sensor_members[] = {
+	SENSOR(name, OB_RECORD_NAME), SENSOR(kind, OB_RECORD_U32),  SENSOR(object, OB_RECORD_U32),
+	SENSOR(joint, OB_RECORD_U32), SENSOR(width, OB_RECORD_U32), SENSOR(pose, OB_RECORD_POSE),
+	SENSOR(rate, OB_RECORD_F64),  SENSOR(delay, OB_RECORD_F64), SENSOR(beams, OB_RECORD_U32),
+	SENSOR(rows, OB_RECORD_U32),  SENSOR(fan, OB_RECORD_F64),   SENSOR(rise, OB_RECORD_F64),
+	SENSOR(reach, OB_RECORD_F64),
+};
+const ob_record_table ob_record_sensors = {
+	{ "sensors", "SI, Hz, rad", "pose: in the object's frame",
+	  "kind: from 0, imu, encoder, force_torque, touch, lidar; rate 0: a sample in each step" },
+	sizeof(ob_sensor_passport),
+	COUNT(sensor_members),
+	sensor_members,
+};
+
+#define SAMPLE(name, type, length) MEMBER(#name, type, offsetof(ob_record_sample, name), length)
+static const ob_record_member sample_members[] = {
+	SAMPLE(sensor, OB_RECORD_U32, 0),
+	SAMPLE(first, OB_RECORD_U32, 0),
+	SAMPLE(number, OB_RECORD_U64, 0),
+	SAMPLE(time, OB_RECORD_F64, 0),
+	SAMPLE(value, OB_RECORD_F64, OB_RECORD_VALUES),
+};
+const ob_record_table ob_record_samples = {
+	{ "samples", "SI", "the sensor's",
+	  "samples that could be read at recorded states, six values a row, from the index `first` on; NaN: no value" },
+	sizeof(ob_record_sample),
+	COUNT(sample_members),
+	sample_members,
+};
+
 #define CAMERA(name, type) MEMBER(#name, type, offsetof(ob_camera_def, name), 0)
 static const ob_record_member camera_members[] = {
 	CAMERA(name, OB_RECORD_NAME),     CAMERA(eye, OB_RECORD_VEC3),       CAMERA(target, OB_RECORD_VEC3),

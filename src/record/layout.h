@@ -75,6 +75,15 @@ typedef struct ob_record_motion {
 	ob_motion motion;
 } ob_record_motion;
 
+// Some values of a sample.
+enum { OB_RECORD_VALUES = 6 };
+typedef struct ob_record_sample {
+	uint32_t sensor, first; // first: index of the first of these values
+	uint64_t number;
+	double time; // s
+	double value[OB_RECORD_VALUES]; // NaN beyond the last
+} ob_record_sample;
+
 // A hull, and its number in passports.
 typedef struct ob_record_hull {
 	uint32_t number, zero;
@@ -85,6 +94,8 @@ extern const ob_record_table ob_record_events; // ob_record_event
 extern const ob_record_table ob_record_joints; // ob_record_joint
 extern const ob_record_table ob_record_motions; // ob_record_motion: only the members that determine the pose
 extern const ob_record_table ob_record_hulls; // ob_record_hull
+extern const ob_record_table ob_record_sensors; // ob_sensor_passport
+extern const ob_record_table ob_record_samples; // ob_record_sample
 extern const ob_record_table ob_record_cameras; // ob_camera_def
 extern const ob_record_table ob_record_look; // ob_look_def
 extern const ob_record_table ob_record_mesh_vertices; // ob_mesh_vertex

@@ -32,6 +32,11 @@ bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 	return part_of(r)->append(r, s, e);
 }
 
+bool ob_recorder_sense(ob_recorder *r, const ob_universe *u, ob_error *e)
+{
+	return part_of(r)->sense(r, u, e);
+}
+
 bool ob_recorder_close(ob_recorder *r, ob_error *e)
 {
 	return !r || part_of(r)->finish(r, e);

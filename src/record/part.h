@@ -8,6 +8,7 @@
 
 ob_recorder *ob_hdf5_recorder_create(const char *path, const ob_record_facts *facts, ob_error *e);
 bool ob_hdf5_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e);
+bool ob_hdf5_recorder_sense(ob_recorder *r, const ob_universe *u, ob_error *e);
 bool ob_hdf5_recorder_close(ob_recorder *r, ob_error *e);
 ob_recording *ob_hdf5_recording_open(const char *path, ob_error *e);
 const ob_recording_info *ob_hdf5_recording_get_info(const ob_recording *r);
@@ -20,6 +21,7 @@ typedef struct ob_record_part {
 	ob_part_head head;
 	ob_recorder *(*create)(const char *path, const ob_record_facts *facts, ob_error *e);
 	bool (*append)(ob_recorder *r, const ob_snapshot *s, ob_error *e);
+	bool (*sense)(ob_recorder *r, const ob_universe *u, ob_error *e);
 	bool (*finish)(ob_recorder *r, ob_error *e);
 	ob_recording *(*open)(const char *path, ob_error *e);
 	const ob_recording_info *(*info)(const ob_recording *r);

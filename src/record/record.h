@@ -6,6 +6,7 @@
 //   /motions [m], /motions_until [n]   new motions of objects; and their number up to each state
 //   /time, /step [n]                the recorded states
 //   /position, /attitude, /velocity, /angular_velocity, /asleep [n][ids]   the same as numbers; NaN, 255: no object
+//   /sensors [k], /samples [s]         sensors of the scene; their samples
 //   /objects/id, name, shape, size ..  [ids]   the latest object of each id
 //
 // Each has attributes "units", "frame" and "description". n grows by one with each append, e and m with new entries,
@@ -40,6 +41,8 @@ bool ob_record_check(ob_error *e);
 ob_recorder *ob_recorder_create(const char *path, const ob_record_facts *facts, ob_error *e);
 // Appends a state. false and e: the disk is full, ...
 bool ob_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e);
+// Appends the samples of the scene's sensors that have come since, of those that the universe keeps. While it is paused.
+bool ob_recorder_sense(ob_recorder *r, const ob_universe *u, ob_error *e);
 bool ob_recorder_close(ob_recorder *r, ob_error *e); // frees r either way; NULL is allowed
 
 #endif

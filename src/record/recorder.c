@@ -293,7 +293,7 @@ struct ob_recorder {
 	char *path;
 	hid_t file, set[COLUMNS]; // negative: missing
 	objects objects;
-	list events, motions, hulls, joints;
+	list events, motions, hulls, joints, samples;
 	preallocation allocated;
 	hsize_t chunk_ids, chunk_rows[COLUMNS]; // in a chunk of the columns
 	uint32_t written_count; // ids in the previous row, 0: there is none
@@ -310,6 +310,11 @@ struct ob_recorder {
 	uint32_t known_joints;
 	ob_joint_passport *joint; // [known_joints]: as in the file now, by number; zeroed where unused
 	ob_record_joint *fresh_joint; // [known_joints * 2]
+	uint32_t sensors;
+	uint64_t *sensed; // [sensors]: number of the last sample in the file
+	uint64_t *sample_number; // these three hold samples of a sensor while they are written
+	double *sample_time, *sample_value;
+	ob_record_sample *fresh_sample;
 };
 
 static hid_t column_type(int column)
@@ -487,6 +492,9 @@ static bool create_file(ob_recorder *r, const ob_record_facts *about)
 	    !create_list(&r->events, r->file) || !create_list(&r->motions, r->file) ||
 	    !create_list(&r->hulls, r->file) || !create_list(&r->joints, r->file))
 		return false;
+	if (r->sensors && (!create_list(&r->samples, r->file) ||
+			   !write_table(r->file, &ob_record_sensors, about->scene->sensor, r->sensors)))
+		return false;
 	r->chunk_ids = r->count < IDS_AT_ONCE ? IDS_AT_ONCE : r->count;
 	for (int i = 0; i < COLUMNS; i++)
 		if (!create_column(r, i))
@@ -518,11 +526,14 @@ ob_recorder *ob_hdf5_recorder_create(const char *path, const ob_record_facts *ab
 	r->motions = list_of(&ob_record_motions);
 	r->hulls = list_of(&ob_record_hulls);
 	r->joints = list_of(&ob_record_joints);
+	r->samples = list_of(&ob_record_samples);
+	r->sensors = about->scene->sensors;
+	r->sensed = calloc(r->sensors + 1, sizeof *r->sensed);
 	for (int i = 0; i < COLUMNS; i++)
 		r->set[i] = H5I_INVALID_HID;
 	uint32_t count = about->universe.capacity ? about->universe.capacity : 1;
 	r->path = strdup(path);
-	if (!r->path || !make_room(r, count))
+	if (!r->path || !r->sensed || !make_room(r, count))
 		ob_fail(e, "%s: no memory to record %u objects", path, count);
 	else if (create_file(r, about))
 		return r;
@@ -796,6 +807,49 @@ static bool append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 	return true;
 }
 
+// ---- samples of sensors
+
+// Appends what a sensor has taken since.
+static bool append_samples(ob_recorder *r, const ob_universe *u, uint32_t sensor, ob_error *e)
+{
+	ob_sensor_passport p;
+	haddr_t used = 0;
+	if (!ob_universe_get_sensor(u, sensor, &p))
+		return true;
+	const uint32_t parts = (p.width + OB_RECORD_VALUES - 1) / OB_RECORD_VALUES;
+	if (!OB_GROW(r->sample_number, p.kept) || !OB_GROW(r->sample_time, p.kept) ||
+	    !OB_GROW(r->sample_value, (size_t)p.kept * p.width) || !OB_GROW(r->fresh_sample, (size_t)p.kept * parts))
+		return ob_fail(e, "%s: no memory to record sensor \"%s\"", r->path, p.name);
+	const size_t n = ob_universe_get_samples(u, sensor, r->sensed[sensor], r->sample_number, r->sample_time,
+						 r->sample_value, p.kept);
+	if (n)
+		r->sensed[sensor] = r->sample_number[n - 1];
+	for (size_t i = 0; i < n * parts; i++) {
+		const size_t of = i / parts;
+		ob_record_sample *to = &r->fresh_sample[i];
+		*to = (ob_record_sample){ sensor,
+					  (uint32_t)(i % parts) * OB_RECORD_VALUES,
+					  r->sample_number[of],
+					  r->sample_time[of],
+					  { 0 } };
+		for (uint32_t k = 0; k < OB_RECORD_VALUES; k++)
+			to->value[k] = to->first + k < p.width ? r->sample_value[of * p.width + to->first + k] : NAN;
+	}
+	if (H5Fget_eoa(r->file, &used) >= 0 &&
+	    !preallocate(&r->allocated, r->path, used, list_bytes(&r->samples, n * parts) + INDEX_BYTES, e))
+		return false;
+	return append_list(&r->samples, r->fresh_sample, n * parts) || ob_hdf5_fail(e, r->path, "append to the record");
+}
+
+bool ob_hdf5_recorder_sense(ob_recorder *r, const ob_universe *u, ob_error *e)
+{
+	bool good = true;
+	for (uint32_t i = 0; i < r->sensors && good; i++)
+		good = append_samples(r, u, i, e);
+	r->failed |= !good;
+	return good;
+}
+
 bool ob_hdf5_recorder_append(ob_recorder *r, const ob_snapshot *s, ob_error *e)
 {
 	const bool good = append(r, s, e);
@@ -825,6 +879,7 @@ bool ob_hdf5_recorder_close(ob_recorder *r, ob_error *e)
 	ok &= finish_list(&r->motions);
 	ok &= finish_list(&r->hulls);
 	ok &= finish_list(&r->joints);
+	ok &= finish_list(&r->samples);
 	if (r->file >= 0)
 		ok &= H5Fclose(r->file) >= 0;
 	ok &= close_preallocation(&r->allocated, ob_hdf5_length(r->path));
@@ -840,6 +895,11 @@ bool ob_hdf5_recorder_close(ob_recorder *r, ob_error *e)
 	free(r->knows_hull);
 	free(r->joint);
 	free(r->fresh_joint);
+	free(r->sensed);
+	free(r->sample_number);
+	free(r->sample_time);
+	free(r->sample_value);
+	free(r->fresh_sample);
 	free(r);
 	return ok;
 }

@@ -50,6 +50,33 @@ class Records(unittest.TestCase):
             events = r.events()
             self.assertEqual(events[events.name == 'guest'].what.tolist(), ['came', 'went'])
 
+    def test_samples(self):
+        """A record has the samples of sensors, of each step or of each that is recorded."""
+        for every, kept, number in (1, 0, 300), (3, 20, 300):
+            with open(self.path + '.lua', 'w', encoding='utf-8') as f:
+                f.write(SCENE + f'record {{ every = {every} }}\n'
+                        f'imu {{ on = "ball", name = "imu", rate = 600, noise = .1, keep = {kept} }}\n'
+                        'lidar { on = "ball", name = "lidar", beams = 10, rate = 50, reach = 100, delay = .03, rotation = { axis = { 0, 1, 0 }, degrees = 60 } }')
+            subprocess.run([os.environ['OBSIM'], 'run', self.path + '.lua', '--record', self.path], check=True, stdout=subprocess.DEVNULL)
+            with Record(self.path) as r, obsim.run(self.path + '.lua', inside=True) as u:
+                n = 0
+                for _ in range(50):
+                    u.step()
+                    number_, time_, values = u.sensors['imu'].samples(after=n)
+                    if u.steps % every == 0:
+                        n = int(number_[-1])
+                numbers, times, recorded = r.samples('imu')
+                self.assertEqual(numbers.tolist(), list(range(1, len(numbers) + 1)))
+                self.assertEqual(len(numbers), n)
+                last = u.sensors['imu'].samples()
+                both = numpy.intersect1d(numbers, last[0])
+                numpy.testing.assert_array_equal(recorded[numpy.isin(numbers, both)], last[2][numpy.isin(last[0], both)])
+                self.assertEqual(r.samples('lidar')[2].shape[1], 10)
+                self.assertTrue(numpy.isfinite(r.samples('lidar')[2]).any())
+                self.assertLessEqual(r.samples('lidar')[1].max(), .47 + 1e-9)
+                with self.assertRaises(KeyError):
+                    r.samples('radar')
+
     def test_given_path(self):
         """A record has the motion of a path that was given during the run."""
         scene, program, name = self.path + '.lua', os.environ['OBSIM'], f'records-{os.getpid()}'
