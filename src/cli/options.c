@@ -346,7 +346,7 @@ static const struct {
 	{ OB_COMMAND_INSPECT, "obsim inspect FILE [OPTION ...]",
 	  "Says what a checkpoint holds, and whether it is whole." },
 	{ OB_COMMAND_LAB, "obsim lab [CASE|FILE.lua ...] [OPTION ...]",
-	  "Runs hard cases with several engines: error against target and against cost." },
+	  "Runs hard cases with several engines: error against target and cost." },
 	{ OB_COMMAND_PAPER, "obsim paper [OPTION ...]",
 	  "Repeats the experiment of the paper behind obsim, and judges its claims." },
 };
