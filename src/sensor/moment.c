@@ -52,16 +52,17 @@ static jet quintic(const nodes *n, double s)
 	};
 }
 
+// known: the values at -1.
 static jet between(const nodes *n, bool known, double s)
 {
 	const ob_vec3 change = ob_sub(n->v[1], n->v0);
 	jet three = cubic(n, s);
-	if (known) {
-		const jet five = quintic(n, s);
-		const double most = smooth * (ob_norm(change) + ob_norm(ob_sub(n->v0, n->v[0])));
-		if (ob_norm(ob_sub(five.v, three.v)) <= most)
-			return five;
-	}
+	if (!known)
+		return three;
+	const jet five = quintic(n, s);
+	const double most = smooth * (ob_norm(change) + ob_norm(ob_sub(n->v0, n->v[0])));
+	if (ob_norm(ob_sub(five.v, three.v)) <= most)
+		return five;
 	three.v = ob_madd(n->v0, s, change);
 	return three;
 }
