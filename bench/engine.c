@@ -30,8 +30,13 @@ uint32_t bench_bodies(const ob_world *w)
 
 void bench_build(const bench_order *o, ob_world *w)
 {
-	*w = (ob_world){ .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
-	o->scene->of.build(w, 0, o->scene->of.variant);
+	ob_scene *scene;
+	ob_error e;
+	if (!ob_case_build(&o->scene->of, 0, w, &scene, &e)) {
+		fprintf(stderr, "%s\n", e.text);
+		exit(1);
+	}
+	ob_scene_free(scene);
 	for (uint32_t id = 0; id < w->objects; id++) {
 		ob_passport *p = &w->passport[id];
 		if (!(p->flags & OB_OBJECT_STATIC))

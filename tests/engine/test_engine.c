@@ -8,6 +8,7 @@
 #include "little_world.h"
 
 #include "../check.h"
+#include "world/builders.h"
 
 static const ob_engine_kind *kind;
 

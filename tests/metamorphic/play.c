@@ -12,7 +12,7 @@
 #include "shape/shape.h"
 #include "step/sim.h"
 #include "table/saved.h"
-#include "world/world.h"
+#include "world/builders.h"
 
 enum { MOST_WORKERS = 8 };
 

@@ -17,7 +17,7 @@
 
 #include "measure/measure.h"
 #include "step/sim.h"
-#include "world/world.h"
+#include "world/builders.h"
 
 enum { LITTLE_MOST = 2048 }; // objects
 

@@ -1,0 +1,35 @@
+// Worlds that tests and benchmarks share: further bodies, and whole scenes, as in world/world.h.
+#ifndef OB_TESTS_WORLD_BUILDERS_H
+#define OB_TESTS_WORLD_BUILDERS_H
+
+#include "world/world.h"
+
+// Makes a body kinematic: it keeps its state's velocities, and contacts do not affect it.
+void ob_world_kinematic(ob_world_body b);
+// Makes a body swing about its place: displacement amplitude * sin(frequency t + phase) (m; rad/s, rad). Contacts do
+// not affect it.
+void ob_world_swing(ob_world *w, ob_world_body b, ob_vec3 amplitude, double frequency, double phase);
+// Adds the hull of these points (m), with their origin at p; the body's own frame differs (ob/hull.h). Points without a
+// hull end the program.
+ob_world_body ob_world_hull(ob_world *w, double mass, const ob_vec3 *point, uint32_t points, ob_vec3 p);
+// Adds a compound of these parts, with the origin of their points at p.
+ob_world_body ob_world_compound(ob_world *w, double mass, const ob_hull_part *part, uint32_t parts, ob_vec3 p);
+// Adds a terrain, and frees it; NULL ends the program. p: its origin.
+ob_world_body ob_world_terrain(ob_world *w, ob_terrain *t, ob_vec3 p);
+// The ground turned by "angle" (rad) about y: bodies on it slide towards +x.
+ob_world_body ob_world_slope(ob_world *w, double angle);
+// n unit cubes of 1000 kg in a stack, centres up to 10 mm off the axis in x and in y; no ground.
+void ob_world_stack(ob_world *w, int n, ob_vec3 foot, uint64_t seed);
+// n boxes in columns of four, 1.8 m apart, over a ground: half extents of .1 to .5 m, 1000 kg/m^3, random attitudes.
+// The lowest are between 2.8 and 3.8 m up.
+void ob_world_falling(ob_world *w, uint32_t n, uint64_t seed);
+// Same with cylinders of the boxes' heights, or capsules twice as long as thick, of the same volumes.
+void ob_world_falling_solids(ob_world *w, ob_shape shape, uint32_t n, uint64_t seed);
+// n such boxes 4 m apart, at heights of 2 to 10 m, thrown up at up to 4 m/s, with restitution .8.
+void ob_world_sparse(ob_world *w, uint32_t n, uint64_t seed);
+// n elastic spheres of radius .1 m and 10 kg in a square, 2 m apart, fall from a height of 5 m without friction.
+void ob_world_balls(ob_world *w, uint32_t n);
+// Normalises a random point of the cube of four components.
+ob_quat ob_world_random_attitude(uint64_t *seed);
+
+#endif
