@@ -58,7 +58,7 @@ ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p
 // half: half the length of the side, along z.
 ob_world_body ob_world_cylinder(ob_world *w, double mass, double radius, double half, ob_vec3 p);
 ob_world_body ob_world_capsule(ob_world *w, double mass, double radius, double half, ob_vec3 p);
-// Joins two bodies, or one and the world (b: OB_JOINT_WORLD), as they are. frame: of the joint, at a place; its axes are
+// Joins two bodies, or one and the world (b: OB_JOINT_WORLD), as they are. frame: the joint's, at a place; its axes are
 // those of ob/joint.h. The joint may be edited until the next one is built; "axis" has no limits, and acts if its flag is set.
 ob_joint_passport *ob_world_join(ob_world *w, ob_joint_kind kind, uint32_t a, uint32_t b, ob_pose frame);
 // A ragdoll of ten bodies and nine joints, 1.8 m tall, with its feet's origin at p, turned by "lean" (rad): crosses at neck,
