@@ -13,27 +13,27 @@ static bench_scene scene;
 
 // ---- worlds of any number of bodies
 
-static void build_falling(ob_world *w, uint32_t run, const double *variant)
+static void build_falling(ob_world *w, uint32_t run)
 {
 	ob_world_falling(w, scene.bodies, 100 + run);
 }
 
-static void build_cylinders(ob_world *w, uint32_t run, const double *variant)
+static void build_cylinders(ob_world *w, uint32_t run)
 {
 	ob_world_falling_solids(w, OB_SHAPE_CYLINDER, scene.bodies, 100 + run);
 }
 
-static void build_capsules(ob_world *w, uint32_t run, const double *variant)
+static void build_capsules(ob_world *w, uint32_t run)
 {
 	ob_world_falling_solids(w, OB_SHAPE_CAPSULE, scene.bodies, 100 + run);
 }
 
-static void build_sparse(ob_world *w, uint32_t run, const double *variant)
+static void build_sparse(ob_world *w, uint32_t run)
 {
 	ob_world_sparse(w, scene.bodies, 200 + run);
 }
 
-static void build_balls(ob_world *w, uint32_t run, const double *variant)
+static void build_balls(ob_world *w, uint32_t run)
 {
 	ob_world_balls(w, scene.bodies);
 }

@@ -77,6 +77,6 @@ bool ob_case_build(const ob_case *c, uint32_t run, ob_world *w, ob_scene **scene
 	*scene = NULL;
 	if (c->text)
 		return (*scene = ob_lab_scene_load(c, run, w, e)) != NULL;
-	c->build(w, run, c->variant);
+	c->build(w, run);
 	return true;
 }

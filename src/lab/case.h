@@ -30,7 +30,6 @@ typedef struct ob_case_run_state {
 	ob_snapshot now; // passports and states now: measure/ takes it
 	double figure[OB_FIGURES]; // start at 0; in the case's units
 	double memory[64]; // for the case's own use, zeroed before each run
-	double *body_memory; // [objects][8], likewise
 	const char *failed; // reason for which the run counts as failed: "fell", "passed through"; NULL = success
 	ob_run_settings settings;
 	ob_scene *scene; // of a case that is one; else NULL
@@ -53,9 +52,8 @@ typedef struct ob_case {
 	uint32_t figures; // plots show the first
 	ob_figure_def figure[OB_FIGURES];
 	unsigned averaged; // bit per figure: the mean over the runs counts, not the worst (a share)
-	double variant[3]; // for build: what tells it from a case beside it
 	const ob_case_text *text; // its scene (lab/scene.h); NULL: it builds its worlds
-	void (*build)(ob_world *w, uint32_t run, const double *variant); // uses ob_world_* of world/world.h
+	void (*build)(ob_world *w, uint32_t run); // uses ob_world_* of world/world.h
 	void (*observe)(ob_case_run_state *t); // after each frame, and once before the first; NULL = nothing
 	void (*judge)(ob_case_run_state *t); // at the end of each run
 } ob_case;

@@ -133,10 +133,9 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	t.now.hull = calloc(w.hulls + 1, sizeof(ob_hull *));
 	for (uint32_t i = 0; i < w.hulls && t.now.hull; i++)
 		t.now.hull[i] = &w.hull[i];
-	t.body_memory = calloc(w.objects, 8 * sizeof *t.body_memory);
 	ob_state *state = calloc(w.objects, sizeof *state);
 	ob_engine *engine = NULL;
-	bool made = t.now.motion && t.now.hull && t.body_memory && state;
+	bool made = t.now.motion && t.now.hull && state;
 	ob_error broke = { "" };
 	if (!made) {
 		ob_fail(e, "no memory for a world of %u bodies", w.objects);
@@ -159,7 +158,6 @@ static bool run(const ob_case *c, uint32_t number, const ob_engine_kind *kind, c
 	ob_scene_free(t.scene);
 	free(t.now.motion);
 	free(t.now.hull);
-	free(t.body_memory);
 	free(state);
 	ob_world_finish(&w);
 	return made;

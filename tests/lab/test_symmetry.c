@@ -101,7 +101,7 @@ static void reverse_order(ob_world *w)
 	}
 }
 
-static void build_seen(ob_world *w, uint32_t run, const double *variant)
+static void build_seen(ob_world *w, uint32_t run)
 {
 	ob_scene *scene;
 	ob_error e;
@@ -166,7 +166,7 @@ static void compare(const ob_case *c, const relation *x, double duration, double
 
 // ---- a ragdoll that tumbles in free space
 
-static void build_floating(ob_world *w, uint32_t run, const double *variant)
+static void build_floating(ob_world *w, uint32_t run)
 {
 	ob_world_ragdoll(w, ob_v3(0, 0, 0), .5);
 	w->gravity = ob_v3(0, 0, 0);

@@ -61,7 +61,7 @@ static ob_vec3 plank_at(double load, uint32_t i, double *slope)
 	return ob_v3(side * (k ? x + .5 * plank * cos(angle) : 0), 0, z - .5 * plank * sin(angle));
 }
 
-static void build_bridge(ob_world *w, uint32_t run, const double *variant)
+static void build_bridge(ob_world *w, uint32_t run)
 {
 	for (uint32_t i = 0; i <= PLANKS; i++) {
 		double slope = 0;
@@ -112,7 +112,7 @@ const ob_case ob_case_plank_bridge = {
 
 // ---- ragdolls that come to rest
 
-static void build_ragdoll(ob_world *w, uint32_t run, const double *variant)
+static void build_ragdoll(ob_world *w, uint32_t run)
 {
 	static const double height[] = { .8, .8, 2.2 }, lean[] = { .8, 1.2, 2.8 };
 	ob_world_ragdoll(w, ob_v3(0, 0, height[run]), lean[run]);
@@ -153,7 +153,7 @@ const ob_case ob_case_ragdoll = {
 enum { WHEELS = 4, BARS = 10 };
 static const double wheel = .25, wheel_rate = 6; // m, rad/s
 
-static void build_car(ob_world *w, uint32_t run, const double *variant)
+static void build_car(ob_world *w, uint32_t run)
 {
 	uint64_t seed = 3;
 	ob_world_box(w, 60, ob_v3(.8, .3, .12), ob_v3(0, 0, wheel + .1));

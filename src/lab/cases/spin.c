@@ -6,7 +6,7 @@
 
 // A flat box, as a body with moments 1 : 2 : 3 has no thickness; sets the moments exactly. It spins about its middle
 // axis, the unstable one.
-static void build_spin(ob_world *w, uint32_t run, const double *variant)
+static void build_spin(ob_world *w, uint32_t run)
 {
 	w->gravity = ob_v3(0, 0, 0);
 	ob_world_body b = ob_world_box(w, 6, ob_v3(1, sqrt(.5), .01), ob_v3(0, 0, 0));
