@@ -58,7 +58,8 @@ typedef struct ob_lab_analysis_equal {
 ob_lab_analysis_equal ob_lab_analysis_compare(const ob_lab_analysis *d, const ob_case *c);
 // All compared cases at equal error.
 typedef struct ob_lab_analysis_lead {
-	int compared, ahead, within; // cases; those with obsim ahead; other ones where it is within twice the cost of the best
+	int compared, ahead,
+		within; // cases; those with obsim ahead; other ones where it is within twice the cost of the best
 	bool never; // there are errors that obsim does not reach
 	double worst; // its largest cost over that of another engine, where it is not ahead; 0: none
 } ob_lab_analysis_lead;

@@ -207,7 +207,11 @@ static rulers solve_beside(ob_solver *s)
 				 : (refined || n < 2 || w->joints.count) && 2 * n <= OB_MAX_SUBSTEPS;
 	const uint32_t other = finer ? 2 * n : coarser_than(n, w->bodies);
 	ob_probe_solve(s->estimate.probe, s, other, n);
-	return (rulers){ { { s->estimate.probe, refined ? 2 : finer ? 1 : (double)other / (n - other) } }, 1, !finer && !flies };
+	return (rulers){ { { s->estimate.probe, refined ? 2
+						: finer ? 1
+							: (double)other / (n - other) } },
+			 1,
+			 !finer && !flies };
 }
 
 // Solves the step of a lone body again, in place of its solution, with four times as many substeps, while its error half a
