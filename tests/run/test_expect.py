@@ -86,6 +86,35 @@ class Expect(program.Case):
 		self.refuse("run", path, "-D", "variant=lower", saying="scene.lua:2: case.variants: there is none of -D variant=lower")
 		self.refuse("run", path, "-D", "run=2", saying="expected -D run= with a whole number from 0 to 1, got 2")
 
+	def values(self, prelude, functions):
+		"""Values of expressions of Lua, eight at most."""
+		path = self.scene("scene { duration = 1 / 60 }\n" + prelude + "".join(
+			f"expect {{ 'value {i}', function(run) return {f} end }}\n" for i, f in enumerate(functions)))
+		return [x["value"] for x in program.report(path)["expectations"]]
+
+	def test_vectors(self):
+		prelude = """
+			local v, w, q = vector(1, 2, 3), vector(4, -5, 6), rotation(vector(0, 0, math.pi / 2))
+			local ball = sphere { radius = 1, at = 2 * v - w, velocity = -v, q = q }
+		"""
+		values = self.values(prelude, ["v:dot(w)", "v:cross(w):dot(v) + v:cross(w).x", "vector(3, 4, 12):norm()",
+			"vector(3, 4, 12):aside()", "run[ball].start.at.y", "run[ball].start.velocity.z", "(v + w).y", "(w * 3).z"])
+		self.assertEqual(values, [12, 27, 13, 5, 9, -3, -3, 18])
+		values = self.values(prelude, ["(q * v).x", "(q:back(q * v) - v):norm()", "q:axis('x').y", "(q * q).z", "q:turn(vector(0, 0, math.pi / 2)).z",
+			"rotation(3, 0, 0, 4).z", "run[ball].turn.w - q.w", "(run[ball].start.turn * vector(0, 1, 0)).x"])
+		for value, expected in zip(values, [-2, 0, 1, 1, 1, .8, 0, -1]):
+			self.assertAlmostEqual(value, expected, places=12)
+
+	def test_library(self):
+		values = self.values("ground {}\nsphere { radius = 1, at = { 0, 0, 9 } }", ["lab.splitmix(0).whole() >> 40",
+			"lab.splitmix(7).within(2, 3) // 1", "lab.quadrature(function(x) return x * x end, 0, 3, 2)",
+			"lab.integrate(function(y) return { y[1] } end, { 1 }, 1, 1e-12)[1]",
+			"lab.follow(function(y) return { y[2], -y[1] } end, { 0, 1 })(math.pi)[2]", "lab.farthest(run)", "lab.fell(run) and 1 or 0"])
+		self.assertEqual((values[0], values[1], values[6]), (0xe220a8397b1dcdaf >> 40, 2, 0))
+		for value, expected in zip(values[2:6], [9, 2.718281828459045, -1, 9.81 / 2 / 3600]):
+			self.assertAlmostEqual(value, expected, places=9)
+		self.refuse("run", self.scene("lab.stand {}"), saying='scene.lua:1: lab: it has no "stand"')
+
 	def test_wrong(self):
 		for what, (text, saying) in WRONG.items():
 			with self.subTest(what):
