@@ -74,20 +74,28 @@ local function least_thickness(voussoirs, radius)
 			end
 			joints[j + 1] = { c, s, weight, moment }
 		end
-		local function excess(thrust) -- the largest lower bound of Q less the smallest upper one: convex in the thrust
-			local least, greatest = inner * thrust, outer * thrust
+		-- The largest lower bound of Q less the smallest upper one, convex in the thrust, and its slope there.
+		local function excess(thrust)
+			local least, greatest, up, down = inner * thrust, outer * thrust, inner, outer
 			for _, j in ipairs(joints) do
 				local normal = j[3] * j[1] + thrust * j[2]
-				least, greatest = math.max(least, inner * normal - j[4]), math.min(greatest, outer * normal - j[4])
+				local low, high = inner * normal - j[4], outer * normal - j[4]
+				if low > least then least, up = low, inner * j[2] end
+				if high < greatest then greatest, down = high, outer * j[2] end
 			end
-			return least - greatest
+			return least - greatest, up - down
 		end
-		local low, high = 0, 3 * weight
-		for _ = 1, 200 do
-			local a, b = low + (high - low) / 3, high - (high - low) / 3
-			if excess(a) < excess(b) then high = b else low = a end
+		local low, high, lowest = 0, 3 * weight, nil
+		local left, falling = excess(low)
+		local right, rising = excess(high)
+		for _ = 1, 20 do -- the lines at both ends meet at or below the minimum (Kelley 1960)
+			local thrust = (right - left + falling * low - rising * high) / (falling - rising)
+			local slope
+			lowest, slope = excess(thrust)
+			if lowest <= left + falling * (thrust - low) then break end
+			if slope < 0 then low, left, falling = thrust, lowest, slope else high, right, rising = thrust, lowest, slope end
 		end
-		return excess(.5 * (low + high)) <= 0
+		return lowest <= 0
 	end
 	local falls, holds = 0, radius
 	for _ = 1, 60 do

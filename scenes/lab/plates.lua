@@ -78,31 +78,23 @@ local function rectangle_from_afar(p, vx, vy, w)
 	return x, y, turn
 end
 
--- A disc, in polar coordinates about the instantaneous centre, at distance d from the disc's along -x.
-local points, whole_sine, whole_cosine, half_sine, half_cosine = 1024, {}, {}, {}, {}
-for i = 0, points - 1 do
-	local f, e = 2 * math.pi * i / points, math.pi * (i + .5) / points - math.pi / 2
-	whole_sine[i], whole_cosine[i], half_sine[i], half_cosine[i] = math.sin(f), math.cos(f), math.sin(e), math.cos(e)
-end
+-- A disc, by complete elliptic integrals, from the arithmetic-geometric mean (Abramowitz and Stegun 1964, 17.6). The
+-- instantaneous centre lies at distance d from the disc's along -x.
 local function disc_means(d)
-	local mx, md, area = 0, 0, math.pi * radius * radius
-	if d < radius then -- the ray at angle f ends at r
-		local weight = 2 * math.pi / points / area
-		for i = 0, points - 1 do
-			local s = d * whole_sine[i]
-			local r = d * whole_cosine[i] + (radius * radius - s * s) ^ .5
-			mx, md = mx + weight * .5 * r * r * whole_cosine[i], md + weight * r * r * r / 3
-		end
-	else -- with sin f = radius / d sin e the ray at f runs from a - b to a + b
-		for i = 0, points - 1 do
-			local b, s = radius * half_cosine[i], radius / d * half_sine[i]
-			local cosine = (1 - s * s) ^ .5
-			local a, weight = d * cosine, math.pi / points / area
-			mx = mx + weight * 2 * b * b * cosine
-			md = md + weight * b / a * (2 * a * a * b + 2 / 3 * b * b * b)
-		end
+	local k2 = math.min(d / radius, radius / d) ^ 2
+	local a, b = 1, math.max(1 - k2, 1e-30) ^ .5
+	local c, power, sum = .5 * k2 / (1 + b), 1, 0 -- E = K (1 - k2 / 2 - sum)
+	while c > 1e-17 do
+		a, b, sum, power = .5 * (a + b), (a * b) ^ .5, sum + power * c * c, 2 * power
+		c = .5 * c * c / (a + b)
 	end
-	return mx, md
+	local first = .5 * math.pi / a -- K
+	local along = first * (1.5 * k2 - .5 * k2 * k2 - (1 + k2) * sum) -- (1 + k2) E - (1 - k2) K
+	if d < radius then
+		return d > 0 and 4 / (3 * math.pi) * along * radius / d or 0,
+			4 * radius / (9 * math.pi) * first * (3 + 1.5 * k2 - .5 * k2 * k2 - (7 + k2) * sum)
+	end
+	return 4 / (3 * math.pi) * along / k2, 4 * d / (9 * math.pi) * (3 * along / k2 + first * (k2 + (2 - 4 * k2) * sum / k2))
 end
 
 -- Accelerations of friction in the body's axes: of the centre, and of the turn.
