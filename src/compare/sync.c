@@ -312,7 +312,7 @@ ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sy
 		if (is_of_lags(w, coupling) && ob_sync_table[w].delay > 0 && lag > 0 && error > 0)
 			x[n] = log(lag), y[n++] = log(error);
 	}
-	return ob_reference_line(n, x, y);
+	return ob_statistics_line(n, x, y);
 }
 
 ob_line ob_sync_order_of_step(const ob_sync_comparison *c, const ob_sync_point *p)
@@ -324,7 +324,7 @@ ob_line ob_sync_order_of_step(const ob_sync_comparison *c, const ob_sync_point *
 		if (ob_sync_is_of_rates(w) && error > 0)
 			x[n] = -log(rate_of(c, &ob_sync_table[w])), y[n++] = log(error);
 	}
-	return ob_reference_line(n, x, y);
+	return ob_statistics_line(n, x, y);
 }
 
 // Free configuration without an injected lag, of a coupling or of any (OB_SYNC_COUPLINGS), with the least penetration;

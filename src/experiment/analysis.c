@@ -25,7 +25,7 @@ ob_statistics ob_records_summarise(const ob_records *r, const char *of, const ch
 {
 	double x[OB_SAMPLES];
 	const size_t n = collect(r, of, configuration, metric, x);
-	return ob_reference_summarise(n, x);
+	return ob_statistics_summarise(n, x);
 }
 
 ob_estimate ob_estimate_median(const ob_statistics *s)
@@ -60,7 +60,7 @@ ob_estimate ob_records_estimate(const ob_records *r, const char *of, const char 
 		geometric &= x[i] > 0 && isfinite(x[i]);
 	for (size_t i = 0; geometric && i < n; i++)
 		x[i] = log(x[i]);
-	const ob_statistics s = ob_reference_summarise(n, x);
+	const ob_statistics s = ob_statistics_summarise(n, x);
 	return estimate(&s, geometric);
 }
 
@@ -79,7 +79,7 @@ ob_statistics ob_records_ratio(const ob_records *r, const char *of, const char *
 			continue;
 		x[n++] = logarithm ? log(ratio) : ratio;
 	}
-	return ob_reference_summarise(n, x);
+	return ob_statistics_summarise(n, x);
 }
 
 ob_estimate ob_records_estimate_ratio(const ob_records *r, const char *of, const char *a, const char *b, size_t metric)

@@ -4,7 +4,7 @@
 #define OB_EXPERIMENT_ANALYSIS_H
 
 #include "experiment/experiment.h"
-#include "reference/statistics.h"
+#include "experiment/statistics.h"
 
 enum { OB_SAMPLES = 128 }; // samples used of one case and configuration
 

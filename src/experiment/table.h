@@ -7,7 +7,7 @@
 
 #include "experiment/experiment.h"
 #include "experiment/page.h"
-#include "reference/statistics.h"
+#include "experiment/statistics.h"
 
 typedef struct ob_table ob_table;
 

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
+#include "experiment/statistics.h"
 #include "experiment/words.h"
-#include "reference/statistics.h"
 
 static const double tolerance[OB_AUDIT_TOLERANCES] = { 1e-2, 1e-3, 1e-4, 1e-5 }; // m
 static const char *const names[OB_AUDIT_SETTINGS] = { "10 mm", "1 mm", "0.1 mm", "0.01 mm", "4",  "8",
@@ -86,7 +86,7 @@ ob_audit ob_lab_audit(const ob_lab_analysis *d, const ob_case *c)
 		most = fmax(most, error[i]);
 	}
 	bool flat = most <= 1 && most < noticeable * least; // good enough from the first value
-	a.order = flat ? NAN : ob_reference_order(OB_AUDIT_SUBSTEPS, h, error, rounding);
+	a.order = flat ? NAN : ob_statistics_order(OB_AUDIT_SUBSTEPS, h, error, rounding);
 	return a;
 }
 

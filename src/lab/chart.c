@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "experiment/statistics.h"
 #include "experiment/words.h"
-#include "reference/statistics.h"
 
 // True if the engine has results in a case, or, with none named, in the chart so far.
 static bool takes_part(const ob_chart *c, const ob_lab_analysis *d, const ob_case *of, const ob_engine_kind *k)
@@ -177,7 +177,7 @@ static void name_order(const ob_engine_kind *k, const ob_result *const *list, si
 		error[n++] = list[i]->outcome.figure[0];
 		largest = fmax(largest, list[i]->outcome.figure[0]);
 	}
-	double order = ob_reference_order(n, h, error, largest * 1e-12);
+	double order = ob_statistics_order(n, h, error, largest * 1e-12);
 	if (isfinite(order))
 		snprintf(to, room, "%s: order %.2f", k->title, order);
 	else
@@ -350,7 +350,7 @@ static void add_delays(ob_chart *chart, const ob_lab_analysis *d, const ob_case 
 		error[n] = is_failed(r) ? NAN : r->outcome.figure[0];
 		list[n++] = r;
 	}
-	const double order = ob_reference_order(n, lag, error, 0);
+	const double order = ob_statistics_order(n, lag, error, 0);
 	snprintf(title, sizeof title, isfinite(order) ? "%s: order %.2f" : "%s", k->title, order);
 	ob_chart_begin(chart, ob_lab_analysis_style(d, k), false, title);
 	for (size_t i = 0; i < n; i++)

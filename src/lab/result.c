@@ -72,7 +72,7 @@ static double median(const double *value, size_t n)
 {
 	double sorted[OB_REPEATS];
 	memcpy(sorted, value, n * sizeof *value);
-	return ob_reference_summarise(n, sorted).median;
+	return ob_statistics_summarise(n, sorted).median;
 }
 
 void ob_result_repeat(ob_result *r, const ob_case_result *again)

@@ -152,9 +152,9 @@ ob_paper_growth ob_paper_grow(const ob_paper_results *r, ob_paper_scenario s, ob
 		log_y[n++] = log(v);
 	}
 	ob_paper_growth g = {
-		.linear = ob_reference_line(n, objects, y),
-		.logarithmic = ob_reference_line(n, log_objects, y),
-		.power = ob_reference_line(n, log_objects, log_y),
+		.linear = ob_statistics_line(n, objects, y),
+		.logarithmic = ob_statistics_line(n, log_objects, y),
+		.power = ob_statistics_line(n, log_objects, log_y),
 	};
 	// Both models have as many parameters, so Akaike's criterion reduces to the logarithm of the squares. Squares
 	// at the level of rounding do not distinguish the models.

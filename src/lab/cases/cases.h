@@ -5,7 +5,6 @@
 #include "lab/case.h"
 
 #define OB_CASES(X) \
-	X(spin) \
 	X(plank_bridge) \
 	X(ragdoll) \
 	X(car)

@@ -1,7 +1,7 @@
 // Statistics over seeds, as single runs of chaotic motion prove nothing; lines through points; orders of convergence.
 // Pure functions, thread-safe.
-#ifndef OB_REFERENCE_STATISTICS_H
-#define OB_REFERENCE_STATISTICS_H
+#ifndef OB_EXPERIMENT_STATISTICS_H
+#define OB_EXPERIMENT_STATISTICS_H
 
 #include <stddef.h>
 
@@ -14,11 +14,11 @@ typedef struct ob_statistics {
 } ob_statistics;
 
 // Sorts x. n = 0 gives NAN everywhere. NaN in x turns every result that depends on it into NaN.
-ob_statistics ob_reference_summarise(size_t n, double *x);
+ob_statistics ob_statistics_summarise(size_t n, double *x);
 
 // Quantile t of Student's distribution with so many degrees of freedom: |T| <= t with probability p (Abramowitz and
 // Stegun 1964, 26.7.3 and 26.7.4); 0 < p < 1.
-double ob_reference_student(int freedom, double p);
+double ob_statistics_student(int freedom, double p);
 
 typedef struct ob_line {
 	size_t n;
@@ -30,10 +30,10 @@ typedef struct ob_line {
 
 // Least-squares line; NAN everywhere for n < 2, or if all x are equal. (Gauss 1809; the interval as in Draper and Smith
 // 1966.)
-ob_line ob_reference_line(size_t n, const double *x, const double *y);
+ob_line ob_statistics_line(size_t n, const double *x, const double *y);
 
 // Convergence order of errors against a known reference: the slope of log error over log h, by least squares over the
 // points with error > floor (below it, rounding dominates). NAN with fewer than two such points.
-double ob_reference_order(size_t n, const double *h, const double *error, double floor);
+double ob_statistics_order(size_t n, const double *h, const double *error, double floor);
 
 #endif

@@ -1,4 +1,4 @@
-#include "reference/statistics.h"
+#include "experiment/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static double student_within(int freedom, double t)
 	return freedom % 2 ? 2 / M_PI * (angle + sin(angle) * sum) : sin(angle) * sum;
 }
 
-double ob_reference_student(int freedom, double p)
+double ob_statistics_student(int freedom, double p)
 {
 	double low = 0, high = 1;
 	while (student_within(freedom, high) < p)
@@ -69,7 +69,7 @@ static double deviation_of(size_t n, const double *x, double mean)
 	return sqrt(squares / (double)(n - 1));
 }
 
-ob_statistics ob_reference_summarise(size_t n, double *x)
+ob_statistics ob_statistics_summarise(size_t n, double *x)
 {
 	ob_statistics s = { n, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN };
 	if (n == 0)
@@ -83,7 +83,7 @@ ob_statistics ob_reference_summarise(size_t n, double *x)
 	s.median = n % 2 ? x[n / 2] : .5 * (x[n / 2 - 1] + x[n / 2]);
 	if (n >= 2) {
 		s.deviation = deviation_of(n, x, s.mean);
-		double half = ob_reference_student((int)n - 1, confidence) * s.deviation / sqrt((double)n);
+		double half = ob_statistics_student((int)n - 1, confidence) * s.deviation / sqrt((double)n);
 		s.mean_low = s.mean - half;
 		s.mean_high = s.mean + half;
 	}
@@ -95,7 +95,7 @@ ob_statistics ob_reference_summarise(size_t n, double *x)
 	return s;
 }
 
-ob_line ob_reference_line(size_t n, const double *x, const double *y)
+ob_line ob_statistics_line(size_t n, const double *x, const double *y)
 {
 	ob_line l = { n, NAN, NAN, NAN, NAN, NAN, NAN };
 	double mean_x = 0, mean_y = 0, xx = 0, xy = 0, squares = 0;
@@ -119,13 +119,13 @@ ob_line ob_reference_line(size_t n, const double *x, const double *y)
 	l.squares = squares;
 	if (n < 3)
 		return l;
-	double half = ob_reference_student((int)n - 2, confidence) * sqrt(squares / (double)(n - 2) / xx);
+	double half = ob_statistics_student((int)n - 2, confidence) * sqrt(squares / (double)(n - 2) / xx);
 	l.slope_low = l.slope - half;
 	l.slope_high = l.slope + half;
 	return l;
 }
 
-double ob_reference_order(size_t n, const double *h, const double *error, double floor)
+double ob_statistics_order(size_t n, const double *h, const double *error, double floor)
 {
 	double points = 0, x = 0, y = 0, xx = 0, xy = 0;
 	for (size_t i = 0; i < n; i++) {
