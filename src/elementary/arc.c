@@ -100,3 +100,31 @@ double ob_acos(double x)
 		return NAN;
 	return angle_of(other_leg(x), (ob_double2){ x, 0 });
 }
+
+// Hypotenuse of legs that can be squared: the root, corrected by the error of its square.
+static double corrected_root(double longer, double shorter)
+{
+	const double root = sqrt(longer * longer + shorter * shorter);
+	double excess; // of the root's square
+	if (root <= 2 * shorter) {
+		const double over = root - shorter;
+		excess = longer * (2 * over - longer) + (over - 2 * (longer - shorter)) * over;
+	} else {
+		const double over = root - longer;
+		excess = 2 * over * (longer - 2 * shorter) + ((4 * over - shorter) * shorter + over * over);
+	}
+	return root - excess / (2 * root);
+}
+
+double ob_hypot(double x, double y)
+{
+	const double longer = fmax(fabs(x), fabs(y)), shorter = fmin(fabs(x), fabs(y));
+	if (isinf(longer))
+		return INFINITY;
+	if (isnan(x) || isnan(y))
+		return NAN;
+	if (shorter * 0x1p54 <= longer)
+		return longer + shorter;
+	const double scale = longer > 0x1p511 ? 0x1p-600 : shorter < 0x1p-459 ? 0x1p600 : 1;
+	return corrected_root(longer * scale, shorter * scale) / scale;
+}

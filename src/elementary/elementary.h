@@ -6,6 +6,7 @@
 //
 // Errors are bounded in units in the last place, over the whole range, in the default rounding mode.
 // exp, log, log2, log10, pow, atan2, asin and acos: below .51.
+// hypot: below 1.
 // sin and cos: below .8.
 // tan and expm1: below 1.1.
 // sinh, cosh and tanh: below 2.5.
@@ -16,7 +17,7 @@
 // Functions" (1980), for reductions in parts; Payne and Hanek, SIGNUM Newsletter 18 (1983), for large angles; Tang, ACM
 // TOMS 15 (1989) and 16 (1990), for exp and log by tables; Dekker, Numer. Math. 18 (1971), for pairs of doubles.
 // Polynomials are minimax ones with double coefficients, found by Sollya's fpminimax (Brisebarre and Chevillard, ARITH
-// 2007).
+// 2007). hypot: Borges, "An Improved Algorithm for hypot(a,b)" (ACM TOMS 46, 2020), which glibc has, too.
 //
 // Pure functions, thread-safe. Angles in radians.
 #ifndef OB_ELEMENTARY_ELEMENTARY_H
@@ -33,6 +34,7 @@ void ob_sincos_of_two(const double x[2], double sine[2], double cosine[2]);
 double ob_asin(double x);
 double ob_acos(double x);
 double ob_atan2(double y, double x);
+double ob_hypot(double x, double y);
 
 double ob_exp(double x);
 double ob_expm1(double x);

@@ -1,10 +1,10 @@
 #include "scene/vector.h"
 
-#include <math.h>
 #include <string.h>
 
 #include <lauxlib.h>
 
+#include "elementary/elementary.h"
 #include "scene/sandbox.h"
 
 static const char vector_kind[] = "vector", rotation_kind[] = "rotation";
@@ -117,7 +117,7 @@ static int norm(lua_State *L)
 static int aside(lua_State *L)
 {
 	const ob_vec3 v = vector_at(L, 1);
-	return give_number(L, hypot(v.x, v.y));
+	return give_number(L, ob_hypot(v.x, v.y));
 }
 
 static int dot(lua_State *L)

@@ -152,17 +152,17 @@ static void check_near_quarters(void)
 	check_worst("near", worst, .9);
 }
 
-static void check_atan2(void)
+static void check_pairs(const char *name, double (*ours)(double, double), mpfr_function_of_two *theirs, double bound)
 {
 	double worst = 0;
 	for (int k = 0; k < DRAWS; k++) {
 		const double y = drawn(-1, 1, 1), x = drawn(-1, 1, 1), wide = any_double(-DBL_MAX, DBL_MAX),
 			     near = wide * exp(drawn(-45, 45, 1));
-		worst = fmax(worst, error_at_two(ob_atan2, mpfr_atan2, y, x));
-		worst = fmax(worst, error_at_two(ob_atan2, mpfr_atan2, wide, any_double(-DBL_MAX, DBL_MAX)));
-		worst = fmax(worst, error_at_two(ob_atan2, mpfr_atan2, isfinite(near) ? near : wide, wide));
+		worst = fmax(worst, error_at_two(ours, theirs, y, x));
+		worst = fmax(worst, error_at_two(ours, theirs, wide, any_double(-DBL_MAX, DBL_MAX)));
+		worst = fmax(worst, error_at_two(ours, theirs, isfinite(near) ? near : wide, wide));
 	}
-	check_worst("atan2", worst, .51);
+	check_worst(name, worst, bound);
 }
 
 static void check_pow(void)
@@ -197,7 +197,8 @@ int main(void)
 {
 	check_functions_of_one();
 	check_near_quarters();
-	check_atan2();
+	check_pairs("atan2", ob_atan2, mpfr_atan2, .51);
+	check_pairs("hypot", ob_hypot, mpfr_hypot, 1);
 	check_pow();
 	check_sincos();
 	mpfr_free_cache();

@@ -74,6 +74,15 @@ static void check_whole_powers(void)
 	CHECK(ob_pow(-3, 3) == -27 && ob_pow(-3, 2) == 9 && ob_pow(9, .5) == 3 && isnan(ob_pow(-9, .5)));
 }
 
+static void check_hypot(void)
+{
+	CHECK(ob_hypot(-3, 4) == 5 && ob_hypot(0x1p1000 * 3, 0x1p1000 * 4) == 0x1p1000 * 5 &&
+	      is(ob_hypot(-0., -0.), 0));
+	CHECK(ob_hypot(-3 * DBL_TRUE_MIN, 4 * DBL_TRUE_MIN) == 5 * DBL_TRUE_MIN && ob_hypot(DBL_MAX, 1) == DBL_MAX);
+	CHECK(ob_hypot(NAN, -INFINITY) == INFINITY && isnan(ob_hypot(NAN, 1)) &&
+	      ob_hypot(DBL_MAX, DBL_MAX) == INFINITY);
+}
+
 static void check_atan2(void)
 {
 	CHECK(is(ob_atan2(0, 1), 0) && is(ob_atan2(-0., 1), -0.) && is(ob_atan2(0, 0), 0) && is(ob_atan2(-0., 0), -0.));
@@ -110,6 +119,7 @@ int main(void)
 	check_domains();
 	check_whole_powers();
 	check_atan2();
+	check_hypot();
 	check_pow();
 	return check_end();
 }
