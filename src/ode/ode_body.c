@@ -123,6 +123,7 @@ struct ob_ode_body {
 	dWorldID world; // NULL for static objects, as is body
 	dBodyID body;
 	dGeomID geom; // follows the body; NULL for objects without a shape
+	ob_passport made_of;
 };
 
 // Creates shared working memory. Without it each world would use the process's own, with an unlocked job list: worlds
@@ -165,6 +166,7 @@ ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, ob_ode_st
 {
 	ob_ode_body *b = ob_allocate_zeroed(sizeof *b);
 	ob_ode_init();
+	b->made_of = *p;
 	b->geom = ob_ode_geom_create(0, p->shape, p->size);
 	if (p->flags & OB_OBJECT_STATIC || !(p->mass > 0))
 		return b;
@@ -177,6 +179,18 @@ ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, ob_ode_st
 	if (b->geom)
 		dGeomSetBody(b->geom, b->body);
 	return b;
+}
+
+static bool same(ob_vec3 a, ob_vec3 b)
+{
+	return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool ob_ode_body_serves(const ob_ode_body *b, const ob_passport *p)
+{
+	const ob_passport *own = &b->made_of;
+	return own->shape == p->shape && !((own->flags ^ p->flags) & OB_OBJECT_STATIC) && own->mass == p->mass &&
+	       same(own->size, p->size) && same(own->inertia, p->inertia);
 }
 
 void ob_ode_body_destroy(ob_ode_body *b)

@@ -25,9 +25,11 @@ _Noreturn void ob_ode_give_up(void); // from within step
 void ob_ode_abandon(void **thing);
 
 typedef struct ob_ode_body ob_ode_body;
-// World, body, geom: about 1.4 kB. Static objects get no world.
+// World, body, geom: about 1.7 kB. Static objects get no world.
 ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, ob_ode_stepper *s);
-void ob_ode_body_destroy(ob_ode_body *b);
+void ob_ode_body_destroy(ob_ode_body *b); // NULL is allowed
+// True if the body of this passport would be the same.
+bool ob_ode_body_serves(const ob_ode_body *b, const ob_passport *p);
 // Writes the state back to the body (the closed form is authoritative, ODE's body follows it).
 void ob_ode_body_set(ob_ode_body *b, const ob_state *s);
 // Advances a state by ODE's own dWorldStep over h (s), under gravity, the impulse j (N s) and the angular impulse l (N

@@ -6,11 +6,6 @@
 #include "elementary/elementary.h"
 #include "solver/bodies.h"
 
-typedef struct ob_ode_slot {
-	ob_ode_body *body; // NULL: none yet
-	uint32_t id, generation;
-} ob_ode_slot;
-
 bool ob_ode_bodies_create(ob_ode_bodies *w, uint32_t objects)
 {
 	w->slots = objects;
@@ -22,19 +17,19 @@ bool ob_ode_bodies_create(ob_ode_bodies *w, uint32_t objects)
 void ob_ode_bodies_finish(ob_ode_bodies *w)
 {
 	for (uint32_t i = 0; w->slot && i < w->slots; i++)
-		ob_ode_body_destroy(w->slot[i].body);
+		ob_ode_body_destroy(w->slot[i]);
 	ob_ode_stepper_destroy(w->stepper);
 	free(w->slot);
 }
 
 ob_ode_body *ob_ode_bodies_get(ob_ode_bodies *w, ob_vec3 gravity, uint32_t id, const ob_passport *p)
 {
-	ob_ode_slot *slot = &w->slot[id % w->slots];
-	if (!slot->body || slot->id != id || slot->generation != p->generation) {
-		ob_ode_body_destroy(slot->body);
-		*slot = (ob_ode_slot){ ob_ode_body_create(p, gravity, w->stepper), id, p->generation };
+	ob_ode_body **slot = &w->slot[id % w->slots];
+	if (!*slot || !ob_ode_body_serves(*slot, p)) {
+		ob_ode_body_destroy(*slot);
+		*slot = ob_ode_body_create(p, gravity, w->stepper);
 	}
-	return slot->body;
+	return *slot;
 }
 
 void ob_ode_bodies_move(ob_solver *s, uint32_t row, double smooth)

@@ -8,7 +8,7 @@
 typedef struct ob_ode_bodies {
 	ob_ode_stepper *stepper; // shared by all bodies
 	uint32_t slots;
-	struct ob_ode_slot *slot; // [slots], by id: a later one takes an earlier one's place
+	ob_ode_body **slot; // [slots], by id: a later one takes an earlier one's place; NULL: none yet
 } ob_ode_bodies;
 
 bool ob_ode_bodies_create(ob_ode_bodies *w, uint32_t objects); // keeps so many; false: no memory
