@@ -292,6 +292,8 @@ static bool place_objects(ob_host *h, const ob_scene *scene, const ob_host_confi
 	if (!check_paths(scene, ob_universe_settings(h->u)->step_length, e) ||
 	    !ob_universe_reserve(h->u, scene->objects, e))
 		return false;
+	if (!ob_reserve_joints(h->u, scene->joints))
+		return ob_fail(e, "/dev/shm is full: no room for the scene's joints");
 	ob_ode_init();
 	h->roster = ob_roster_create();
 	h->requests = ob_requests_create();

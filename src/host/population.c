@@ -67,7 +67,7 @@ struct ob_kept_population {
 	uint32_t first_free, created, kinematic, pushed, hulls;
 	ob_pulls pulls;
 	ob_given_paths paths;
-	uint64_t pulled;
+	uint64_t pulled, roster; // roster: its number
 };
 
 // ---- checks
@@ -672,6 +672,7 @@ ob_kept_population *ob_population_copy(const ob_population *p, ob_kept_populatio
 	k->kinematic = p->kinematic;
 	k->pushed = p->pushed;
 	k->hulls = p->hulls.count;
+	k->roster = p->changed ? 0 : ob_roster_number(p->roster);
 	return k;
 }
 
@@ -698,7 +699,8 @@ static void put_back(ob_population *p, const ob_kept_population *k)
 		ob_log_warn("out of memory: objects are no longer pulled as they were");
 	if (!ob_given_paths_copy(&p->paths, &k->paths))
 		ob_log_warn("out of memory: objects no longer follow the paths that they were given");
-	publish_roster(p);
+	if (p->changed || k->roster != ob_roster_number(p->roster))
+		publish_roster(p);
 }
 
 void ob_population_put_back(ob_population *p, uint64_t reached)

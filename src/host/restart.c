@@ -28,7 +28,7 @@ void ob_restart_prepare(ob_host *h)
 	ob_restart_state *r = &h->restart;
 	const bool possible = h->spawn->own_memory || ob_on_death_freezes_failed(h->on_death);
 	if (possible && h->on_death != OB_ON_DEATH_ABORT && !ob_universe_settings(h->u)->monolith)
-		r->checkpoint = ob_checkpoint_create(h->u);
+		r->checkpoint = ob_checkpoint_create();
 	if (h->limit.deaths)
 		r->when = calloc(h->limit.deaths, sizeof *r->when);
 	r->progress_at = ob_clock_wall();
@@ -510,21 +510,32 @@ bool ob_restart(ob_host *h)
 	// a step that was too much is complete before newcomers come: else each attempt would find more of them
 	const bool failed = latest(r)->cause == OB_DEATH_FAILURE;
 	ob_checkpoint_put_back(r->checkpoint, h->u);
+	ob_checkpoint_forget_workers(h->u);
 	ob_population_put_back(h->population, reached + failed);
 	return start_workers(h, text.text);
+}
+
+static bool end_for_snapshot(ob_host *h)
+{
+	h->restart.requested = true; // workers that end are expected to
+	ob_gate_stop(h->u);
+	return end_all_workers(h);
 }
 
 bool ob_restart_restore(ob_host *h, const ob_checkpoint *c, const ob_kept_population *k)
 {
 	ob_restart_state *r = &h->restart;
-	r->requested = true; // workers that end are expected to
-	ob_gate_stop(h->u);
-	if (!end_all_workers(h))
+	const bool stay = h->spawn->pass; // the caller is in no phase, and keeps nothing that a state decides
+	if (!stay && !end_for_snapshot(h))
 		return false;
 	ob_checkpoint_put_back(c, h->u);
+	if (!stay)
+		ob_checkpoint_forget_workers(h->u);
 	ob_population_restore(h->population, k);
 	r->freezes = 0;
 	ob_restart_checkpoint(h, true);
+	if (stay)
+		return !h->failed;
 	bool ready = start_workers(h, "restoring a snapshot");
 	while (!ready && r->requested && !h->failed)
 		ready = ob_restart(h);

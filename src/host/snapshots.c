@@ -31,7 +31,7 @@ uint64_t ob_host_keep_snapshot(ob_host *h, ob_error *e)
 			       "simulators");
 	if (!OB_GROW(all->at, all->count + 1))
 		return ob_fail(e, "no memory for another snapshot: forget some");
-	ob_kept_snapshot s = { ob_checkpoint_create(h->u), ob_population_copy(h->population, NULL) };
+	ob_kept_snapshot s = { ob_checkpoint_create(), ob_population_copy(h->population, NULL) };
 	if (!s.universe || !s.population || !ob_checkpoint_take(s.universe, h->u)) {
 		forget(&s);
 		return ob_fail(e, "no memory for another snapshot: forget some");

@@ -2,16 +2,11 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/allocate.h"
 #include "table/home.h"
 #include "table/layout.h"
-
-// Bytes of the segment; begin and end on page borders.
-typedef struct range {
-	uint64_t begin, end;
-} range;
+#include "table/pages.h"
 
 // Part of ob_control that a step leaves for the next. The rest goes on after a restart, or others write it at any time
 // (a death, the state).
@@ -21,25 +16,20 @@ typedef struct step_control {
 } step_control;
 
 struct ob_checkpoint {
-	int fd; // the universe's: it tells which pages are in use
 	step_control control;
 	ob_motion *motion; // [ids]
 	ob_passport *passport; // [ids]
 	size_t passports_max;
 	uint32_t ids, ids_max;
-	range *kept; // ascending
+	ob_page_range *kept; // ascending
 	size_t ranges, ranges_max;
 	char *bytes; // contents of all ranges, one after the other
 	size_t bytes_max;
 };
 
-ob_checkpoint *ob_checkpoint_create(const ob_universe *u)
+ob_checkpoint *ob_checkpoint_create(void)
 {
-	ob_checkpoint *c = calloc(1, sizeof *c);
-	if (!c)
-		return NULL;
-	c->fd = u->fd;
-	return c;
+	return calloc(1, sizeof(ob_checkpoint));
 }
 
 void ob_checkpoint_destroy(ob_checkpoint *c)
@@ -58,24 +48,6 @@ uint64_t ob_checkpoint_step(const ob_checkpoint *c)
 	return c->control.step;
 }
 
-// The step's own areas, without the scheduler's scratch, which holds nothing from one step to the next.
-static range step_areas(const ob_universe *u)
-{
-	return (range){ u->header.area[OB_AREA_REQUERY], u->header.area[OB_AREA_SCRATCH] };
-}
-
-// The next pages in use from "from" on; false: there are none before "end".
-static bool next_in_use(int fd, uint64_t from, uint64_t end, range *found)
-{
-	off_t begin = lseek(fd, (off_t)from, SEEK_DATA);
-	if (begin < 0 || (uint64_t)begin >= end)
-		return false;
-	off_t hole = lseek(fd, begin, SEEK_HOLE);
-	found->begin = (uint64_t)begin;
-	found->end = hole < 0 || (uint64_t)hole > end ? end : (uint64_t)hole;
-	return true;
-}
-
 static const char blank[OB_LAYOUT_PAGE];
 
 static bool is_blank(const char *page)
@@ -83,7 +55,7 @@ static bool is_blank(const char *page)
 	return memcmp(page, blank, sizeof blank) == 0;
 }
 
-static bool keep(ob_checkpoint *c, const ob_universe *u, range r, size_t *bytes)
+static bool keep(ob_checkpoint *c, const ob_universe *u, ob_page_range r, size_t *bytes)
 {
 	size_t more = r.end - r.begin;
 	if (!OB_MAKE_ROOM(c->kept, c->ranges, c->ranges_max) || !OB_RESERVE(c->bytes, *bytes + more, c->bytes_max))
@@ -97,14 +69,15 @@ static bool keep(ob_checkpoint *c, const ob_universe *u, range r, size_t *bytes)
 // Skips reserved pages without contents: pages in use that were not copied are put back as zeros.
 static bool take_areas(ob_checkpoint *c, const ob_universe *u)
 {
-	range all = step_areas(u), r;
+	ob_page_range r = { 0, 0 };
 	size_t bytes = 0;
 	c->ranges = 0;
-	for (uint64_t at = all.begin; next_in_use(c->fd, at, all.end, &r); at = r.end) {
+	ob_pages_list_used(u);
+	for (size_t i = 0; ob_pages_next_used(u, i, r.end, &r); i++) {
 		for (uint64_t page = r.begin, begin = r.begin; page < r.end;) {
 			for (begin = page; page < r.end && !is_blank(u->base + page); page += OB_LAYOUT_PAGE)
 				;
-			if (page > begin && !keep(c, u, (range){ begin, page }, &bytes))
+			if (page > begin && !keep(c, u, (ob_page_range){ begin, page }, &bytes))
 				return false;
 			for (; page < r.end && is_blank(u->base + page); page += OB_LAYOUT_PAGE)
 				;
@@ -174,12 +147,13 @@ static void put_pages(char *to, const char *from, size_t bytes)
 // Pages do not go out of use, so what was kept lies within what is in use now.
 static void put_areas_back(const ob_checkpoint *c, const ob_universe *u)
 {
-	range all = step_areas(u), r;
+	ob_page_range r = { 0, 0 };
 	const char *from = c->bytes;
 	size_t k = 0;
-	for (uint64_t at = all.begin; next_in_use(c->fd, at, all.end, &r); at = r.end) {
+	ob_pages_list_used(u);
+	for (size_t i = 0; ob_pages_next_used(u, i, r.end, &r); i++) {
 		for (; k < c->ranges && c->kept[k].begin < r.end; k++) {
-			const range *kept = &c->kept[k];
+			const ob_page_range *kept = &c->kept[k];
 			put_pages(u->base + r.begin, NULL, kept->begin - r.begin);
 			put_pages(u->base + kept->begin, from, kept->end - kept->begin);
 			from += kept->end - kept->begin;
@@ -263,13 +237,17 @@ static void reset_gate(ob_universe *u)
 
 void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u)
 {
-	end_traces(u);
 	put_areas_back(c, u);
 	hide_later_objects(c, u);
 	put_motions_back(c, u);
 	put_passports_back(c, u);
 	put_control_back(&c->control, u->control);
 	__atomic_store_n(&u->control->ids, c->ids, __ATOMIC_RELEASE); // bounds of work and of neighbours follow it
+}
+
+void ob_checkpoint_forget_workers(ob_universe *u)
+{
+	end_traces(u);
 	u->control->lives++;
 	reset_gate(u);
 	for (uint32_t w = 0; w < u->header.sizes.workers; w++) {

@@ -6,8 +6,9 @@
 //   step data          pages in use          -->   the same bytes; pages that came into use since are zeroed
 //   clock, tasks       values                -->   the same values
 //   passports          newest of each slot   -->   written anew; what was not there then goes before motions do
-//   gate               -                     -->   as at the start: the host has the turn, no worker has arrived
-//   worker cells, trace -                    -->   counters and events stay; the pids are cleared
+//   gate, workers      -                     -->   they stay, as do counters and traces
+//
+// Workers that have died, and the gate that they left at some point, are forgotten apart, before others begin.
 //
 // These hold everything that an object needs from one step to the next, so the steps that follow are the same to the bit.
 //
@@ -20,11 +21,12 @@
 
 typedef struct ob_checkpoint ob_checkpoint;
 
-// NULL: out of memory, or the universe's name is gone.
-ob_checkpoint *ob_checkpoint_create(const ob_universe *u);
+ob_checkpoint *ob_checkpoint_create(void); // NULL: out of memory
 // Returns false if memory runs out; nothing can then be put back.
 bool ob_checkpoint_take(ob_checkpoint *c, const ob_universe *u);
 void ob_checkpoint_put_back(const ob_checkpoint *c, ob_universe *u);
+// All workers have left: clears their pids; the gate is as at the start: the host has the turn, no worker has arrived.
+void ob_checkpoint_forget_workers(ob_universe *u);
 // Number of complete steps at the checkpoint.
 uint64_t ob_checkpoint_step(const ob_checkpoint *c);
 void ob_checkpoint_destroy(ob_checkpoint *c); // NULL is allowed

@@ -83,7 +83,8 @@ static bool map_new(ob_universe *u, ob_error *e)
 		return ob_fail(e, "cannot map %" PRIu64 " bytes of shared memory: %s", bytes, strerror(errno));
 	ob_layout_bind(u, base);
 	u->taken = calloc(bytes / OB_LAYOUT_CHUNK / 64 + 1, sizeof *u->taken);
-	if (!u->taken)
+	u->used = ob_pages_create_used();
+	if (!u->taken || !u->used)
 		return ob_fail(e, "out of memory");
 	return true;
 }
@@ -133,6 +134,7 @@ void ob_universe_destroy(ob_universe *u, bool unlink)
 	if (u->fd >= 0)
 		close(u->fd);
 	free(u->taken);
+	ob_pages_destroy_used(u->used);
 	free(u);
 }
 

@@ -6,6 +6,7 @@
 
 #include "motion/joint_value.h"
 #include "table/layout.h"
+#include "table/pages.h"
 
 // ---- numbers and lists
 
@@ -87,6 +88,12 @@ void ob_joints_write(ob_universe *u, const ob_joint_passport *joint, uint32_t jo
 			link_joint(data, i, true);
 }
 
+bool ob_reserve_joints(ob_universe *u, uint32_t joints)
+{
+	return ob_pages_take(u, OB_AREA_JOINT, 0, joints) && ob_pages_take(u, OB_AREA_JOINT_STATE, 0, joints) &&
+	       ob_pages_take(u, OB_AREA_NEXT_JOINT, 0, joints);
+}
+
 uint32_t ob_joint_add(ob_universe *u, const ob_joint_passport *joint)
 {
 	ob_step_data *data = &u->step_data;
@@ -94,7 +101,7 @@ uint32_t ob_joint_add(ob_universe *u, const ob_joint_passport *joint)
 	uint32_t i = 0;
 	while (i < end && ob_joint_exists(&data->joint[i]))
 		i++;
-	if (i == data->joints_max)
+	if (i == data->joints_max || !ob_reserve_joints(u, i + 1))
 		return UINT32_MAX;
 	ob_joint_passport named = *joint;
 	const size_t n = strnlen(named.name, OB_NAME_MAX);
@@ -255,19 +262,18 @@ bool ob_universe_get_joint_value(const ob_universe *u, uint32_t joint, double *v
 {
 	const ob_state none = { .pose.q = ob_quat_identity() };
 	ob_state states[2] = { none, none };
-	ob_universe_info info;
 	ob_joint_passport j;
 	ob_passport p;
 	ob_motion m;
 	if (!ob_universe_get_joint(u, joint, &j) || j.flags & OB_JOINT_BROKEN)
 		return false;
-	ob_universe_get_info(u, &info);
+	const double now = (double)ob_step_count(u) * u->header.run.step_length;
 	for (int side = 0; side < 2; side++) {
 		if (j.object[side] == OB_JOINT_WORLD)
 			continue;
 		if (!ob_universe_get_passport(u, j.object[side], &p) || !ob_universe_get_motion(u, j.object[side], &m))
 			return false;
-		states[side] = ob_motion_at(&m, p.inertia, fmax(info.time, m.t0));
+		states[side] = ob_motion_at(&m, p.inertia, fmax(now, m.t0));
 	}
 	return ob_joint_value(&j, states, value, rate);
 }

@@ -4,11 +4,14 @@
 #include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
+
+#include "base/allocate.h"
 
 // ---- reservation
 
@@ -66,8 +69,9 @@ bool ob_universe_reserve(ob_universe *u, uint32_t ids, ob_error *e)
 	for (int i = OB_AREA_SLOT; i < OB_AREAS && fine; i++) {
 		const ob_area area = (ob_area)i;
 		// most objects never have a second version of their body properties, and outboxes are seldom full;
-		// cells are taken one by one
-		if (area != OB_AREA_PASSPORT_EVEN && area != OB_AREA_OUTBOX && area != OB_AREA_SCRIPT_CELL)
+		// cells and joints are taken one by one
+		if (area != OB_AREA_PASSPORT_EVEN && area != OB_AREA_OUTBOX && area != OB_AREA_SCRIPT_CELL &&
+		    area != OB_AREA_JOINT && area != OB_AREA_JOINT_STATE && area != OB_AREA_NEXT_JOINT)
 			fine = ob_pages_take(u, area, 0, ob_layout_elements_of(&u->header.sizes, area, ids));
 	}
 	struct statvfs s = { 0 };
@@ -93,6 +97,65 @@ bool ob_reserve_record(ob_universe *u, uint32_t record)
 {
 	const bool two = ob_solver_is_two_sided(u->header.run.solver);
 	return ob_pages_take(u, OB_AREA_RECORD, record, 1) && (!two || ob_pages_take(u, OB_AREA_IMPULSE_B, record, 1));
+}
+
+// ---- pages in use
+
+struct ob_used_pages {
+	int64_t blocks; // of the whole file when these were listed: pages do not go out of use, so the same number means the same pages
+	ob_page_range *at; // [count], ascending
+	size_t count, max;
+};
+
+struct ob_used_pages *ob_pages_create_used(void)
+{
+	return calloc(1, sizeof(struct ob_used_pages));
+}
+
+void ob_pages_destroy_used(struct ob_used_pages *p)
+{
+	if (p)
+		free(p->at);
+	free(p);
+}
+
+static bool find_used(const ob_universe *u, uint64_t from, ob_page_range *found)
+{
+	const uint64_t first = u->header.area[OB_AREA_REQUERY], end = u->header.area[OB_AREA_SCRATCH];
+	const off_t begin = lseek(u->fd, (off_t)(from > first ? from : first), SEEK_DATA);
+	if (begin < 0 || (uint64_t)begin >= end)
+		return false;
+	const off_t hole = lseek(u->fd, begin, SEEK_HOLE);
+	found->begin = (uint64_t)begin;
+	found->end = hole < 0 || (uint64_t)hole > end ? end : (uint64_t)hole;
+	return true;
+}
+
+// Without memory for it there is no list.
+void ob_pages_list_used(const ob_universe *u)
+{
+	struct ob_used_pages *p = u->used;
+	struct stat s;
+	ob_page_range r = { 0, 0 };
+	if (fstat(u->fd, &s) != 0 || p->blocks == s.st_blocks)
+		return;
+	p->blocks = 0;
+	for (p->count = 0; find_used(u, r.end, &r); p->count++) {
+		if (!OB_MAKE_ROOM(p->at, p->count, p->max))
+			return;
+		p->at[p->count] = r;
+	}
+	p->blocks = s.st_blocks;
+}
+
+bool ob_pages_next_used(const ob_universe *u, size_t i, uint64_t from, ob_page_range *found)
+{
+	const struct ob_used_pages *p = u->used;
+	if (!p->blocks)
+		return find_used(u, from, found);
+	if (i < p->count)
+		*found = p->at[i];
+	return i < p->count;
 }
 
 // ---- missing pages

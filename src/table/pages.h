@@ -13,7 +13,7 @@
 // Truncating the file takes away pages that were there. Programs that call ob_pages_guard, host and readers alike, then
 // end with one line that reports it, instead of a signal.
 //
-// Thread-safety: any thread.
+// Thread-safety: any thread, unless told otherwise.
 #ifndef OB_TABLE_PAGES_H
 #define OB_TABLE_PAGES_H
 
@@ -24,6 +24,20 @@
 bool ob_pages_take(ob_universe *u, ob_area area, uint64_t first, uint64_t count);
 // Same for the areas that every universe uses from its creation on.
 bool ob_pages_take_first(ob_universe *u);
+
+// Bytes of the segment; begin and end on page borders.
+typedef struct ob_page_range {
+	uint64_t begin, end;
+} ob_page_range;
+
+// A list, empty at first, of the pages in use by the step's own areas; without the scheduler's scratch, which holds nothing
+// from one step to the next. NULL: no memory.
+struct ob_used_pages *ob_pages_create_used(void);
+void ob_pages_destroy_used(struct ob_used_pages *p); // NULL is allowed
+// Brings the universe's list up to date. The host's thread alone, as the next.
+void ob_pages_list_used(const ob_universe *u);
+// Finds the range of number i, where the one before ended at "from", 0 for the first; false: there are no more.
+bool ob_pages_next_used(const ob_universe *u, size_t i, uint64_t from, ob_page_range *found);
 
 // Tracks the universes mapped by this process, for the guard. ob_pages_track returns false if there are too many;
 // further ones are not guarded.

@@ -356,7 +356,7 @@ static bool reserve(ob_universe *u, const ob_saved_universe *s, ob_error *e)
 {
 	if (!ob_universe_reserve(u, s->ids, e))
 		return false;
-	bool fine = ob_reserve_pairs(u, 0, s->pairs);
+	bool fine = ob_reserve_joints(u, s->joints) && ob_reserve_pairs(u, 0, s->pairs);
 	for (uint32_t i = 0; i < s->records && fine; i++)
 		fine = ob_reserve_record(u, i);
 	return fine ||

@@ -79,7 +79,8 @@ void ob_universe_move_fd(ob_universe *u, int fd);
 // Reserves the pages of all data of objects 0 .. ids-1 in the universe, before they are touched (pages.h). Returns
 // false and e if the memory file system is full.
 bool ob_universe_reserve(ob_universe *u, uint32_t ids, ob_error *e);
-// Same for pairs first .. first + count - 1, and for a record of a pair. Returns false if it is full.
+// Same for joints 0 .. joints-1, for pairs first .. first + count - 1, and for a record of a pair. Returns false if it is full.
+bool ob_reserve_joints(ob_universe *u, uint32_t joints);
 bool ob_reserve_pairs(ob_universe *u, uint32_t first, uint32_t count);
 bool ob_reserve_record(ob_universe *u, uint32_t record);
 // Allocates the lowest free cell for the script of an object just added: text number `script`, with this state and

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Snapshots taken and put back at random moments of a scene that lands, with scripts and joints, change no bit of its end:
-for threads, processes and contained ones, any number of workers, and beside kills. Exit 77 (skipped) without NumPy.
+for the caller's own thread, threads, processes and contained ones, any number of workers, and beside kills. Exit 77 (skipped) without NumPy.
 
 test_restores.py [MOMENTS]    of each way to run; 5
 """
@@ -39,7 +39,7 @@ hinge { "bob1", at = { 2, 0, 1 }, axis = { 0, 1, 0 } }
 box { name = "paddle", size = { 2, .1, .3 }, at = { 0, -1, .2 }, kind = "kinematic" }
 """
 WAYS = ({'workers': 1}, {'workers': 2}, {'workers': 'objects'}, {'isolation': 'process', 'workers': 2},
-        {'isolation': 'process', 'harden': True})
+        {'isolation': 'process', 'harden': True}, None) # None: within this program
 
 
 class Restores(unittest.TestCase):
@@ -59,7 +59,7 @@ class Restores(unittest.TestCase):
 
     def end_of(self, options, chance=None, kills=False):
         """States at the end, by name. chance: with detours from random moments."""
-        with obsim.run(self.scene, options=options) as u:
+        with obsim.run(self.scene, options=options, inside=options is None) as u:
             u.step()
             u['paddle'].follow((.4, 1, 2.2), ((0, 0, .2), (0, 0, .6), (0, -1, .2)), ((1, 0, 0, 0), (.8, 0, 0, .6), (1, 0, 0, 0)))
             for moment in sorted(chance.sample(range(STEPS), MOMENTS)) if chance else []:
@@ -84,7 +84,7 @@ class Restores(unittest.TestCase):
         self.assertGreater(len(first['id']), 27) # scripts have created some
         chance = random.Random(7)
         for options in WAYS:
-            for kills in (False, True) if 'isolation' in options else (False,):
+            for kills in (False, True) if options and 'isolation' in options else (False,):
                 with self.subTest(options=options, kills=kills):
                     for name, values in self.end_of(options, chance, kills).items():
                         self.assertTrue((first[name] == values).all(), name)

@@ -73,12 +73,13 @@ static void die_busy(uint32_t harden)
 	ob_error e;
 	ob_universe_setup setup = { .capacity = 9, .workers = 2, .isolation = "process", .harden = harden };
 	ob_universe *u = ob_universe_create(&setup, &e);
-	ob_checkpoint *c = u ? ob_checkpoint_create(u) : NULL;
+	ob_checkpoint *c = u ? ob_checkpoint_create() : NULL;
 	CHECK(c && ob_checkpoint_take(c, u));
 	CHECK(!harden || ob_outbox_enter(u, 0));
 	ob_worker_set_object(u, 0, 5);
 	CHECK(ob_worker_object(u, 0) == 5);
 	ob_checkpoint_put_back(c, u);
+	ob_checkpoint_forget_workers(u);
 	CHECK(ob_worker_object(u, 0) == OB_NO_OBJECT);
 	ob_checkpoint_destroy(c);
 	ob_universe_destroy(u, true);
@@ -96,10 +97,11 @@ static void die_and_succeed(void)
 		.capacity = 1, .workers = 2, .isolation = "process", .harden = 1 << OB_HARDEN_OUTBOX
 	};
 	ob_universe *u = ob_universe_create(&setup, &e);
-	ob_checkpoint *c = u ? ob_checkpoint_create(u) : NULL;
+	ob_checkpoint *c = u ? ob_checkpoint_create() : NULL;
 	CHECK(c && ob_checkpoint_take(c, u));
 	CHECK(hand_over_word(u, PREDECESSOR));
 	ob_checkpoint_put_back(c, u);
+	ob_checkpoint_forget_workers(u);
 	u->gate_group[0].expected = 1;
 	pthread_create(&successor, NULL, succeed, u);
 	CHECK(ob_mail_collect(u, &mail));
