@@ -830,43 +830,42 @@ class Batch(_Strict):
             raise
 
     def _look_up(self, targets, forces, read):
-        """Changes and numbers of joints for these names, in each universe."""
-        names_ = tuple(targets), tuple(forces), tuple(read)
-        if not self._plan or self._plan[0] != names_:
-            changes = numpy.zeros((len(self), len(targets) + len(forces)), CHANGE)
-            numbers = numpy.zeros((len(self), len(read)), numpy.uint32)
-            for r, change, number in zip(self._runs, changes, numbers):
-                joints = r.joints if targets or read else {}
-                number[:] = [joints[name]._number for name in read]
-                for c, name in zip(change, targets):
-                    c['id'], c['value'][0] = joints[name]._passport().object[0], joints[name]._number
-                for c, name in zip(change[len(targets):], forces):
-                    c['id'], c['generation'] = r[name]._id, r[name]._generation
-            self._plan = names_, changes, numbers
+        """The rows of a step with these names: changes of each universe, and numbers and values of joints."""
+        names_ = targets, forces, read
+        if self._plan and self._plan[0] == names_:
+            return self._plan[1:]
+        changes = numpy.zeros((len(self), len(targets) + len(forces)), CHANGE)
+        numbers = numpy.zeros((len(self), len(read)), numpy.uint32)
+        for r, change, number in zip(self._runs, changes, numbers):
+            joints = r.joints if targets or read else {}
+            number[:] = [joints[name]._number for name in read]
+            for c, name in zip(change, targets):
+                c['id'], c['value'][0] = joints[name]._passport().object[0], joints[name]._number
+            for c, name in zip(change[len(targets):], forces):
+                c['id'], c['generation'] = r[name]._id, r[name]._generation
+        values = numpy.empty((len(self), len(read), 2))
+        rows, k = self._base.copy(), numpy.arange(len(self), dtype=numpy.uint64)
+        rows['motor'], rows['joints'], rows['joint'], rows['values'] = _at(changes, k), len(read), _at(numbers, k), _at(values, k)
+        rows['force'] = rows['motor'] + len(targets) * CHANGE.itemsize
+        self._plan = names_, rows, numbers, changes['value'], values
         return self._plan[1:]
 
     def step(self, n=1, targets=None, forces=None, read=()):
         """Runs n steps of all. Before, motors get targets, {joint's name: one number, or one a universe}, and objects constant
         forces, {object's name: (x, y, z), or one row a universe}, N. Returns values and rates of the joints that read names, an
         array (universes, joints, 2)."""
-        targets, forces, read = targets or {}, forces or {}, tuple(read)
-        changes, numbers = self._look_up(targets, forces, read)
+        targets, forces = targets or {}, forces or {}
+        rows, _, changes, values = self._look_up(tuple(targets), tuple(forces), tuple(read))
         for k, target in enumerate(targets.values()):
-            changes['value'][:, k, 1] = _rows(target, len(self), 1)[:, 0]
-        for k, force in enumerate(forces.values()):
-            changes['value'][:, len(targets) + k, :3] = _rows(force, len(self), 3)
-        values = numpy.empty((len(self), len(read), 2))
-        rows, k = self._base.copy(), numpy.arange(len(self), dtype=numpy.uint64)
-        rows['motor'], rows['motors'], rows['forces'], rows['joints'] = _at(changes, k), len(targets), len(forces), len(read)
-        rows['force'] = rows['motor'] + len(targets) * CHANGE.itemsize
-        rows['joint'], rows['values'] = _at(numbers, k), _at(values, k)
-
-        def some(steps):
-            self._call(rows, steps)
+            changes[:, k, 1] = _rows(target, len(self), 1)[:, 0]
+        for k, force in enumerate(forces.values(), len(targets)):
+            changes[:, k, :3] = _rows(force, len(self), 3)
+        rows['motors'], rows['forces'] = len(targets), len(forces)
+        self._call(rows, min(n, 1))
+        if n > 1:
             rows['motors'] = rows['forces'] = 0
-        some(min(n, 1))
-        _in_pieces(n - 1, some)
-        return values
+            _in_pieces(n - 1, lambda steps: self._call(rows, steps))
+        return values.copy()
 
     def states(self, *which):
         """Arrays by name as those of Universe.states, with a first axis more."""

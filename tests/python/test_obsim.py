@@ -20,7 +20,6 @@ except ImportError:
     sys.exit(77)
 
 import obsim
-from obsim.environment import Environment, Environments
 
 SCENE = """local n, speed = param("n", 12), param("speed", 1)
 scene { title = "Test", duration = 5, step = .01 }
@@ -454,50 +453,43 @@ class Documents(unittest.TestCase):
 class Control(Case):
     """A cart on ice: a force along x brings it to the origin."""
 
-    def environments(self, kind, *first):
-        def observe(u):
-            cart = u['cart']
-            return numpy.array([cart.position[0], cart.velocity[0]])
+    def begin(self, n):
+        b = obsim.batch(self.cart, n)
+        self.addCleanup(b.close)
+        row = b.id[0].tolist().index(b[0]['cart'].id)
+        return b, b[0]['cart'].mass, lambda: numpy.stack([b.position[:, row, 0], b.velocity[:, row, 0]], axis=1)
 
-        def act(u, action):
-            u['cart'].force = float(action), 0, 0
-        e = kind(*first, self.cart, observe, act, lambda u: -u['cart'].position[0] ** 2, steps=5, limit=40)
-        self.addCleanup(e.close)
-        return e
+    @staticmethod
+    def push(b, newtons):
+        b.step(5, forces={'cart': numpy.outer(newtons, [1, 0, 0])})
 
     def test_one(self):
-        e = self.environments(Environment)
-        (x, v), _ = e.reset(seed=3)
-        self.assertNotEqual(x, e.reset(seed=4)[0][0])
-        (x, v), _ = e.reset(seed=3)
-        mass = e.universe['cart'].mass
-        truncated = False
-        while not truncated:
-            (x, v), reward, terminated, truncated, _ = e.step(-mass * (6 * x + 4 * v))
-            self.assertFalse(terminated)
-        self.assertLess(abs(x), .02)
-        self.assertAlmostEqual(reward, -x * x)
+        b, mass, see = self.begin(1)
+        starts = []
+        for seed in 4, 3:
+            b.reset(seeds=[seed])
+            starts.append(see()[0, 0])
+        self.assertNotEqual(*starts)
+        for _ in range(40):
+            self.push(b, -mass * (see() @ [6, 4]))
+        self.assertLess(abs(see()[0, 0]), .02)
 
     def test_random_search(self):
         """Gains of a controller, found by chance on universes side by side."""
-        e = self.environments(Environments, 4)
-        mass, chance = e.each[0].universe['cart'].mass, numpy.random.default_rng(2)
-        gains, best = numpy.zeros((4, 2)), None
-        for _ in range(4):
-            tried = gains + chance.uniform(0, 6, (4, 2))
-            seen, _ = e.reset()
+        b, mass, see = self.begin(4)
+        chance, best = numpy.random.default_rng(2), None
+
+        def play(gains):
+            b.reset()
             total = numpy.zeros(4)
             for _ in range(40):
-                seen, reward, _, truncated, _ = e.step(-mass * (tried * seen).sum(axis=1))
-                total += reward
-            self.assertTrue(truncated.all())
-            if best is None or total.max() > best:
-                best, self.found = total.max(), tried[total.argmax()]
-        (still, _), standing = e.reset(), 0
-        for _ in range(40):
-            still, reward, *_ = e.step(numpy.zeros(4))
-            standing += reward[0]
-        self.assertGreater(best, standing)
+                self.push(b, -mass * (gains * see()).sum(axis=1))
+                total -= see()[:, 0] ** 2
+            return total
+        for _ in range(4):
+            total = play(chance.uniform(0, 6, (4, 2)))
+            best = total.max() if best is None else max(best, total.max())
+        self.assertGreater(best, play(numpy.zeros((4, 2)))[0])
 
 
 class Policy(Case):
@@ -510,39 +502,38 @@ box { name = "pole", size = { .1, .1, 1 }, at = { 0, 0, 5 }, rotation = { axis =
     def test_pole(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        scene = self.write(folder, 'pole.lua', self.POLE)
-
-        def observe(u):
-            pole = u['pole']
-            w, x, y, z = pole.attitude
-            return numpy.array([2 * (x * z + w * y), pole.angular_velocity[1]]) # lean of its axis along x, and its spin
-
-        def act(u, action):
-            pole = u['pole']
-            pole.push((float(numpy.clip(action, -9 * pole.mass, 9 * pole.mass)), 0, 9.81 * pole.mass), (0, 0, -.5))
-        with Environments(self.UNIVERSES, scene, observe, act, lambda u: -observe(u)[0] ** 2, steps=5, limit=self.ACTIONS) as e:
-            mass, chance = e.each[0].universe['pole'].mass, numpy.random.default_rng(3)
+        with obsim.batch(self.write(folder, 'pole.lua', self.POLE), self.UNIVERSES) as b:
+            mass, chance = b[0]['pole'].mass, numpy.random.default_rng(3)
             centre, width = numpy.zeros(2), numpy.array([40., 6.])
             for _ in range(2):
                 gains = centre + width * mass * chance.uniform(-1, 1, (self.UNIVERSES, 2))
                 gains[0] = centre
-                total, _ = self.play(e, gains, None)
+                total, _ = self.play(b, gains, None)
                 centre, width = gains[total.argmax()], width / 3
             policies = numpy.tile(centre, (self.UNIVERSES, 1))
             policies[0] = 0
-            total, leans = self.play(e, policies, range(10, 10 + self.UNIVERSES))
+            total, leans = self.play(b, policies, range(10, 10 + self.UNIVERSES))
             self.assertLess(numpy.abs(leans[1:]).max(), .05) # starts that it has not seen
             self.assertGreater(abs(leans[0]), .3) # without a policy it falls
             self.assertLess(total[0], total[1:].min())
 
-    def play(self, e, gains, seeds):
+    @staticmethod
+    def observe(b):
+        """The lean of each axis along x, and its spin."""
+        w, x, y, z = b.attitude[:, 0].T
+        return numpy.stack([2 * (x * z + w * y), b.angular_velocity[:, 0, 1]], axis=1)
+
+    def play(self, b, gains, seeds):
         """(rewards, last leans) of an episode of each universe."""
-        seen, _ = e.reset(seeds)
-        total = numpy.zeros(len(e))
+        b.reset(seeds=seeds)
+        poles = [u['pole'] for u in b]
+        total, most, weight = numpy.zeros(len(b)), 9 * poles[0].mass, 9.81 * poles[0].mass
         for _ in range(self.ACTIONS):
-            seen, reward, _, _, _ = e.step((gains * seen).sum(axis=1))
-            total += reward
-        return total, seen[:, 0]
+            for pole, force in zip(poles, numpy.clip((gains * self.observe(b)).sum(axis=1), -most, most).tolist()):
+                pole.push((force, 0, weight), (0, 0, -.5))
+            b.step(5)
+            total -= self.observe(b)[:, 0] ** 2
+        return total, self.observe(b)[:, 0]
 
 
 class Joints(Case):
