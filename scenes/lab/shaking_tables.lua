@@ -14,53 +14,69 @@ for i, mu in ipairs(grip) do
 	block[i] = box { size = { .4, .4, .2 }, mass = 10, at = { 0, 4 * (i - 1), .1 }, friction = mu }
 end
 
--- First instant after from + fine / 2 at which f crosses 0; the end: none before. Samples, then bisects.
-local function crossing(f, from, until_time, fine)
-	local begin, t = f(from + .5 * fine), from + fine
-	while t - fine < until_time do
-		local low, high = t - fine, math.min(t, until_time)
-		if f(high) * begin <= 0 then
-			for _ = 1, 60 do
-				local middle = .5 * (low + high)
-				if f(middle) * begin > 0 then low = middle else high = middle end
-			end
-			return high
-		end
-		t = t + fine
-	end
-	return until_time
-end
-
--- Place of a block that begins at rest: phases of sliding are parabolas, of sticking the table's motion (Coulomb 1785).
-local function place(mu, t)
+-- A function of ascending times: the place of a block that begins at rest. Phases of sliding are parabolas, of sticking the table's
+-- motion (Coulomb 1785).
+local function follow(mu)
 	local fine, fastest, limit = 2 * math.pi / frequency / 4096, amplitude * frequency, mu * g
-	local x, v, now, sticks = 0, 0, 0, false
 	local of_table = fastest * frequency
-	while now < t do
-		if sticks then
-			local function holds(s) return limit - math.abs(of_table * math.sin(frequency * s)) end
-			local stop = holds(now + 1e-6 * fine) < 0 and now or crossing(holds, now, t, fine)
-			x = x + amplitude * (math.sin(frequency * stop) - math.sin(frequency * now))
-			v, now, sticks = fastest * math.cos(frequency * stop), stop, false
-			if now >= t then break end
-		end
+	local x, v, now, pull = 0, 0, 0, nil -- at the start of a phase; pull: acceleration of sliding, nil: it sticks
+	local left, begin, sample -- the phase ends where this function crosses 0; its first value, and the next time to look at it
+	local function slide()
 		local ahead = fastest * math.cos(frequency * (now + fine)) - v -- the table's; it drags the block along
 		local a, from, began = ahead > 0 and limit or -limit, v, now
-		local stop = crossing(function(s) return from + a * (s - began) - fastest * math.cos(frequency * s) end, now, t, fine)
-		local s = stop - now
-		x, v, now = x + v * s + .5 * a * s * s, v + a * s, stop
-		sticks = now < t and math.abs(of_table * math.sin(frequency * now)) <= limit
+		pull, left = a, function(s) return from + a * (s - began) - fastest * math.cos(frequency * s) end
 	end
-	return x
+	local function stick()
+		pull, left = nil, function(s) return limit - math.abs(of_table * math.sin(frequency * s)) end
+		if left(now + 1e-6 * fine) < 0 then
+			v = fastest * math.cos(frequency * now)
+			slide()
+		end
+	end
+	local function start(phase)
+		phase()
+		begin, sample = left(now + .5 * fine), now + fine
+	end
+	-- End of the phase before a time, nil: there is none. Samples, then bisects.
+	local function ending(time)
+		while sample - fine < time do
+			local low, high = sample - fine, math.min(sample, time)
+			if left(high) * begin <= 0 then
+				for _ = 1, 60 do
+					local middle = .5 * (low + high)
+					if left(middle) * begin > 0 then low = middle else high = middle end
+				end
+				return high
+			end
+			if sample > time then return nil end
+			sample = sample + fine
+		end
+	end
+	local function place(time)
+		local s = time - now
+		return pull and x + v * s + .5 * pull * s * s or x + amplitude * (math.sin(frequency * time) - math.sin(frequency * now))
+	end
+	start(slide)
+	return function(time)
+		local stop = ending(time)
+		while stop do
+			x, v = place(stop), pull and v + pull * (stop - now) or fastest * math.cos(frequency * stop)
+			local slid = pull
+			now = stop
+			start(slid and math.abs(of_table * math.sin(frequency * now)) <= limit and stick or slide)
+			stop = ending(time)
+		end
+		return place(time)
+	end
 end
 
-local off, way = {}, {}
-for i = 1, #grip do off[i], way[i] = 0, 0 end
+local off, way, exact = {}, {}, {}
+for i, mu in ipairs(grip) do off[i], way[i], exact[i] = 0, 0, follow(mu) end
 watch(function(run)
 	for i, name in ipairs(block) do
-		local exact = place(grip[i], run.time)
-		off[i] = math.max(off[i], (run[name].moved - vector(exact, 0, 0)):norm())
-		way[i] = math.max(way[i], math.abs(exact))
+		local at = exact[i](run.time)
+		off[i] = math.max(off[i], (run[name].moved - vector(at, 0, 0)):norm())
+		way[i] = math.max(way[i], math.abs(at))
 	end
 end)
 expect { "error of the displacement", below = .01, source = "each phase in closed form (Coulomb 1785)", function()
