@@ -278,7 +278,7 @@ bool ob_report_missed_tolerance(const ob_report *r)
 
 bool ob_report_motion_is_bounded(const ob_report *r)
 {
-	return !(r->tolerance > 0) || r->unbounded_steps == 0;
+	return !(r->tolerance > 0) || (r->unbounded_steps == 0 && !(r->verified_share < 1));
 }
 
 // The cause of the largest error.

@@ -102,7 +102,7 @@ void ob_report_faults(ob_report *r, const uint64_t faults[OB_FAULT_KINDS], uint3
 bool ob_report_missed_expectation(const ob_report *r);
 // True if a tolerance is set or the default, and an island's error stayed above it.
 bool ob_report_missed_tolerance(const ob_report *r);
-// True if the errors of motion of every second are within the tolerance, by estimate, or no tolerance is set.
+// True if the errors of motion of every second are within the tolerance, by estimate, and by verifying, or no tolerance is set.
 bool ob_report_motion_is_bounded(const ob_report *r);
 
 typedef struct ob_explained {

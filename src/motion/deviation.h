@@ -73,6 +73,12 @@ static inline ob_deviation ob_deviation_after_hit(ob_deviation most, double chan
 	return (ob_deviation){ most.place, most.rate + change * fmin(most.place / radius, 2) };
 }
 
+// Largest speed (m/s) of a point of a body of this radius: in a second no motion can be off by more than it moves.
+static inline double ob_surface_speed(ob_vec3 v, ob_vec3 w, double radius)
+{
+	return ob_norm(v) + radius * ob_norm(w);
+}
+
 // Returns the larger of two deviations, by each part.
 static inline ob_deviation ob_deviation_larger(ob_deviation a, ob_deviation b)
 {

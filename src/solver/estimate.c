@@ -107,13 +107,14 @@ static uint32_t weight_of(const ob_solver *s)
 	return (phase % SOON == 0 && ob_refinement_is_doubted(s)) || (changed && lands(s));
 }
 
-void ob_estimate_count(ob_solver *s, uint64_t step, ob_deviation before, ob_deviation now)
+void ob_estimate_count(ob_solver *s, uint64_t step, ob_deviant before, ob_deviant now)
 {
 	const double h = s->settings->step_length, tolerance = s->settings->tolerance,
-		     was = ob_deviation_of_second(before, step, h), is = ob_deviation_of_second(now, step, h);
+		     was = ob_deviation_of_second(before.deviation, step, h),
+		     is = ob_deviation_of_second(now.deviation, step, h);
 	if (was <= tolerance && is > tolerance)
 		s->counters.unbounded += (uint64_t)llround(1 / h);
-	s->counters.deviation = ob_max(s->counters.deviation, is);
+	s->counters.deviation = ob_max(s->counters.deviation, ob_min(is, ob_max(before.speed, now.speed)));
 }
 
 // Returns the row's deviation at the end of the running step, if it adds none.
@@ -241,7 +242,11 @@ static void update_deviation(ob_solver *s, const rulers *r, uint32_t row, uint32
 {
 	ob_body *body = &s->island.body[row];
 	body->deviation = with(body->deviation, error_by(s, r, row), weight);
-	ob_estimate_count(s, s->in->step + 1, deviation_before(s, row), body->deviation);
+	const ob_motion *last = s->in->object[row - 1].motion;
+	const double *v = s->island.v[row];
+	const ob_deviant before = { deviation_before(s, row), ob_surface_speed(last->v, last->w, body->radius) },
+			 now = { body->deviation, ob_surface_speed(ob_row_linear(v), ob_row_angular(v), body->radius) };
+	ob_estimate_count(s, s->in->step + 1, before, now);
 }
 
 // Returns a row's error (m) of a second; among contacts in the units of the run.

@@ -25,7 +25,14 @@ void ob_estimate_finish(ob_solver *s);
 // Estimates the error of the island's solution if that is due, and solves it finer if that pays. Updates its bodies' deviations
 // and refinement, and counts what is within the tolerance.
 void ob_estimate_update(ob_solver *s);
-// Counts a body's second as unbounded when its deviation at the end of a step takes it beyond the tolerance first.
-void ob_estimate_count(ob_solver *s, uint64_t step, ob_deviation before, ob_deviation now);
+// Deviation of a body, and the largest speed (m/s) of a point of its surface.
+typedef struct ob_deviant {
+	ob_deviation deviation;
+	double speed;
+} ob_deviant;
+
+// Counts a body's second as unbounded when its deviation at the end of a step takes it beyond the tolerance first. The largest
+// deviation is no more than the body moves in a second.
+void ob_estimate_count(ob_solver *s, uint64_t step, ob_deviant before, ob_deviant now);
 
 #endif

@@ -428,27 +428,28 @@ ob_deviation ob_course_deviation(const ob_sim *s, const ob_course *c)
 	return ob_deviation_at(&c->m, ob_step_count(s->u) + 1, s->settings->step_length);
 }
 
-// Its deviation after a hit, where either of both bodies is off by "most" at most.
-static ob_deviation deviation_after(const ob_sim *s, const ob_course *c, const ob_state *at, ob_deviation most)
+// Counts and publishes its deviation after a hit, where either of both bodies is off by "most" at most.
+static void deviate(ob_sim *s, ob_course *c, const ob_state *at, ob_deviation most)
 {
 	const ob_passport *body = ob_passport_of(s->u, c->id);
+	const ob_vec3 v = ob_velocity_at(&c->m, c->since);
 	const double radius = ob_shape_radius(body->shape, body->size),
-		     change = ob_norm(ob_sub(at->v, ob_velocity_at(&c->m, c->since))) +
-			      radius * ob_norm(ob_sub(at->w, c->m.w));
-	return ob_deviation_after_hit(most, change, radius);
+		     change = ob_norm(ob_sub(at->v, v)) + radius * ob_norm(ob_sub(at->w, c->m.w));
+	const ob_deviant before = { ob_course_deviation(s, c), ob_surface_speed(v, c->m.w, radius) },
+			 after = { ob_deviation_after_hit(most, change, radius),
+				   ob_surface_speed(at->v, at->w, radius) };
+	const uint64_t step = ob_step_count(s->u) + 1;
+	ob_deviation_put(&c->m, after.deviation);
+	c->m.step = (uint32_t)step;
+	ob_estimate_count(&s->solver, step, before, after);
 }
 
 bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at, ob_deviation most)
 {
 	if (c->impacts++ == IMPACTS_PER_STEP)
 		return false;
-	if (most.place > 0) {
-		const uint64_t step = ob_step_count(s->u) + 1;
-		const ob_deviation before = ob_course_deviation(s, c), after = deviation_after(s, c, at, most);
-		ob_deviation_put(&c->m, after);
-		c->m.step = (uint32_t)step;
-		ob_estimate_count(&s->solver, step, before, after);
-	}
+	if (most.place > 0)
+		deviate(s, c, at, most);
 	c->m.t0 = c->since;
 	c->m.p = at->pose.p, c->m.q = at->pose.q, c->m.v = at->v, c->m.w = at->w;
 	c->m.valid_until = c->since;

@@ -21,12 +21,16 @@ static uint32_t bin_of(double error)
 	return bin < 0 ? 0 : bin < OB_ERROR_BINS ? (uint32_t)bin : OB_ERROR_BINS - 1;
 }
 
-static void count(ob_sim *s, uint32_t row)
+static void count(ob_sim *s, const ob_motion *before, uint32_t row)
 {
+	const ob_island_work *w = &s->solver.island;
 	ob_counters *c = &s->solver.counters;
+	const double *v = w->v[row], radius = w->body[row].radius;
+	const double moves = ob_max(ob_surface_speed(before->v, before->w, radius),
+				    ob_surface_speed(ob_row_linear(v), ob_row_angular(v), radius));
 	double speed;
-	const double error = ob_probe_distance(s->verifier, &s->solver.island, row, &speed),
-		     second = ob_error_of_time(error, speed, s->settings->step_length, 1);
+	const double error = ob_probe_distance(s->verifier, w, row, &speed),
+		     second = ob_max(error, ob_min(ob_error_of_time(error, speed, s->settings->step_length, 1), moves));
 	c->verified_step[bin_of(error)]++;
 	c->verified_second[bin_of(second)]++;
 	c->verified_most[0] = ob_max(c->verified_most[0], error);
@@ -43,5 +47,5 @@ void ob_verify(ob_sim *s, const ob_island_input *in)
 		return;
 	}
 	for (uint32_t row = 1; row <= in->members; row++)
-		count(s, row);
+		count(s, in->object[row - 1].motion, row);
 }
