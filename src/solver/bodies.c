@@ -82,6 +82,7 @@ static void reserve_rows(ob_island_work *w, uint32_t rows)
 	if (rows > w->rows_max) {
 		w->rows_max = rows + rows / 2 + 16;
 		w->body = ob_reallocate(w->body, w->rows_max * sizeof *w->body);
+		w->by_height = ob_reallocate(w->by_height, w->rows_max * sizeof *w->by_height);
 		ob_body_row **all[] = { &w->v, &w->dv, &w->u, &w->d, &w->delta, &w->drift };
 		for (int i = 0; i < 6; i++)
 			free(*all[i]), *all[i] = ob_allocate_aligned(64, w->rows_max * sizeof **all[i]);

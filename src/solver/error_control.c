@@ -1,5 +1,7 @@
 #include "solver/error_control.h"
 
+#include <stdlib.h>
+
 #include "shape/shape.h"
 #include "solver/contacts.h"
 #include "solver/joints.h"
@@ -113,6 +115,48 @@ static double fading_of(const ob_island_work *w, const ob_run_settings *run)
 	return ob_min(1, run->step_length / (creep_time * ob_coarse_time(w)));
 }
 
+static int by_height(const void *a, const void *b)
+{
+	const ob_height *x = a, *y = b;
+	return x->height != y->height ? (x->height < y->height ? -1 : 1) : (x->row > y->row) - (x->row < y->row);
+}
+
+// True if the contact holds the body up.
+static bool carries(const ob_island_work *w, const ob_contact *c, uint32_t row)
+{
+	static const double upright = .25; // least cosine of normal and vertical
+	const ob_batch *b = &w->batch[c->lane / OB_LANES];
+	const uint32_t l = c->lane % OB_LANES;
+	const ob_vec3 a = w->body[row].acceleration;
+	const double up = -(b->n[0][l] * a.x + b->n[1][l] * a.y + b->n[2][l] * a.z);
+	return (row == c->a ? up : -up) > upright * ob_norm(a);
+}
+
+// Sums what the step adds to depths along what carries what, from the lowest body to the highest.
+static void note_sinking(ob_solver *s)
+{
+	static const double not_summed = -1;
+	ob_island_work *w = &s->island;
+	for (uint32_t row = 1; row <= w->bodies; row++) {
+		const ob_vec3 a = w->body[row].acceleration, p = w->body[row].p;
+		w->by_height[row - 1] = (ob_height){ ob_norm2(a) > 0 ? -ob_dot(a, p) / ob_norm(a) : 0, row };
+		w->body[row].sinking = not_summed;
+	}
+	qsort(w->by_height, w->bodies, sizeof *w->by_height, by_height);
+	for (uint32_t i = 0; i < w->bodies; i++) {
+		const uint32_t row = w->by_height[i].row;
+		ob_body *body = &w->body[row];
+		body->sinking = 0;
+		for (uint32_t k = 0; k < body->adjacent; k++) {
+			const ob_contact *c = &w->contact[w->adjacency[body->first_adjacent + k]];
+			const ob_body *below = &w->body[c->a == row ? c->b : c->a];
+			const double sunk = below->inv_mass > 0 ? below->sinking : 0;
+			if (c->lane != OB_NO_LANE && sunk >= 0 && carries(w, c, row))
+				body->sinking = ob_max(body->sinking, c->depth_growth + sunk);
+		}
+	}
+}
+
 // Accumulates slip. It fades over the creep time.
 static void note_creep(ob_solver *s)
 {
@@ -207,6 +251,7 @@ bool ob_error_control_accept(ob_solver *s)
 		return false;
 	}
 	set_next_substeps(s);
+	note_sinking(s);
 	return true;
 }
 

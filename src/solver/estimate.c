@@ -242,6 +242,7 @@ static void update_deviation(ob_solver *s, const rulers *r, uint32_t row, uint32
 {
 	ob_body *body = &s->island.body[row];
 	body->deviation = with(body->deviation, error_by(s, r, row), weight);
+	body->deviation.place += body->sinking;
 	const ob_motion *last = s->in->object[row - 1].motion;
 	const double *v = s->island.v[row];
 	const ob_deviant before = { deviation_before(s, row), ob_surface_speed(last->v, last->w, body->radius) },

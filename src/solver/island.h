@@ -62,11 +62,18 @@ typedef struct ob_body {
 	bool among_others; // it touches moving bodies, or a joint holds it
 	uint32_t joints; // that hold it
 	bool turns; // it has a contact whose geometry turns
+	double sinking; // m (solver/error_control.c): what the step adds to the depths of what carries it
 	bool halved; // it is at the midpoint of the partial substep (solver/midpoint.h)
 	ob_body_row first_half; // m, rad: displacement to the midpoint
 	ob_vec3 start_p, start_w; // state before that
 	ob_quat start_q;
 } ob_body;
+
+// A body and its height (m) against its external acceleration.
+typedef struct ob_height {
+	double height;
+	uint32_t row;
+} ob_height;
 
 // A pair that touches, or may touch in this step.
 typedef struct ob_contact {
@@ -288,6 +295,7 @@ typedef struct ob_island_work {
 	ob_body_row *history; // velocities after the last iterations, for ghosts
 	uint32_t history_max;
 	ob_body *body; // [rows]
+	ob_height *by_height; // [bodies]
 	ob_body_row *v, *dv, *u, *d, *delta;
 	ob_body_row
 		*drift; // change of velocity in the partial substep as impacts use it: dv without the echo of an impact

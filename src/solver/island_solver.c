@@ -274,6 +274,7 @@ void ob_solver_finish(ob_solver *s)
 	ob_island_work *w = &s->island;
 	ob_ode_bodies_finish(&s->ode_bodies);
 	free(w->body);
+	free(w->by_height);
 	free(w->v);
 	free(w->dv);
 	free(w->u);

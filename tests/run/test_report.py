@@ -74,6 +74,19 @@ class Report(program.Case):
 		self.assertIn(" kept, ", done.stdout)
 		self.refuse("run", program.scene("stack"), "--set", "substeps=4", "--strict", saying="no tolerance")
 
+	def test_one_verdict(self):
+		"""A strict run fails where depth, slip, an estimate of motion, or a step that was solved again tells it to, and only there."""
+		told = set()
+		for name, *words in ["stack"], ["falling_boxes", "-D", "n=8"], ["cradle"], ["machines"], ["shapes"]:
+			for verify in "off", "on":
+				done = program.call("run", program.scene(name), *words, "--duration", "1.5", "--strict", "--set", "verify=" + verify, "--json", self.path("r"))
+				r = json.load(open(self.path("r")))
+				wrong = r["islands_over"] > 0 or r["unbounded_steps"] > 0 or (r["verified_share"] or 1) < 1
+				self.assertEqual(done.returncode, int(wrong), (name, verify, done.stderr))
+				self.assertEqual("obsim: warning: " in done.stderr, wrong, done.stderr)
+				told.add(wrong)
+		self.assertEqual(told, {False, True})
+
 	def test_script_errors(self):
 		"""A script that fails is named with its line and its step, also when its object has gone, and fails a strict run."""
 		with open(self.path("door.lua"), "w") as f:

@@ -280,6 +280,36 @@ static void test_no_trace(void)
 	CHECK(hash(OB_INTEGRATOR_ODE, true) == hash(OB_INTEGRATOR_ODE, false));
 }
 
+// Cribs of boards, two on each level, with gaps between levels, come down: each board sinks by the gaps below it, to the
+// tolerance, or the report says that its motion may be off by more. Each contact alone is far within it.
+static void test_crib(int levels, double thickness, double gap, double mu)
+{
+	const double tolerance = 1e-3;
+	little_scene *s = little_scene_new();
+	s->run.tolerance = tolerance;
+	ob_world_ground(&s->world);
+	for (int i = 0; i < levels; i++)
+		for (int side = -1; side <= 1; side += 2) {
+			const ob_vec3 along = ob_v3(.06, .012, .5 * thickness),
+				      across = ob_v3(.012, .06, .5 * thickness);
+			const double z = .5 * thickness + i * (thickness + gap), aside = .048 * side;
+			ob_world_box(&s->world, 600 * .12 * .024 * thickness, i % 2 ? across : along,
+				     i % 2 ? ob_v3(aside, 0, z) : ob_v3(0, aside, z));
+		}
+	ob_world_material(&s->world, mu, 0);
+	const double due = (levels - .5) * thickness;
+	const outcome o = watch(s, 3);
+	CHECK(o.count.unbounded > 0 || fabs(o.top.pose.p.z - due) <= tolerance);
+}
+
+static void test_cribs(void)
+{
+	for (int levels = 10; levels <= 40; levels += 15)
+		for (double thickness = .0078; thickness < .05; thickness *= 2.5)
+			for (double gap = 1e-4; gap < 1e-3; gap *= 5)
+				test_crib(levels, thickness, gap, .5);
+}
+
 int main(void)
 {
 	for (double tolerance = 5e-3; tolerance > .04e-3; tolerance /= 10) {
@@ -290,6 +320,7 @@ int main(void)
 	test_heap();
 	test_random_heaps();
 	test_columns();
+	test_cribs();
 	test_rebounds();
 	test_rest_is_cheap();
 	test_rolling_is_cheap(OB_SHAPE_CYLINDER);
