@@ -82,7 +82,7 @@ static bool map_new(ob_universe *u, ob_error *e)
 	if (base == MAP_FAILED)
 		return ob_fail(e, "cannot map %" PRIu64 " bytes of shared memory: %s", bytes, strerror(errno));
 	ob_layout_bind(u, base);
-	u->taken = calloc(bytes / OB_LAYOUT_CHUNK / 64 + 1, sizeof *u->taken);
+	u->taken = calloc(bytes / OB_LAYOUT_PAGE / 64 + 1, sizeof *u->taken);
 	u->used = ob_pages_create_used();
 	if (!u->taken || !u->used)
 		return ob_fail(e, "out of memory");

@@ -15,7 +15,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 50, OB_LAYOUT_PAGE = 4096, OB_LAYOUT_CHUNK = 1 << 14 }; // chunk: unit of pages.h
+enum { OB_LAYOUT_VERSION = 50, OB_LAYOUT_PAGE = 4096 };
 
 // Areas in their order: the name, the pointer of ob_universe to the first element, and the number of elements by the sizes s
 // (layout.c).
@@ -198,7 +198,7 @@ struct ob_universe {
 	uint32_t rank, ranks; // its owner's (table.h)
 	bool shares_contacts; // likewise
 	bool lost; // a reader's: its file was found truncated (reader.c)
-	uint64_t *taken; // bit per chunk whose pages this process has reserved (pages.h); NULL: a reader
+	uint64_t *taken; // bit per page that this process has reserved (pages.h); NULL: a reader
 	struct ob_used_pages *used; // of the step's areas (pages.h); NULL: a reader
 	ob_header header; // private copy, validated: later changes to the shared one have no effect
 	ob_control *control;

@@ -15,28 +15,27 @@
 
 // ---- reservation
 
-// True if an injected fault makes /dev/shm full at this chunk.
-static bool fails(ob_universe *u, uint64_t chunk)
+// True if an injected fault makes /dev/shm full at this page.
+static bool fails(ob_universe *u, uint64_t page)
 {
 	uint64_t random;
 	const ob_fault_plan *plan = &u->header.run.fault;
-	if (ob_fault_draw(plan, 1u << OB_FAULT_NOPAGES, UINT32_MAX, chunk, &random) == OB_FAULT_KINDS)
+	if (ob_fault_draw(plan, 1u << OB_FAULT_NOPAGES, UINT32_MAX, page, &random) == OB_FAULT_KINDS)
 		return false;
 	ob_fault_note(u, 0, OB_FAULT_NOPAGES);
 	return true;
 }
 
-static bool take_chunk(ob_universe *u, uint64_t chunk)
+static bool take_page(ob_universe *u, uint64_t page)
 {
-	uint64_t bit = UINT64_C(1) << chunk % 64, at = chunk * OB_LAYOUT_CHUNK, left = u->header.bytes - at;
-	uint64_t *word = &u->taken[chunk / 64];
+	uint64_t bit = UINT64_C(1) << page % 64, at = page * OB_LAYOUT_PAGE;
+	uint64_t *word = &u->taken[page / 64];
 	if (__atomic_load_n(word, __ATOMIC_RELAXED) & bit)
 		return true;
-	if (fails(u, chunk))
+	if (fails(u, page))
 		return false;
 	// EINVAL: kernels before 5.14 lack it, and pages come when they are touched
-	if (madvise(u->base + at, left < OB_LAYOUT_CHUNK ? left : OB_LAYOUT_CHUNK, MADV_POPULATE_WRITE) != 0 &&
-	    errno != EINVAL)
+	if (madvise(u->base + at, OB_LAYOUT_PAGE, MADV_POPULATE_WRITE) != 0 && errno != EINVAL)
 		return false;
 	__atomic_fetch_or(word, bit, __ATOMIC_RELAXED);
 	return true;
@@ -44,8 +43,8 @@ static bool take_chunk(ob_universe *u, uint64_t chunk)
 
 static bool take_bytes(ob_universe *u, uint64_t begin, uint64_t end)
 {
-	for (uint64_t chunk = begin / OB_LAYOUT_CHUNK; begin < end && chunk <= (end - 1) / OB_LAYOUT_CHUNK; chunk++)
-		if (!take_chunk(u, chunk))
+	for (uint64_t page = begin / OB_LAYOUT_PAGE; begin < end && page <= (end - 1) / OB_LAYOUT_PAGE; page++)
+		if (!take_page(u, page))
 			return false;
 	return true;
 }

@@ -5,10 +5,10 @@
 // fail with an error:
 //
 //   at the start     header, gate, workers' cells; all that the scene's objects have
-//   later            areas that grow with the number of neighbours and contacts, in chunks, before they are written;
+//   later            areas that grow with the number of neighbours and contacts, before they are written;
 //                    data of further objects, when they are added
 //
-// Each process remembers its reserved chunks for itself: reserving present pages again does no harm.
+// Each process remembers its reserved pages for itself: reserving present pages again does no harm.
 //
 // Truncating the file takes away pages that were there. Programs that call ob_pages_guard, host and readers alike, then
 // end with one line that reports it, instead of a signal.
