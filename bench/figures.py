@@ -333,7 +333,7 @@ def rendered(text, made):
 
 def draw(description):
     """SVG of a diagram, with its description."""
-    text, script = json.dumps(description, ensure_ascii=False).replace('<', '\\u003c'), (ROOT / 'src/experiment/chart.js').read_text(encoding='utf-8')
+    text, script = json.dumps(description, ensure_ascii=False).replace('<', '\\u003c'), (ROOT / 'src/experiments/experiment/chart.js').read_text(encoding='utf-8')
     with tempfile.TemporaryDirectory() as folder:
         page = pathlib.Path(folder) / 'page.html'
         page.write_text(f'<!DOCTYPE html><meta charset="utf-8"><figure><script class="chart" type="application/json">{text}</script></figure>'

@@ -1,4 +1,4 @@
-// Shared by all passes of one frame. Mirrors ob_frame_block in src/render/frame.h. Positions are in metres, world axes,
+// Shared by all passes of one frame. Mirrors ob_frame_block in src/run/render/frame.h. Positions are in metres, world axes,
 // relative to the eye: floats then resolve millimetres anywhere in the world.
 precision highp float;
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Finds circles of calls: files of src/ that reach each other by the functions and data that they use. borders.py keeps the
-includes free of them. Prints each circle; exit 1 if there is any.
+"""Finds circles of calls: files, modules or rooms of src/ that reach each other by the functions and data that they use.
+borders.py keeps the includes free of them. Prints each circle; exit 1 if there is any.
 
 circles.py BUILD    reads the object files of a build with the compiler's nm
 First it looks for circles in graphs of its own, and fails if it does not find them.
@@ -35,10 +35,13 @@ def symbols(nm, objects):
 
 
 def read_uses(build):
-    """{file: files that it uses} by the objects of the static libraries."""
-    objects = {str(path): f'{path.parts[-3]}/{path.name[:-2]}' for path in sorted(build.glob('src/*/lib*.a.p/*.o'))}
+    """{file: files that it uses} by the objects of the static libraries. Functions of the C library that a file takes over
+    for other libraries (scene/sandbox.c) lead nowhere."""
+    objects = {str(path): '/'.join((*path.parts[-4:-2], path.name[:-2])) for path in sorted(build.glob('src/*/*/lib*.a.p/*.o'))}
     defined, wanted = {}, []
     for place, kind, name in symbols(shutil.which('gcc-nm') or 'nm', objects):
+        if not name.startswith('ob_'):
+            continue
         if kind == 'U':
             wanted.append((objects[place], name))
         else:
@@ -50,19 +53,34 @@ def read_uses(build):
     return uses
 
 
+def of_folders(uses, depth):
+    """The same for folders: 1 rooms, 2 modules."""
+    joined = {}
+    for file, used in uses.items():
+        folder = '/'.join(file.split('/')[:depth])
+        joined.setdefault(folder, set()).update('/'.join(to.split('/')[:depth]) for to in used)
+        joined[folder].discard(folder)
+    return joined
+
+
 def main():
     proof = {'a': {'b'}, 'b': {'c', 'd'}, 'c': {'a'}, 'd': set(), 'e': {'a', 'f'}, 'f': {'e'}}
     if circles(proof) != [['a', 'b', 'c'], ['e', 'f']] or circles({'a': {'b'}, 'b': set()}):
         sys.exit('circles.py itself misses a circle, or sees one where there is none')
+    nested = {'r/m/a': {'r/n/b'}, 'r/n/b': {'s/o/c'}, 's/o/c': {'r/m/d'}, 'r/m/d': set()}
+    if [circles(of_folders(nested, depth)) for depth in (1, 2, 3)] != [[['r', 's']], [['r/m', 'r/n', 's/o']], []]:
+        sys.exit('circles.py itself misses a circle of folders, or sees one where there is none')
     uses = read_uses(pathlib.Path(sys.argv[1]))
     if sum(map(len, uses.values())) < 500:
         sys.exit(f'circles.py has found {len(uses)} files, which use nothing: are these object files?')
-    found = circles(uses)
-    for circle in found:
-        print('a circle of calls:')
-        for file in circle:
-            print(f'  {file} uses', *sorted(uses[file] & set(circle)))
-    print(f'{len(uses)} files, {len(found)} circles')
+    found = 0
+    for level in uses, of_folders(uses, 2), of_folders(uses, 1):
+        for circle in circles(level):
+            found += 1
+            print('a circle of calls:')
+            for one in circle:
+                print(f'  {one} uses', *sorted(level[one] & set(circle)))
+    print(f'{len(uses)} files, {found} circles')
     sys.exit(1 if found else 0)
 
 

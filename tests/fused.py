@@ -18,7 +18,7 @@ def main():
     if platform.machine() != 'x86_64':
         return 77 # skipped
     with open(os.path.join(sys.argv[1], 'compile_commands.json'), encoding='utf-8') as f:
-        command, = (shlex.split(c['command']) for c in json.load(f) if c['file'].endswith('src/motion/spin.c'))
+        command, = (shlex.split(c['command']) for c in json.load(f) if c['file'].endswith('src/universe/motion/spin.c'))
     for processor in 'x86-64-v3', 'x86-64-v4':
         done = subprocess.run([*command[:command.index('-o')], '-fno-lto', f'-march={processor}', '-S', '-o', '-', command[-1]], cwd=sys.argv[1],
                               stdout=subprocess.PIPE, text=True, check=True)

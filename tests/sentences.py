@@ -24,8 +24,8 @@ CEILINGS = {}
 LONG = 25
 LONG_CEILINGS = {}
 
-# Folders whose subfolders are counted apart.
-SPLIT = ('src', 'tests', 'docs')
+# Folders whose subfolders are counted apart, and the depth of these.
+SPLIT = {'src': 3, 'tests': 2, 'docs': 2}
 ROOTS = ('src', 'include', 'tests', 'bench', 'examples', 'shaders', 'tools', 'scenes', 'docs')
 
 STRING = r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\''
@@ -136,7 +136,8 @@ def blocks_of(path):
 
 def folder_of(name):
     parts = name.split('/')
-    return 'README.md' if len(parts) == 1 else '/'.join(parts[:2]) if parts[0] in SPLIT and len(parts) > 2 else parts[0]
+    depth = SPLIT.get(parts[0], 1)
+    return 'README.md' if len(parts) == 1 else '/'.join(parts[:depth]) if len(parts) > depth else parts[0]
 
 
 class Folder:

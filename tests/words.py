@@ -50,7 +50,7 @@ def labels(page):
 
 
 def differences(root, document):
-    page = root / 'src/serve/page'
+    page = root / 'src/front/serve/page'
     used = labels(page)
     sources = ' '.join(file.read_text(encoding='utf-8') for file in page.iterdir() if file.suffix in ('.js', '.html')).lower()
     explained, found = re.findall(r'^\| (?!label \|)([^|]+) \| [^|]+ \|$', document, re.M), []

@@ -89,7 +89,7 @@ def _candidates():
 
 
 _pointer, _u32, _u64, _size = ctypes.c_void_p, ctypes.c_uint32, ctypes.c_uint64, ctypes.c_size_t
-# Requests with a number in src/control/packet.h: changes of many objects, whose values are the fields in the order of the table
+# Requests with a number in src/run/control/packet.h: changes of many objects, whose values are the fields in the order of the table
 # of requests (docs/control.md)
 _changes = ('set_forces', 'kick', 'set_states', 'set_colours', 'remove', 'set_torques', 'push', 'drag', 'release', 'set_frictions', 'kill',
             'set_motors', 'unjoin', 'set_surface_velocities')

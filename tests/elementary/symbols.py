@@ -39,14 +39,14 @@ def main():
 	own = symbols(nm, program, "-D", "--defined-only")
 	wrong = [] if inexact({"sin", "powf", "sqrtf", "floorl"}, mathematics) == ["powf", "sin"] else ["symbols.py is blind"]
 	for module in modules:
-		wrong += [f"{module} calls {name}: take ob_{name} of src/elementary/" for name in
+		wrong += [f"{module} calls {name}: take ob_{name} of src/universe/elementary/" for name in
 			inexact(symbols(nm, module, "--undefined-only"), mathematics)]
 	for library in LIBRARIES:
 		path = next((p for name, p in paths.items() if name.startswith(library)), None)
 		if not path:
 			wrong.append(f"{program} is not linked with {library}")
 			continue
-		wrong += [f"{path} calls {name}: define it in src/elementary/standard.c" for name in
+		wrong += [f"{path} calls {name}: define it in src/universe/elementary/standard.c" for name in
 			inexact(symbols(nm, path, "-D", "--undefined-only"), mathematics - own)]
 	print(*wrong, f"{len(modules)} modules, {len(LIBRARIES)} libraries: {len(wrong)} wrong", sep="\n")
 	sys.exit(1 if wrong or not modules else 0)

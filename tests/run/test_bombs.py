@@ -1,5 +1,5 @@
 """Bombs: small files that make much of their reader, a few of each kind. Each is refused in one line, or is read, within the budget
-of files (src/base/budget.h): 1 GB of memory with the program, 10 s of CPU."""
+of files (src/universe/base/budget.h): 1 GB of memory with the program, 10 s of CPU."""
 
 import os
 import shutil

@@ -9,7 +9,7 @@
 
 enum { IDS = 64 };
 
-// A viewer's copy, as src/serve/page/universe.js keeps it
+// A viewer's copy, as src/front/serve/page/universe.js keeps it
 typedef struct told {
 	bool there, moves;
 	uint32_t generation;
