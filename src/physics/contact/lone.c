@@ -466,6 +466,7 @@ static inline void lone_load_pair(const ob_batch *b, int l, const lone_body *o, 
 	p->patch.area = b->areas >> l & 1 ? &b->area[l] : NULL;
 	p->patch.mu = lanes_get(&b->mu, l), p->patch.radius = lanes_get(&b->radius, l);
 	p->model.known = 0;
+	p->model.pressure[0] = p->model.pressure[1] = 0;
 	p->model.stretch = lanes_get(&b->model.stretch, l);
 	p->search = (patch_search){ .model = &p->model };
 	lone_couple(b, l, o, p);
