@@ -25,7 +25,7 @@ static const int grace_ms = 2000; // from SIGTERM to SIGKILL
 static const int stops[] = { SIGINT, SIGTERM, SIGHUP };
 enum { STOPS = sizeof stops / sizeof *stops, PROGRAM_TEXT = 1 << 20 };
 
-// What a child sends through the pipe, which holds as much.
+// Message of a child; the pipe holds all of it.
 typedef struct answer {
 	bool fine;
 	ob_error why;

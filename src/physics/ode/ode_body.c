@@ -181,16 +181,11 @@ ob_ode_body *ob_ode_body_create(const ob_passport *p, ob_vec3 gravity, ob_ode_st
 	return b;
 }
 
-static bool same(ob_vec3 a, ob_vec3 b)
-{
-	return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 bool ob_ode_body_serves(const ob_ode_body *b, const ob_passport *p)
 {
 	const ob_passport *own = &b->made_of;
 	return own->shape == p->shape && !((own->flags ^ p->flags) & OB_OBJECT_STATIC) && own->mass == p->mass &&
-	       same(own->size, p->size) && same(own->inertia, p->inertia);
+	       ob_equal(own->size, p->size) && ob_equal(own->inertia, p->inertia);
 }
 
 void ob_ode_body_destroy(ob_ode_body *b)

@@ -251,7 +251,8 @@ bool ob_error_control_accept(ob_solver *s)
 		return false;
 	}
 	set_next_substeps(s);
-	note_sinking(s);
+	if (s->estimate.probe) // a probe has no use for it
+		note_sinking(s);
 	return true;
 }
 

@@ -10,7 +10,7 @@
 //   depth   penetration of two bodies at the end of any substep, as far as this step has caused it
 //   creep   slip, within about a second, of a contact that friction should hold
 //   bounce  height of a rebound that the substep was too long to resolve
-// What carries a body may sink, too: the sum of what a step adds to the depths below it is part of the body's deviation
+// A body also sinks with all that carries it. The sum of what a step adds to the depths below it is part of its deviation
 // (solver/estimate.h).
 // It is a function of published state alone: the same for any worker, and after sleeping.
 #ifndef OB_SOLVER_ERROR_CONTROL_H
