@@ -59,9 +59,8 @@ ROOMS = {
     'experiments': {
         'experiment': 'ranks base',
         'compare': 'experiment settings base',
-        'world': 'terrain hull shape motion elementary',
-        'engine': 'host world step ode table settings shape base',
-        'lab': 'scene engine world experiment settings measure shape base',
+        'engine': 'host step ode table settings terrain hull shape motion base',
+        'lab': 'scene engine experiment settings measure shape base',
         'paper': 'host render experiment ranks base',
     },
     'front': {

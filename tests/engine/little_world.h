@@ -3,6 +3,7 @@
 #define OB_TESTS_PEER_LITTLE_WORLD_H
 
 #include "engine/engine.h"
+#include "world/builders.h"
 
 enum { LITTLE_MOST = 256 }; // objects
 

@@ -2,6 +2,7 @@
 #include "lab/conservation.h"
 
 #include "check.h"
+#include "world/builders.h"
 
 typedef struct scene {
 	ob_world world;

@@ -61,7 +61,7 @@ static void check_joints(void)
 	ob_scene *s = load_good("box { name = 'door', size = { 1, .1, 2 }, at = { .5, 0, 1 },\n"
 				"rotation = { axis = { 0, 0, 1 }, degrees = 90 } }\n"
 				"sphere { name = 'bob', radius = .1, at = { 3, 0, 1 } }\n"
-				"hinge { 'door', 'bob', at = { 0, 2, 1 }, axis = { 0, 0, 5 }, collide = true }\n"
+				"hinge { 'door', 'bob', at = { 0, 2, 1 }, axis = vector(0, 0, 5), collide = true }\n"
 				"universal { 'bob', at = { 3, 0, 1 }, axis = { 0, 1, 0 }, across = { 0, .1, 1 } }\n"
 				"distance { 'bob', to = { 3, 4, 1 } } fixed { 'door' }");
 	CHECK(s);
@@ -340,10 +340,10 @@ static void check_states(void)
 {
 	ob_scene *s = load_good(
 		"local function b(f) f.size = { 1, 1, 1 } box(f) end\n"
-		"b { rotation = { axis = { 0, 0, 2 }, degrees = 90 }, at = { 1, 2, 3 }, velocity = { 4, 5, 6 },\n"
+		"b { rotation = { axis = vector(0, 0, 2), degrees = 90 }, at = { 1, 2, 3 }, velocity = { 4, 5, 6 },\n"
 		"    spin = { 7, 8, 9 }, force = { 10, 11, 12 }, born = 1, dies = 2 }\n"
 		"b { q = { 3, 0, 0, 3 } }\n"
-		"plane { normal = { 0, 3, 4 } }\n"
+		"plane { normal = vector(0, 3, 4) }\n"
 		"plane { normal = { 0, 0, -1 } }\n"
 		"b { q = { 1e-300, 0, 0, 1e-300 } }");
 	CHECK(s && s->objects == 5);

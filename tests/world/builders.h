@@ -1,8 +1,35 @@
-// Worlds that tests and benchmarks share: further bodies, and whole scenes, as in world/world.h.
+// Worlds that tests and benchmarks build: bodies, and whole scenes.
+//
+// A body's id is its place in the order of building. Friction is .5 and restitution 0 until they are set; a body starts
+// at rest and unturned. Running out of memory ends the program. The same seed gives the same bits on every machine.
 #ifndef OB_TESTS_WORLD_BUILDERS_H
 #define OB_TESTS_WORLD_BUILDERS_H
 
-#include "world/world.h"
+#include "engine/world.h"
+
+// Body to edit freely; both pointers hold until the next body is built.
+typedef struct ob_world_body {
+	ob_passport *passport;
+	ob_state *state;
+} ob_world_body;
+
+// Adds a body. size as in ob_shape; mass in kg, 0: static; p: centre. The inertia is that of a homogeneous body.
+ob_world_body ob_world_add(ob_world *w, ob_shape shape, ob_vec3 size, double mass, ob_vec3 p);
+// Half extents and radius in m.
+ob_world_body ob_world_box(ob_world *w, double mass, ob_vec3 half, ob_vec3 p);
+ob_world_body ob_world_sphere(ob_world *w, double mass, double radius, ob_vec3 p);
+// half: half the length of the side, along z.
+ob_world_body ob_world_cylinder(ob_world *w, double mass, double radius, double half, ob_vec3 p);
+ob_world_body ob_world_capsule(ob_world *w, double mass, double radius, double half, ob_vec3 p);
+// Joins two bodies, or one and the world (b: OB_JOINT_WORLD), as they are. frame: the joint's, at a place; its axes are
+// those of ob/joint.h. The joint may be edited until the next one is built; "axis" has no limits, and acts if its flag is set.
+ob_joint_passport *ob_world_join(ob_world *w, ob_joint_kind kind, uint32_t a, uint32_t b, ob_pose frame);
+// A ragdoll of ten bodies and nine joints, 1.8 m tall, with its feet's origin at p, turned by "lean" (rad): crosses at neck,
+// shoulders and hips, hinges at elbows and knees, all with limits and dry friction.
+void ob_world_ragdoll(ob_world *w, ob_vec3 p, double lean);
+ob_world_body ob_world_ground(ob_world *w); // plane z = 0
+// Sets friction and restitution of all bodies built so far.
+void ob_world_material(ob_world *w, double friction, double restitution);
 
 // Makes a body kinematic: it keeps its state's velocities, and contacts do not affect it.
 void ob_world_kinematic(ob_world_body b);

@@ -2,7 +2,7 @@
 #ifndef OB_ENGINE_DRIVE_H
 #define OB_ENGINE_DRIVE_H
 
-#include "world/world.h"
+#include "engine/world.h"
 
 typedef struct ob_drive {
 	uint32_t count;

@@ -8,7 +8,7 @@
 #define OB_ENGINE_ENGINE_H
 
 #include "settings/settings.h"
-#include "world/world.h"
+#include "engine/world.h"
 
 typedef struct ob_engine ob_engine;
 

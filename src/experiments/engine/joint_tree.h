@@ -2,7 +2,7 @@
 #ifndef OB_ENGINE_JOINT_TREE_H
 #define OB_ENGINE_JOINT_TREE_H
 
-#include "world/world.h"
+#include "engine/world.h"
 
 // joint: [objects], the joint that holds each object to its parent; OB_JOINT_WORLD: it is static, or free. Distances, and joints
 // that would close a loop, are left out, balls before all others. false: no memory.

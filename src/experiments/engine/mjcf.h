@@ -11,7 +11,7 @@
 #define OB_ENGINE_MJCF_H
 
 #include "settings/settings.h"
-#include "world/world.h"
+#include "engine/world.h"
 
 enum {
 	OB_MJCF_FILES = 100, // at most; bodies nest 48 deep in each

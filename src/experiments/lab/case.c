@@ -4,15 +4,11 @@
 #include <string.h>
 
 #include "base/number.h"
-#include "lab/cases/cases.h"
 #include "lab/list.h"
 #include "lab/scene.h"
 #include "lab_scenes.h" // generated: lab_NAME_lua[], of each file of scenes/lab
-#include "world/world.h"
 
-#define OB_CASE_POINTER(name) &ob_case_##name,
-static const ob_case *all[OB_LIST_CASES + 1] = { OB_CASES(OB_CASE_POINTER) NULL }; // the end is NULL
-#undef OB_CASE_POINTER
+static const ob_case *all[OB_LIST_CASES + 1]; // the end is NULL
 const ob_case *const *ob_cases = all;
 static uint32_t digest;
 
@@ -69,14 +65,4 @@ bool ob_cases_open(const char *const *file, size_t files, ob_error *e)
 uint32_t ob_cases_digest(void)
 {
 	return digest;
-}
-
-bool ob_case_build(const ob_case *c, uint32_t run, ob_world *w, ob_scene **scene, ob_error *e)
-{
-	*w = (ob_world){ .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
-	*scene = NULL;
-	if (c->text)
-		return (*scene = ob_lab_scene_load(c, run, w, e)) != NULL;
-	c->build(w, run);
-	return true;
 }

@@ -1,5 +1,4 @@
-// A hard case: worlds to run, observations after each frame, and the resulting figures, each with its target. Most are scenes
-// (lab/scene.h), in scenes/lab/ or of a user; others build their worlds.
+// A hard case: a scene (lab/scene.h), of scenes/lab/ or of a user, whose expectations are figures, each with its target.
 //
 // A case may consist of several runs (100 aims at a wall, three stacks). Its figures are the worst over all of them,
 // except for averaged ones. Cases do not depend on engines: they read states.
@@ -20,22 +19,6 @@ typedef struct ob_figure_def {
 	const char *reference; // basis of comparison, and its source: "parabola", "Coulomb 1785: a = g (sin - mu cos)"
 } ob_figure_def;
 
-// State of one run of a case with one engine.
-typedef struct ob_case_run_state {
-	const struct ob_case *of;
-	uint32_t run; // number of the run within the case
-	uint64_t frame; // completed frames: 0 before the first step
-	double time; // s
-	const ob_world *world; // body properties and states now: input of measure/
-	ob_snapshot now; // passports and states now: measure/ takes it
-	double figure[OB_FIGURES]; // start at 0; in the case's units
-	double memory[64]; // for the case's own use, zeroed before each run
-	const char *failed; // reason for which the run counts as failed: "fell", "passed through"; NULL = success
-	ob_run_settings settings;
-	ob_scene *scene; // of a case that is one; else NULL
-	ob_error wrong; // of such a case: a function of it failed; "" = none
-} ob_case_run_state;
-
 typedef struct ob_case_text ob_case_text;
 
 typedef struct ob_case {
@@ -52,10 +35,7 @@ typedef struct ob_case {
 	uint32_t figures; // plots show the first
 	ob_figure_def figure[OB_FIGURES];
 	unsigned averaged; // bit per figure: the mean over the runs counts, not the worst (a share)
-	const ob_case_text *text; // its scene (lab/scene.h); NULL: it builds its worlds
-	void (*build)(ob_world *w, uint32_t run); // uses ob_world_* of world/world.h
-	void (*observe)(ob_case_run_state *t); // after each frame, and once before the first; NULL = nothing
-	void (*judge)(ob_case_run_state *t); // at the end of each run
+	const ob_case_text *text; // its scene
 } ob_case;
 
 static const double ob_case_step = 1. / 60; // s: length of a frame
@@ -67,13 +47,10 @@ static inline uint32_t ob_case_runs(const ob_case *c)
 
 extern const ob_case *const *ob_cases; // in the order of their rows; ends with NULL
 const ob_case *ob_case_find(const char *name);
-// Adds those that are scenes: of the program, and of a user's files. Once, before others use the list. false and e: one is
-// wrong.
+// Reads those of the program, and of a user's files. Once, before others use the list. false and e: one is wrong.
 bool ob_cases_open(const char *const *file, size_t files, ob_error *e);
 // Digest of the texts of the user's files; 0: there are none.
 uint32_t ob_cases_digest(void);
-// Builds the world of a run, and *scene if it is one; finish both. false and e: as ob_lab_scene_load.
-bool ob_case_build(const ob_case *c, uint32_t run, ob_world *w, ob_scene **scene, ob_error *e);
 
 // Runs all of a case's runs with one engine. Returns false and e if the engine could not be created, or memory ran out.
 // A run ends at its first failure. If the engine itself broke down (it gave up, NaN, faster than 1e5 m/s or rad/s), all
@@ -87,5 +64,7 @@ typedef struct ob_case_result {
 } ob_case_result;
 bool ob_case_run(const ob_case *c, const ob_engine_kind *kind, const ob_run_settings *s, ob_case_result *out,
 		 ob_error *e);
+// Sets the figure to the larger of the two. NaN counts as the largest, and stays.
+void ob_figure_keep(double *figure, double value);
 
 #endif

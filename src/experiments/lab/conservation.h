@@ -5,7 +5,7 @@
 #define OB_LAB_CONSERVATION_H
 
 #include "measure/measure.h"
-#include "world/world.h"
+#include "engine/world.h"
 
 typedef enum ob_conserved {
 	OB_CONSERVED_MOMENTUM, // drift, over the largest sum of m |v| so far

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "world/world.h"
+#include "lab/scene.h"
 
 #define CONSERVED(name, text) \
 	{ \
@@ -214,9 +214,9 @@ ob_experiment ob_lab_experiment(const char *commit, double limit)
 static uint32_t count_bodies(const ob_case *c)
 {
 	ob_world w;
-	ob_scene *scene;
 	ob_error e;
-	const uint32_t bodies = ob_case_build(c, 0, &w, &scene, &e) ? w.objects : 0;
+	ob_scene *scene = ob_lab_scene_load(c, 0, &w, &e);
+	const uint32_t bodies = scene ? w.objects : 0;
 	ob_world_finish(&w);
 	ob_scene_free(scene);
 	return bodies;

@@ -5,7 +5,6 @@
 
 #include "base/allocate.h"
 #include "experiment/analysis.h"
-#include "lab/look.h"
 
 static size_t place_of_case(const ob_case *c)
 {
@@ -88,7 +87,8 @@ void ob_result_repeat(ob_result *r, const ob_case_result *again)
 	}
 	o->cpu_s = median(r->cpu_s, r->repeats);
 	o->wall_s = median(r->wall_s, r->repeats);
-	ob_look_keep_all(o->figure, again->figure);
+	for (int i = 0; i < OB_FIGURES; i++)
+		ob_figure_keep(&o->figure[i], again->figure[i]);
 	ob_conservation_keep(o->conserved, again->conserved);
 	if (!*o->failed)
 		memcpy(o->failed, again->failed, sizeof o->failed);

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "lab/look.h"
 #include "shape/shape.h"
 
 // ---- a scene's objects as a world
@@ -98,26 +97,36 @@ ob_scene *ob_lab_scene_load(const ob_case *c, uint32_t run, ob_world *w, ob_erro
 	return NULL;
 }
 
+bool ob_lab_snapshot_begin(ob_snapshot *now, const ob_world *w)
+{
+	*now = (ob_snapshot){ .count = w->objects, .passport = w->passport, .joint = w->joint, .joints = w->joints };
+	now->motion = calloc(w->objects + 1, sizeof *now->motion);
+	now->hull = calloc(w->hulls + 1, sizeof *now->hull);
+	for (uint32_t i = 0; i < w->hulls && now->hull; i++)
+		now->hull[i] = &w->hull[i];
+	now->hulls = now->hull ? w->hulls : 0;
+	return now->motion && now->hull;
+}
+
+void ob_lab_snapshot_take(ob_snapshot *now, double time, ob_state *state)
+{
+	now->time = time;
+	now->state = state;
+	for (uint32_t id = 0; id < now->count; id++) {
+		const ob_state *s = &state[id];
+		now->motion[id] = (ob_motion){ .t0 = time, .valid_until = INFINITY, .p = s->pose.p, .q = s->pose.q };
+		now->motion[id].v = s->v;
+		now->motion[id].w = s->w;
+	}
+}
+
+void ob_lab_snapshot_end(ob_snapshot *now)
+{
+	free(now->motion);
+	free(now->hull);
+}
+
 // ---- a scene as a case
-
-static void observe(ob_case_run_state *t)
-{
-	if (ob_expected_look(t->scene->expected, &t->now, &t->settings, &t->wrong))
-		t->failed = *t->scene->expected->failed ? t->scene->expected->failed : NULL;
-	else
-		t->failed = t->wrong.text;
-}
-
-static void judge(ob_case_run_state *t)
-{
-	ob_expected *x = t->scene->expected;
-	if (!*t->wrong.text && !ob_expected_end(x, &t->now, &t->settings, &t->wrong))
-		t->failed = t->wrong.text;
-	for (uint32_t i = 0; i < x->count; i++)
-		t->figure[i] = x->expectation[i].value;
-	if (*x->failed)
-		t->failed = x->failed;
-}
 
 // A case with all that it points to.
 typedef struct own_case {
@@ -153,9 +162,7 @@ static const ob_case *make_case(const ob_case_text *text, const ob_scene *s, ob_
 			     .sleeps = own->def.sleeps,
 			     .duration = s->duration,
 			     .runs = own->def.runs,
-			     .figures = x->count,
-			     .observe = observe,
-			     .judge = judge };
+			     .figures = x->count };
 	for (uint32_t i = 0; i < x->count; i++) {
 		const ob_expectation *one = &own->expectation[i];
 		own->of.figure[i] = (ob_figure_def){ one->name, one->unit, one->limit, one->source };
@@ -168,19 +175,13 @@ static const ob_case *make_case(const ob_case_text *text, const ob_scene *s, ob_
 static bool try_start(ob_scene *s, ob_error *e)
 {
 	ob_world w = { 0 };
-	bool fine = make_world(s, &w, e);
-	ob_motion *motion = calloc(w.objects + 1, sizeof *motion);
-	if (fine && motion) {
-		ob_snapshot now = { .count = w.objects, .passport = w.passport, .motion = motion, .state = w.state };
-		now.hull = calloc(w.hulls + 1, sizeof *now.hull);
-		for (uint32_t i = 0; i < w.hulls && now.hull; i++)
-			now.hull[i] = &w.hull[i];
-		now.hulls = now.hull ? w.hulls : 0;
-		now.joint = w.joint, now.joints = w.joints;
+	ob_snapshot now = { 0 };
+	bool fine = make_world(s, &w, e) && (ob_lab_snapshot_begin(&now, &w) || ob_fail(e, "%s: no memory", s->path));
+	if (fine) {
+		ob_lab_snapshot_take(&now, 0, w.state);
 		fine = ob_expected_look(s->expected, &now, &s->run, e);
-		free(now.hull);
 	}
-	free(motion);
+	ob_lab_snapshot_end(&now);
 	ob_world_finish(&w);
 	return fine;
 }

@@ -17,7 +17,14 @@ struct ob_case_text {
 // the file. false and e: the scene is wrong, expects nothing, or has something that the engines of the lab lack; or add failed.
 bool ob_lab_scene_read(const char *path, const char *text, bool (*add)(const ob_case *c, ob_error *e), ob_error *e);
 
-// Scene of a run of the case, with its world. NULL and e: no memory, or as above.
+// Scene of a run of the case, with its world; finish both. NULL and e: no memory, or as above.
 ob_scene *ob_lab_scene_load(const ob_case *c, uint32_t run, ob_world *w, ob_error *e);
+
+// A world's snapshot: its objects are those of the world, which must last, and as they were when it was last taken (time in s); it
+// points to state.
+// Its end must be called even if begin failed (false: no memory).
+bool ob_lab_snapshot_begin(ob_snapshot *now, const ob_world *w);
+void ob_lab_snapshot_take(ob_snapshot *now, double time, ob_state *state);
+void ob_lab_snapshot_end(ob_snapshot *now);
 
 #endif

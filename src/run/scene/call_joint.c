@@ -184,12 +184,11 @@ static void read_objects(lua_State *L, const ob_builder *b, const char *kind, ob
 // Frame in that of the object, as it is.
 static ob_pose in_object(const ob_joined *o, ob_pose frame)
 {
-	const ob_quat q = ob_quat_normalize(o->pose.q);
-	const ob_mat3 r = ob_quat_matrix(q);
+	const ob_mat3 r = ob_quat_matrix(o->pose.q);
 	if (o->id == OB_JOINT_WORLD)
 		return frame;
 	return (ob_pose){ ob_rotate_back(&r, ob_sub(frame.p, o->pose.p)),
-			  ob_quat_normalize(ob_quat_mul(ob_quat_conjugate(q), frame.q)) };
+			  ob_quat_mul(ob_quat_conjugate(o->pose.q), frame.q) };
 }
 
 // Attitude of a frame with its x axis along the first, and its y axis along the second, as far as that is across.

@@ -135,9 +135,14 @@ static void read_text(const reader *r)
 	*(const char **)r->to = text;
 }
 
-// Reads exactly count numbers: {1, 2, 3}
+// Reads exactly count numbers, {1, 2, 3}, or a vector.
 static bool list(lua_State *L, size_t count, double *out)
 {
+	const ob_vec3 *v = count == 3 ? ob_vector_at(L, -1) : NULL;
+	if (v) {
+		memcpy(out, v, sizeof *v);
+		return ob_is_finite(*v);
+	}
 	if (!lua_istable(L, -1) || lua_rawlen(L, -1) != count)
 		return false;
 	size_t entries = 0;
@@ -159,10 +164,7 @@ static bool list(lua_State *L, size_t count, double *out)
 static void read_vector(const reader *r)
 {
 	double x[3];
-	const ob_vec3 *v = ob_vector_at(r->L, -1);
-	bool good = v || list(r->L, 3, x);
-	if (v)
-		x[0] = v->x, x[1] = v->y, x[2] = v->z;
+	bool good = list(r->L, 3, x);
 	for (int i = 0; i < 3 && good; i++)
 		good = fits(r->field, x[i]);
 	if (!good)

@@ -1,0 +1,47 @@
+// Worlds: objects by their body properties, initial states, and gravity: the input of engines.
+//
+// A body's id is its place. Thread-safety: one thread per world.
+#ifndef OB_ENGINE_WORLD_H
+#define OB_ENGINE_WORLD_H
+
+#include <ob/hull.h>
+#include <ob/joint.h>
+#include <ob/motion.h>
+
+#include "hull/hull.h"
+#include "motion/path.h"
+#include "terrain/terrain.h"
+
+#define OB_WORLD_GRAVITY 9.81 // m/s^2
+
+// Initialise with { .gravity = ... } alone.
+typedef struct ob_world {
+	ob_vec3 gravity; // m/s^2
+	uint32_t objects, objects_max; // number, capacity
+	ob_passport
+		*passport; // [objects], id = index, inertia filled; force is constant, at the centre (N, world frame)
+	ob_state *state; // [objects]
+	uint32_t paths; // swinging kinematic bodies
+	struct ob_world_path {
+		uint32_t id;
+		ob_path path;
+	} * path; // [paths]
+	uint32_t hulls;
+	ob_hull *hull; // [hulls], by the number in passports
+	ob_terrain_set *terrains; // by the number in passports; NULL: there are none
+	uint32_t joints;
+	ob_joint_passport *joint; // [joints]
+} ob_world;
+
+// Kinds of prescribed motion in a world. An engine that supports surfaces supports kinematic bodies, too.
+typedef enum ob_world_drive {
+	OB_WORLD_DRIVES_NOTHING,
+	OB_WORLD_DRIVES_BODIES, // kinematic bodies
+	OB_WORLD_DRIVES_SURFACES, // surfaces of static or kinematic bodies
+} ob_world_drive;
+ob_world_drive ob_world_drives(const ob_world *w);
+// Path of a body; NULL if it has none.
+const ob_path *ob_world_path(const ob_world *w, uint32_t id);
+void ob_world_finish(ob_world *w);
+
+#endif
