@@ -50,10 +50,10 @@ ROOMS = {
         'fmu': 'base',
         'measure': 'terrain shape motion base',
         'scene': 'measure terrain fmu hull mesh settings shape motion elementary base',
-        'script': 'fmu scene table shape motion base',
-        'host': 'control free step script scene hull shape table settings ode base ranks exchange/results.h',
-        'checkpoint': 'host settings base',
         'render': 'measure mesh scene shape base',
+        'script': 'fmu scene table shape motion base',
+        'host': 'control free step script render scene hull shape table settings ode base ranks exchange/results.h',
+        'checkpoint': 'host settings base',
         'record': 'measure scene table shape base',
     },
     'experiments': {

@@ -10,8 +10,11 @@
 //   force_torque  the joint's in its first object    3 of force (N), 3 of torque (N m) on that, mean over the step
 //   touch         -                                  sum of the normal forces of all contacts (N), in the last substep
 //   lidar         its pose in the object             range of each beam (m); infinite: nothing within reach
+//   camera        its pose in the object             pixels: colour, depth, object (ob_picture_of)
 //
-// Beams of a lidar are rows about its x axis, towards y, from the lowest row on. Objects with which nothing collides (OB_OBJECT_SENSOR)
+// Beams of a lidar are rows about its x axis, towards y, from the lowest row on. A camera looks along its x axis, z is up. Its
+// pictures are the renderer's, which the host's process draws at the step boundary at or after their instants: they show the
+// universe at these, and may differ in a few bits from one graphics driver to the next. Objects with which nothing collides (OB_OBJECT_SENSOR)
 // are something else: they list who is in them.
 //
 // Units: SI, radians. Thread-safety: as <ob/universe.h>.
@@ -28,10 +31,12 @@ typedef enum ob_sensor_kind {
 	OB_SENSOR_FORCE_TORQUE,
 	OB_SENSOR_TOUCH,
 	OB_SENSOR_LIDAR,
+	OB_SENSOR_CAMERA,
 	OB_SENSOR_KINDS,
 } ob_sensor_kind;
 
-enum { OB_SENSORS_MAX = 1 << 14, OB_SENSOR_VALUES_MAX = 1 << 12 }; // of a universe; of a sample
+enum { OB_SENSORS_MAX = 1 << 14, OB_SENSOR_VALUES_MAX = 1 << 12 }; // in a universe; in a sample, unless it is a picture
+enum { OB_PIXELS_MAX = 1 << 22 }; // in a picture
 
 // Errors of each value, in its unit: deviation of white noise, deviation of a constant offset, and deviation of a random
 // walk after a second.
@@ -53,11 +58,31 @@ typedef struct ob_sensor_passport {
 	double delay; // s
 	ob_sensor_noise
 		noise[2]; // for the first and the second half of the values; touch and lidar have the first alone
-	uint32_t beams, rows; // of a lidar: in each row; rows
-	double fan, rise; // rad: from the first beam to the last, or 2 pi; from the lowest row to the highest
+	uint32_t beams, rows; // beams of a lidar, or pixels of a camera, in each row; rows
+	// rad: from the first beam to the last, or 2 pi; from the lowest row to the highest. A camera has its angles of view here
+	double fan, rise;
 	double reach; // m
 	char name[OB_NAME_MAX]; // as the scene has it, or of its kind and number: "imu#3"; ends with 0
 } ob_sensor_passport;
+
+// A pixel of a camera. 12 bytes.
+typedef struct ob_pixel {
+	float depth; // m, along the camera's x axis; infinite: nothing is there
+	uint32_t id; // of the object; UINT32_MAX: none
+	uint8_t rgba[4]; // sRGB; alpha is 255
+} ob_pixel;
+
+// Values that a sample needs for a picture, 8 bytes each.
+static inline uint32_t ob_picture_values(uint32_t width, uint32_t height)
+{
+	return (uint32_t)(((uint64_t)width * height * sizeof(ob_pixel) + 7) / 8);
+}
+
+// Pixels of a camera's sample: rows * beams of them, from the upper left.
+static inline const ob_pixel *ob_picture_of(const double *value)
+{
+	return (const ob_pixel *)value;
+}
 
 // Name of a kind, as scenes have it ("imu"). NULL: no such kind.
 const char *ob_sensor_kind_name(uint32_t kind);
@@ -65,7 +90,7 @@ const char *ob_sensor_kind_name(uint32_t kind);
 uint32_t ob_universe_sensors(const ob_universe *u);
 bool ob_universe_get_sensor(const ob_universe *u, uint32_t sensor, ob_sensor_passport *out);
 // Copies the newest samples that are kept and no delay hides, of those with a number above `after`: at most max, the
-// oldest first. number[i], time[i] (s) and value[i * width] are those of sample i. Returns how many.
+// oldest first. number[i], time[i] (s) and value[i * width] are those of sample i; value NULL: without. Returns how many.
 size_t ob_universe_get_samples(const ob_universe *u, uint32_t sensor, uint64_t after, uint64_t *number, double *time,
 			       double *value, size_t max);
 

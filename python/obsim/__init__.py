@@ -33,6 +33,7 @@ __all__ = ['Batch', 'Error', 'Joint', 'Object', 'Run', 'Sensor', 'Universe', 'Un
 
 CONTACT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('position', 'f8', 3), ('normal', 'f8', 3), ('impulse', 'f8')])
 CONTACT_EVENT = numpy.dtype([('a', 'u4'), ('b', 'u4'), ('step', 'u4'), ('begins', 'u4')])
+PIXEL = numpy.dtype({'names': ['depth', 'id', 'colour'], 'formats': ['f4', 'u4', ('u1', 3)], 'offsets': [0, 4, 8], 'itemsize': 12})
 CHANGE = numpy.dtype([('id', 'u4'), ('generation', 'u4'), ('value', 'f8', 13)])
 POINT = numpy.dtype([('time', 'f8'), ('position', 'f8', 3), ('attitude', 'f8', 4)])
 RUN_STEP = numpy.dtype([*((name, 'u8') for name in ('controller', 'universe', 'snapshot', 'motor', 'force', 'motors', 'forces', 'joint',
@@ -293,7 +294,9 @@ class Joint(_Strict):
 
 
 class Sensor(_Strict):
-    """A sensor of a scene: imu, encoder, force_torque, touch, lidar. It is read as often as you like: values stay until the next."""
+    """A sensor of a scene: imu, encoder, force_torque, touch, lidar, camera. It is read as often as you like: values stay until
+    the next. A camera's are pixels: arrays (height, width) with the fields depth (m, along the view; infinite: nothing), id (of the
+    object; 0xffffffff: none) and colour (red, green, blue, 0 to 255), as value['depth']."""
 
     def __init__(self, universe, number, passport):
         self._universe, self._number, self._passport = universe, number, passport
@@ -307,9 +310,9 @@ class Sensor(_Strict):
     object = property(lambda self: self._universe[self._passport.object], doc='It is fixed to this one.')
     rate = property(lambda self: self._passport.rate, doc='Samples in a second.')
     delay = property(lambda self: self._passport.delay, doc='s, from its instant until a sample can be read.')
-    shape = property(lambda self: (self._passport.rows, self._passport.beams) if self._passport.rows > 1 else (self._passport.width,),
-                     doc='Of the values of a sample: (6,), for one; of a lidar rows and beams.')
-    angles = property(lambda self: _angles(self._passport), doc='Of a lidar: of its beams in a row, rad, from its x axis to the left.')
+    shape = property(lambda self: (self._passport.rows, self._passport.beams) if self._passport.rows > 1 or self.kind == 'camera' else (self._passport.width,),
+                     doc='Of the values of a sample: (6,), for one; of a lidar rows and beams, of a camera height and width.')
+    angles = property(lambda self: _angles(self._passport), doc='Of a lidar: of its beams in a row, rad, from its x axis to the left. Of a camera: of its view, across and up.')
 
     def samples(self, after=0, most=None):
         """The samples that are kept, above a number, the newest `most` of them: arrays of numbers, times (s) and values."""
@@ -317,6 +320,8 @@ class Sensor(_Strict):
         number, time_, values = numpy.empty(n, numpy.uint64), numpy.empty(n), numpy.empty((n, width))
         found = _native.library().ob_universe_get_samples(self._universe._u, self._number, after, number.ctypes.data, time_.ctypes.data,
                                                           values.ctypes.data, n)
+        if self.kind == 'camera':
+            values = values.view('u1')[:, :PIXEL.itemsize * self._passport.rows * self._passport.beams].view(PIXEL)
         return number[:found], time_[:found], values[:found].reshape(found, *self.shape)
 
     def _newest(self):
@@ -330,6 +335,8 @@ class Sensor(_Strict):
 
 
 def _angles(p):
+    if _native.library().ob_sensor_kind_name(p.kind) == b'camera':
+        return numpy.array([p.fan, p.rise])
     i = numpy.arange(p.beams)
     return i * (2 * numpy.pi / p.beams) - numpy.pi if p.fan >= 2 * numpy.pi else numpy.linspace(-p.fan / 2, p.fan / 2, p.beams) if p.beams > 1 else i * 0.
 

@@ -166,12 +166,15 @@ static bool print_sensors(sending *s, ob_error *e)
 	for (uint32_t i = 0; i < ob_universe_sensors(s->u); i++) {
 		if (!ob_universe_get_sensor(s->u, i, &p) || (s->word[0] && strcmp(p.name, s->word[0]) != 0))
 			continue;
-		const bool taken = ob_universe_get_samples(s->u, i, 0, &number, &time, value, 1);
+		const bool is_camera = p.kind == OB_SENSOR_CAMERA;
+		const bool taken = ob_universe_get_samples(s->u, i, 0, &number, &time, is_camera ? NULL : value, 1);
 		found = true;
 		ob_utf8_make_plain(p.name);
 		printf("%s  ", p.name);
 		printf(taken ? "%.9g " : "- ", time);
-		for (uint32_t k = 0; taken && k < p.width; k++)
+		if (is_camera)
+			printf(" picture %llu, %ux%u", taken ? (unsigned long long)number : 0ULL, p.beams, p.rows);
+		for (uint32_t k = 0; taken && !is_camera && k < p.width; k++)
 			printf(" %.9g", value[k]);
 		puts("");
 	}

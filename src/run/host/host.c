@@ -68,7 +68,7 @@ static bool check_sensors(const ob_scene *scene, const ob_host_config *c, ob_err
 			"sensors: their samples of a step, of their delays and those kept take above %d MiB: take "
 			"lower rates, shorter delays or less to keep",
 			OB_SENSOR_NUMBERS_MAX >> 17);
-	return true;
+	return ob_cameras_check(scene, e);
 }
 
 // Refuses joints that ODE does not have.
@@ -336,6 +336,15 @@ static bool wait_until_ready(ob_host *h, ob_error *e)
 	return ready;
 }
 
+// Cameras come after all that forks.
+static bool start_cameras(ob_host *h, ob_error *e)
+{
+	bool needed = false;
+	for (uint32_t i = 0; i < h->scene->sensors; i++)
+		needed |= h->scene->sensor[i].kind == OB_SENSOR_CAMERA;
+	return !needed || (h->cameras = ob_cameras_create(h->scene, h->u, e));
+}
+
 static bool start_workers(ob_host *h, ob_error *e)
 {
 	const bool apart = !h->spawn->pass;
@@ -391,7 +400,7 @@ ob_host *ob_host_start(const ob_scene *scene, const ob_host_config *config, ob_e
 	// the fork server first: it and its children inherit as little as possible
 	h->fork_server = h->u && !h->spawn->pass ? ob_fork_server_start(h->u, ob_worker_live, h->patience, e) : NULL;
 	if (!(h->fork_server || (h->u && h->spawn->pass)) || !start_timeline(h, config->trace, e) ||
-	    !place_objects(h, scene, config, e) || !start_workers(h, e)) {
+	    !place_objects(h, scene, config, e) || !start_workers(h, e) || !start_cameras(h, e)) {
 		ob_host_stop(h);
 		return NULL;
 	}
@@ -530,6 +539,7 @@ void ob_host_stop(ob_host *h)
 	if (h->interrupt_fd >= 0)
 		ob_interrupt_release();
 	ob_restart_finish(h);
+	ob_cameras_destroy(h->cameras);
 	ob_snapshots_finish(&h->snapshots);
 	ob_population_destroy(h->population);
 	ob_requests_destroy(h->requests);

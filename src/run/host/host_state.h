@@ -8,6 +8,7 @@
 #include <stdatomic.h>
 
 #include "host/ask.h"
+#include "host/cameras.h"
 #include "host/control.h"
 #include "host/host.h"
 #include "host/population.h"
@@ -66,6 +67,7 @@ struct ob_host {
 	// or that it has left, ends the wait for steps.
 	struct pollfd caller;
 	ob_snapshots snapshots;
+	ob_cameras *cameras; // NULL: the scene has none
 	uint64_t start, kept; // snapshots for visitors; 0 = none
 	bool returns; // see ob_host_config; likewise the next
 	const ob_scene *scene;

@@ -27,13 +27,31 @@ static bool is_called(ob_host *h)
 	return h->caller.fd >= 0 && poll(&h->caller, 1, 0) == 1;
 }
 
-// Paused: adds and removes objects, then opens the gate for the next interval, if the target is still ahead. A program
-// that calls ends the way there, but not before the run is where it was when a simulator died.
+static void draw_cameras(ob_host *h)
+{
+	const uint64_t begin = ob_clock_ns();
+	ob_error e;
+	if (!h->cameras)
+		return;
+	if (!ob_cameras_draw(h->cameras, &e))
+		ob_host_set_failure(h, "%s", e.text);
+	if (h->timeline)
+		ob_trace_span(h->u, ob_trace_host(h->u), OB_TRACE_DRAW, begin, 0, 0);
+}
+
+static uint64_t lesser(uint64_t a, uint64_t b)
+{
+	return a < b ? a : b;
+}
+
+// Paused: draws the pictures of cameras, adds and removes objects, then opens the gate for the next interval, if the target is
+// still ahead. A program that calls ends the way there, but not before the run is where it was when a simulator died.
 static void begin_interval(ob_host *h)
 {
 	ob_interval *interval = &h->interval;
 	uint64_t step = ob_step_count(h->u);
 	ob_script_log_look(&h->scripts, h->u); // before their objects may go
+	draw_cameras(h); // likewise
 	if (!ob_host_free_is_ahead(h))
 		ob_population_update(h->population, step, h->requests);
 	ob_restart_checkpoint(h, ob_restart_freeze(h));
@@ -43,8 +61,8 @@ static void begin_interval(ob_host *h)
 		h->target = step;
 	if (h->started && step >= h->target)
 		return;
-	uint64_t next = ob_population_next_step(h->population), retry = ob_restart_next_step(h);
-	next = next < retry ? next : retry;
+	uint64_t next = lesser(ob_population_next_step(h->population), ob_restart_next_step(h));
+	next = h->cameras ? lesser(next, ob_cameras_next_step(h->cameras)) : next;
 	next = h->caller.fd >= 0 && next > step + LED_STEPS ? step + LED_STEPS : next;
 	if (!h->started)
 		ob_universe_set_state(h->u, OB_UNIVERSE_RUNNING);

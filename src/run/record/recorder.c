@@ -814,7 +814,7 @@ static bool append_samples(ob_recorder *r, const ob_universe *u, uint32_t sensor
 {
 	ob_sensor_passport p;
 	haddr_t used = 0;
-	if (!ob_universe_get_sensor(u, sensor, &p))
+	if (!ob_universe_get_sensor(u, sensor, &p) || p.kind == OB_SENSOR_CAMERA)
 		return true;
 	const uint32_t parts = (p.width + OB_RECORD_VALUES - 1) / OB_RECORD_VALUES;
 	if (!OB_GROW(r->sample_number, p.kept) || !OB_GROW(r->sample_time, p.kept) ||

@@ -134,16 +134,20 @@ bool ob_context_make_current(const ob_context *c, ob_error *e)
 	if (eglGetCurrentContext() == c->context)
 		return true;
 	if (!eglBindAPI(EGL_OPENGL_API) || !eglMakeCurrent(c->display, EGL_NO_SURFACE, EGL_NO_SURFACE, c->context))
-		return ob_fail(e,
-			       "the OpenGL context cannot be used in this thread: one renderer belongs to one thread");
+		return ob_fail(e, "the OpenGL context cannot be used in this thread: another one draws with it");
 	return true;
+}
+
+void ob_context_release(const ob_context *c)
+{
+	eglMakeCurrent(c->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
 void ob_context_destroy(ob_context *c)
 {
 	if (!c->context)
 		return;
-	eglMakeCurrent(c->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+	ob_context_release(c);
 	eglDestroyContext(c->display, c->context);
 	c->context = NULL;
 }

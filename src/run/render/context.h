@@ -14,6 +14,8 @@ typedef struct ob_context {
 // it failed.
 bool ob_context_create(ob_context *c, const char *device, ob_error *e);
 bool ob_context_make_current(const ob_context *c, ob_error *e);
+// Lets another thread make it current.
+void ob_context_release(const ob_context *c);
 void ob_context_destroy(ob_context *c);
 
 #endif

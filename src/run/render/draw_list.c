@@ -10,6 +10,7 @@
 
 // Objects farther away are not drawn: the fog has hidden them (see fog_ranges in frame.c).
 static const double far_ranges = 60, far_least = 2000; // camera ranges; m
+static const double sensor_near = .01, sensor_range = 10; // m, for camera sensors
 static const double steepest = 89 * M_PI / 180; // rad: a level horizon needs a direction that is not vertical
 
 // Direction after pan and tilt, limited.
@@ -34,6 +35,20 @@ ob_view ob_view_of_camera(const ob_camera_def *c, double t, int width, int heigh
 	v.near_plane = fmax(.01, fmin(.5, .01 * v.range));
 	v.far_plane = fmax(far_least, far_ranges * v.range);
 	return v;
+}
+
+ob_view ob_view_of_sensor(const ob_sensor_passport *s, ob_pose at)
+{
+	const ob_mat3 r = ob_quat_matrix(at.q);
+	return (ob_view){ .eye = at.p,
+			  .right = ob_scale(ob_column(&r, 1), -1),
+			  .up = ob_column(&r, 2),
+			  .forward = ob_column(&r, 0),
+			  .tan_x = tan(.5 * s->fan),
+			  .tan_y = tan(.5 * s->rise),
+			  .near_plane = sensor_near,
+			  .far_plane = far_least,
+			  .range = sensor_range };
 }
 
 bool ob_view_in_frustum(const ob_view *v, ob_vec3 centre, double radius)
@@ -70,9 +85,9 @@ void ob_view_projection(const ob_view *v, float m[16])
 static const double bevel_share = .1, bevel_most = .05; // relative to the smallest half size; m
 static const double medium_px = 7, fine_px = 45; // screen radius from which rounder meshes are used
 
-// Pose of object i at t. Between two publications it needs the older one; without it the body rests at the start of the
+// Between two publications it needs the older one; without it the body rests at the start of the
 // newer motion.
-static ob_pose pose_at(const ob_snapshot *prev, const ob_snapshot *now, uint32_t i, double t)
+ob_pose ob_draw_pose(const ob_snapshot *prev, const ob_snapshot *now, uint32_t i, double t)
 {
 	const ob_motion *m = &now->motion[i];
 	ob_vec3 inertia = now->passport[i].inertia;
@@ -150,7 +165,7 @@ bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapsh
 		      (ob_shape_is(p->shape, OB_SURFACED) && look_of(b, p))) ||
 		    (ob_shape_is(p->shape, OB_HULLED) && !ob_snapshot_hull(now, i)))
 			continue;
-		ob_pose pose = pose_at(prev, now, i, t);
+		ob_pose pose = ob_draw_pose(prev, now, i, t);
 		attend(b, i, t, since);
 		if (!unbounded) {
 			const ob_mesh *look = look_of(b, p);
@@ -383,7 +398,7 @@ static ob_pattern shown_pattern(const ob_draw_list *b, const ob_passport *p)
 }
 
 static uint32_t mesh_of(const ob_draw_list *b, const ob_passport *p, const ob_draw_item *body, const ob_view *v,
-			int height)
+			int height, bool exact)
 {
 	if (look_of(b, p))
 		return OB_MESHES + b->now->hulls + p->mesh - 1;
@@ -391,6 +406,8 @@ static uint32_t mesh_of(const ob_draw_list *b, const ob_passport *p, const ob_dr
 		return shown_pattern(b, p) ? OB_MESH_PATTERNED_BOX : OB_MESH_BOX;
 	if (ob_shape_is(p->shape, OB_HULLED))
 		return OB_MESHES + p->hull;
+	if (exact)
+		return (ob_shape_is(p->shape, OB_RIMMED) ? OB_MESH_CYLINDER : OB_MESH_ROUND) + OB_MESH_LEVELS - 1;
 	double distance = ob_norm(ob_sub(body->pose.p, v->eye));
 	double px = .5 * height * p->size.x / (v->tan_y * fmax(distance, v->near_plane));
 	uint32_t level = px < medium_px ? 0 : px < fine_px ? 1 : 2;
@@ -439,6 +456,28 @@ static ob_instance instance_of(const ob_draw_list *b, const ob_draw_item *body, 
 	return i;
 }
 
+// Instance of the shape that collides, or of the look, with the object's number for its colour.
+static ob_instance exact_instance_of(const ob_draw_list *b, const ob_draw_item *body, ob_vec3 eye, bool look)
+{
+	const ob_passport *p = &b->now->passport[body->id];
+	const ob_vec3 at = ob_sub(body->pose.p, eye);
+	const ob_quat q = body->pose.q;
+	ob_instance i;
+	ob_outline o;
+	double kind = 0;
+	if (!ob_shape_outline(p->shape, p->size, &o) || look)
+		o = (ob_outline){ .half = { 1, 1, 1 } };
+	else if (o.rim > 0)
+		o.half = ob_v3(o.rim, o.rim, o.half.z), kind = -2;
+	else if (o.ball > 0)
+		kind = -1;
+	set_vec4(i.position_radius, at.x, at.y, at.z, o.ball);
+	set_vec4(i.attitude, q.x, q.y, q.z, q.w);
+	set_vec4(i.core, o.half.x, o.half.y, o.half.z, kind);
+	set_vec4(i.colour, body->id, 0, 0, 0);
+	return i;
+}
+
 static bool expect_meshes(ob_instances *out, uint32_t meshes)
 {
 	if (meshes > out->meshes_max) {
@@ -464,7 +503,7 @@ bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *
 	for (uint32_t i = 0; mesh && count && i < b->count; i++) {
 		const ob_draw_item *body = &b->body[i];
 		bool taken = filter(body, context);
-		mesh[i] = taken ? mesh_of(b, &b->now->passport[body->id], body, v, height) : out->meshes;
+		mesh[i] = taken ? mesh_of(b, &b->now->passport[body->id], body, v, height, out->exact) : out->meshes;
 		count[mesh[i]]++;
 	}
 	out->first[0] = 0;
@@ -474,8 +513,8 @@ bool ob_instances_fill(ob_instances *out, const ob_draw_list *b, const ob_view *
 	}
 	for (uint32_t i = 0; mesh && count && i < b->count; i++)
 		if (mesh[i] < out->meshes)
-			out->instance[count[mesh[i]]++] =
-				instance_of(b, &b->body[i], v->eye, mesh[i] >= OB_MESHES + b->now->hulls);
+			out->instance[count[mesh[i]]++] = (out->exact ? exact_instance_of : instance_of)(
+				b, &b->body[i], v->eye, mesh[i] >= OB_MESHES + b->now->hulls);
 	const bool fine = mesh && count;
 	free(mesh);
 	free(count);

@@ -20,6 +20,8 @@ typedef struct ob_view {
 
 // View of the camera at time t (s): travelled, panned and tilted since 0.
 ob_view ob_view_of_camera(const ob_camera_def *c, double t, int width, int height);
+// View of a camera sensor, from its pose: it looks along x, z is up.
+ob_view ob_view_of_sensor(const ob_sensor_passport *s, ob_pose at);
 // True if the ball (centre, radius in m) is at least partly in the frustum.
 bool ob_view_in_frustum(const ob_view *v, ob_vec3 centre, double radius);
 // Column-major matrix from positions relative to the eye to clip coordinates. y points down the picture, so that the
@@ -69,9 +71,9 @@ typedef struct ob_instance {
 	float position_radius[4]; // m: centre relative to the eye; radius of the ball that thickens the core
 	float attitude[4]; // x y z w
 	// m: half size; width of a box's rounded edges, 0 = not a box. Negative for a mesh: -1 = shown with its
-	// colours, -2 = with its surface
+	// colours, -2 = with its surface; or, of an exact shape, -1 = a sphere or capsule, -2 = a cylinder
 	float core[4];
-	// linear; last: 15 times its metal, whole, plus its roughness, below 1, plus 16 times its pattern
+	// linear, or the object's number; last: 15 times its metal, whole, plus its roughness, below 1, plus 16 times its pattern
 	float colour[4];
 } ob_instance;
 
@@ -82,10 +84,13 @@ typedef struct ob_instances {
 	uint32_t meshes;
 	uint32_t *first; // [meshes + 1]
 	uint32_t capacity, meshes_max;
+	bool exact; // set by the owner: shapes without bevels, of the finest meshes, with numbers for colours
 } ob_instances;
 
 // Evaluates all motions at time t (s); prev may be NULL. b starts zeroed. Fills with growing times carry attention on,
 // in steps of up to a second. Returns false if memory runs out.
+// Pose of an object of the snapshot at time t, likewise.
+ob_pose ob_draw_pose(const ob_snapshot *prev, const ob_snapshot *now, uint32_t id, double t);
 bool ob_draw_list_fill(ob_draw_list *b, const ob_snapshot *prev, const ob_snapshot *now, double t);
 // Moves an automatic camera so that it sees the moving bodies in a picture of this shape, from above level ground; and
 // one that follows an object, with it. Returns any other unchanged. Smooth in the bodies' positions.

@@ -233,12 +233,12 @@ static void shift_in_pixel(float projection[16], const ob_frame_share *s, int wi
 	}
 }
 
-void ob_frame_set(ob_frame *f, const ob_draw_list *b, const ob_look_def *look, const ob_camera_def *c, double t,
-		  int width, int height, const ob_frame_share *share, int sky_texels)
+void ob_frame_set(ob_frame *f, const ob_draw_list *b, const ob_look_def *look, const ob_view *v, int width, int height,
+		  const ob_frame_share *share, int sky_texels)
 {
 	ob_frame_block *k = &f->block;
 	ob_vec3 sun = sun_of_share(look, share);
-	f->view = ob_view_of_camera(c, t, width, height);
+	f->view = *v;
 	f->shadow = ob_ortho_fit(sun, b, &f->view, OB_SHADOW_TEXELS);
 	f->ground = find_ground(b);
 	ob_view_projection(&f->view, k->view_projection);

@@ -49,7 +49,7 @@ typedef struct ob_frame {
 	ob_frame_block block;
 } ob_frame;
 
-void ob_frame_set(ob_frame *f, const ob_draw_list *b, const ob_look_def *look, const ob_camera_def *c, double t,
-		  int width, int height, const ob_frame_share *share, int sky_texels);
+void ob_frame_set(ob_frame *f, const ob_draw_list *b, const ob_look_def *look, const ob_view *v, int width, int height,
+		  const ob_frame_share *share, int sky_texels);
 
 #endif

@@ -35,6 +35,12 @@ bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot
 	return part_of(r)->draw(r, prev, now, t, c, rgba, e);
 }
 
+bool ob_renderer_sense(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t,
+		       const ob_sensor_passport *s, ob_pixel *pixel, ob_error *e)
+{
+	return part_of(r)->sense(r, prev, now, t, s, pixel, e);
+}
+
 // ---- captions
 
 #define CAIRO "libcairo2"

@@ -11,6 +11,8 @@ typedef struct ob_render_part {
 	void (*destroy)(ob_renderer *r);
 	bool (*draw)(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
 		     uint8_t *rgba, ob_error *e);
+	bool (*sense)(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t,
+		      const ob_sensor_passport *s, ob_pixel *pixel, ob_error *e);
 } ob_render_part;
 
 // First member of each renderer.

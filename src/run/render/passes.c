@@ -34,6 +34,8 @@ static const source sources[OB_PROGRAMS] = {
 	[OB_PROGRAM_SEGMENT] = { "segment", shader_segment_vert, shader_segment_frag, NULL },
 	[OB_PROGRAM_ADD] = { "add", shader_sky_vert, shader_add_frag, NULL },
 	[OB_PROGRAM_RESOLVE] = { "resolve", shader_sky_vert, shader_resolve_frag, NULL },
+	[OB_PROGRAM_SIGHT] = { "sight", shader_sight_vert, shader_sight_frag, NULL },
+	[OB_PROGRAM_SIGHT_PLANE] = { "sight of a plane", shader_sky_vert, shader_sight_frag, "#define OB_PLANE\n" },
 };
 
 // Mesa without a GPU: shaders then choose cheaper methods.
@@ -244,6 +246,16 @@ static bool create_sum(ob_targets *t, ob_error *e)
 	return is_complete("average of pictures", e);
 }
 
+bool ob_targets_add_sight(ob_targets *t, ob_error *e)
+{
+	if (t->sight)
+		return true;
+	t->sight = create_framebuffer();
+	t->sight_pixels = create_renderbuffer(GL_COLOR_ATTACHMENT0, GL_RG32F, t, 0);
+	t->sight_depth = create_renderbuffer(GL_DEPTH_ATTACHMENT, GL_DEPTH_COMPONENT32F, t, 0);
+	return is_complete("target of depths", e);
+}
+
 bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_light light, ob_error *e)
 {
 	GLint most = 1, widest = 0;
@@ -274,13 +286,13 @@ bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_lig
 
 void ob_targets_destroy(ob_targets *t)
 {
-	const GLuint framebuffers[] = { t->plain,        t->multi, t->shadow, t->occlusion[0],
-					t->occlusion[1], t->sky,   t->one,    t->sum };
-	const GLuint renderbuffers[] = { t->plain_colour, t->multi_colour, t->depth };
+	const GLuint framebuffers[] = { t->plain, t->multi, t->shadow, t->occlusion[0], t->occlusion[1],
+					t->sky,   t->one,   t->sum,    t->sight };
+	const GLuint renderbuffers[] = { t->plain_colour, t->multi_colour, t->depth, t->sight_pixels, t->sight_depth };
 	const GLuint textures[] = { t->shadow_depth, t->occlusion_texture[0], t->occlusion_texture[1],
 				    t->sky_depth,    t->one_colour,           t->sum_colour };
-	glDeleteFramebuffers(8, framebuffers); // zeros are ignored
-	glDeleteRenderbuffers(3, renderbuffers);
+	glDeleteFramebuffers(9, framebuffers); // zeros are ignored
+	glDeleteRenderbuffers(5, renderbuffers);
 	glDeleteTextures(6, textures);
 	glDeleteSamplers(1, &t->plain_sampler);
 }
@@ -720,12 +732,14 @@ static void draw_plane(GLuint program, const ob_pose *pose, const ob_frame *f, c
 	glDrawArrays(GL_TRIANGLE_STRIP, 0, far ? 10 : 4);
 }
 
+static const double level_enough = 1e-6; // rise of the view's axis to the right
+
 // Above a level ground, draws the sky only in the rows from its horizon on: llvmpipe shades hidden pixels, too.
 static void draw_sky(const ob_passes *p, const ob_targets *t, const ob_frame *f, const ob_draw_list *b)
 {
 	int rows = t->height;
 	double height = f->ground >= 0 ? f->view.eye.z - b->plane[f->ground].p.z : 0;
-	if (height > 0) {
+	if (height > 0 && fabs(f->view.right.z) < level_enough) {
 		double longest = sqrt(1 + f->view.tan_x * f->view.tan_x + f->view.tan_y * f->view.tan_y);
 		double lowest =
 			-1.1 * longest * height / f->view.far_plane; // slope of a ray that just passes the ground's end
@@ -837,6 +851,39 @@ void ob_passes_overlay(const ob_passes *p, const ob_overlay *o, bool hidden_by_b
 	glUseProgram(p->program[OB_PROGRAM_SEGMENT]);
 	glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, (GLsizei)o->count);
 	glDepthMask(GL_TRUE);
+}
+
+void ob_passes_sight(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_draw_list *b,
+		     const ob_frame *f, float (*sight)[2])
+{
+	const GLuint program = p->program[OB_PROGRAM_SIGHT_PLANE];
+	glBindFramebuffer(GL_FRAMEBUFFER, t->sight);
+	glViewport(0, 0, t->width, t->height);
+	glEnable(GL_DEPTH_TEST);
+	glDepthFunc(GL_LEQUAL);
+	glEnable(GL_CULL_FACE);
+	glFrontFace(GL_CW);
+	glClearBufferfv(GL_COLOR, 0, (const GLfloat[]){ INFINITY, -1, 0, 0 });
+	glClear(GL_DEPTH_BUFFER_BIT);
+	upload_instances(p, seen);
+	glUseProgram(p->program[OB_PROGRAM_SIGHT]);
+	draw_instances(p, seen, false);
+	glDisable(GL_CULL_FACE);
+	glBindVertexArray(p->empty_array);
+	glUseProgram(program);
+	for (int i = 0; i < b->planes; i++) {
+		const ob_mat3 r = ob_quat_matrix(b->plane[i].q);
+		const ob_vec3 n = ob_column(&r, 2);
+		const double height = ob_dot(ob_sub(f->view.eye, b->plane[i].p), n);
+		set_vec3_uniform(program, "foot", ob_scale(n, -height));
+		set_vec3_uniform(program, "normal", n);
+		glUniform1f(glGetUniformLocation(program, "number"), (float)b->plane_id[i]);
+		glUniform1f(glGetUniformLocation(program, "reach"), (float)f->view.far_plane);
+		if (height > 0)
+			glDrawArrays(GL_TRIANGLES, 0, 3);
+	}
+	glPixelStorei(GL_PACK_ALIGNMENT, 4);
+	glReadPixels(0, 0, t->width, t->height, GL_RG, GL_FLOAT, sight);
 }
 
 void ob_passes_read(const ob_targets *t, uint8_t *rgba)

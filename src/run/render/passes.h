@@ -29,6 +29,8 @@ typedef enum ob_program {
 	OB_PROGRAM_SEGMENT,
 	OB_PROGRAM_ADD,
 	OB_PROGRAM_RESOLVE,
+	OB_PROGRAM_SIGHT, // number and depth of bodies
+	OB_PROGRAM_SIGHT_PLANE, // and of a plane
 	OB_PROGRAMS,
 } ob_program;
 
@@ -69,10 +71,14 @@ typedef struct ob_targets {
 	int sky_maps, sky_texels;
 	GLuint sky, sky_depth; // framebuffer, and an array of depth textures
 	GLuint one, one_colour, sum, sum_colour; // of averaged pictures: framebuffers and float textures; else 0
+	GLuint sight, sight_pixels,
+		sight_depth; // of camera sensors: framebuffer, and its renderbuffers; 0 until it is needed
 } ob_targets;
 
 // Creates the targets. samples is lowered to the driver's limit, and ignored for averaged pictures.
 bool ob_targets_create(ob_targets *t, int width, int height, int samples, ob_light light, ob_error *e);
+// Creates the target of numbers and depths, unless it is there.
+bool ob_targets_add_sight(ob_targets *t, ob_error *e);
 void ob_targets_destroy(ob_targets *t);
 
 // ---- passes
@@ -123,6 +129,10 @@ void ob_passes_add(const ob_passes *p, const ob_targets *t, int number, int coun
 // Writes the average to the colour target.
 void ob_passes_resolve(const ob_passes *p, const ob_targets *t);
 void ob_passes_overlay(const ob_passes *p, const ob_overlay *o, bool hidden_by_bodies);
+// Draws number and depth of each pixel's middle, of exact instances and planes, and reads them: depth (m), number; without an
+// object infinity and -1. The top row first.
+void ob_passes_sight(const ob_passes *p, const ob_targets *t, const ob_instances *seen, const ob_draw_list *b,
+		     const ob_frame *f, float (*sight)[2]);
 // Reads the picture. rgba: width * height * 4 bytes, top row first
 void ob_passes_read(const ob_targets *t, uint8_t *rgba);
 

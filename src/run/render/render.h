@@ -1,5 +1,5 @@
 // Frames: draws snapshots off-screen through EGL. Reads, never writes, the universe.
-// One renderer belongs to one thread. ob_renderer_create loads the part that draws, and fails with one line if the
+// One thread at a time for each renderer. ob_renderer_create loads the part that draws, and fails with one line if the
 // part or EGL is missing.
 #ifndef OB_RENDER_RENDER_H
 #define OB_RENDER_RENDER_H
@@ -41,6 +41,11 @@ void ob_renderer_destroy(ob_renderer *r);
 // steps (NULL: t is now->time). Fills rgba (width * height * 4 bytes, top row first).
 bool ob_renderer_draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
 		      uint8_t *rgba, ob_error *e);
+// Draws the picture of a camera sensor likewise: colours without overlays, depths and objects. pixel: width * height. Sees neither
+// hidden objects nor those with which nothing collides. Colours are those of looks, smoothed; depths and objects are those of a
+// pixel's middle: of a look, or of the shape that collides.
+bool ob_renderer_sense(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t,
+		       const ob_sensor_passport *s, ob_pixel *pixel, ob_error *e);
 
 // Sinks: destinations of finished frames. Encoding runs in the sink's own thread; put() blocks while 8 frames wait.
 typedef struct ob_sink ob_sink;

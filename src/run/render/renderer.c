@@ -1,6 +1,7 @@
 #include "render/part.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "render/context.h"
 #include "render/passes.h"
@@ -18,9 +19,11 @@ struct ob_renderer {
 	ob_passes passes;
 	ob_draw_list list;
 	ob_light light;
-	ob_instances casters, near_ground, visible;
+	ob_instances casters, near_ground, visible, exact;
 	ob_overlay overlay;
 	uint8_t *rough, *brightness; // a picture before its edges are smoothed; NULL: they are not
+	uint8_t *rgba; // a camera sensor's picture, and
+	float (*sight)[2]; // its depths and numbers; NULL until there is one
 };
 
 static void destroy(ob_renderer *r)
@@ -36,7 +39,10 @@ static void destroy(ob_renderer *r)
 	ob_instances_finish(&r->casters);
 	ob_instances_finish(&r->near_ground);
 	ob_instances_finish(&r->visible);
+	ob_instances_finish(&r->exact);
 	ob_overlay_finish(&r->overlay);
+	free(r->rgba);
+	free(r->sight);
 	free(r->rough);
 	free(r->brightness);
 	free(r);
@@ -78,6 +84,8 @@ static ob_renderer *create(const ob_render_setup *setup, const ob_look_def *look
 			r->list.mesh = setup->mesh;
 			r->list.meshes = setup->meshes;
 			r->list.colouring = setup->colouring;
+			r->exact.exact = true;
+			ob_context_release(&r->context);
 			return r;
 		}
 	}
@@ -134,12 +142,12 @@ static bool draw_overlays(ob_renderer *r, const ob_snapshot *now, const ob_view 
 }
 
 // Draws the maps of one picture, and the picture itself. Returns false if memory runs out.
-static bool draw_share(ob_renderer *r, const ob_camera_def *c, double t, const ob_frame_share *share, ob_frame *f)
+static bool draw_share(ob_renderer *r, const ob_view *v, bool through, const ob_frame_share *share, ob_frame *f)
 {
 	const ob_passes *p = &r->passes;
 	const ob_targets *to = &r->targets;
 	int width = r->setup.width, height = r->setup.height;
-	ob_frame_set(f, &r->list, &r->look, c, t, width, height, share, to->sky_texels);
+	ob_frame_set(f, &r->list, &r->look, v, width, height, share, to->sky_texels);
 	if (share->number == 0)
 		ob_draw_list_sort(&r->list, f->view.eye);
 	ob_passes_begin(p, &f->block);
@@ -159,41 +167,99 @@ static bool draw_share(ob_renderer *r, const ob_camera_def *c, double t, const o
 	if (!ob_instances_fill(&r->visible, &r->list, &f->view, height, is_visible, &f->view))
 		return false;
 	ob_passes_colour(p, to, &r->visible, &r->list, f, &r->look);
+	if (!through)
+		return true;
 	if (!ob_instances_fill(&r->visible, &r->list, &f->view, height, is_seen_through, &f->view))
 		return false;
 	ob_passes_through(p, &r->visible);
 	return true;
 }
 
-static bool draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
-		 uint8_t *rgba, ob_error *e)
+// Makes the context current, and evaluates all motions.
+static bool begin(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, ob_error *e)
 {
-	ob_frame f = { 0 };
-	ob_camera_def camera;
-	bool averaged = r->light == OB_LIGHT_AVERAGED;
-	ob_frame_share share = { .count = averaged ? r->setup.samples : 1, .sky_maps = r->targets.sky_maps };
 	if (!ob_context_make_current(&r->context, e))
 		return false;
-	if (!ob_draw_list_fill(&r->list, prev, now, t))
-		return ob_fail(e, "out of memory");
-	if (!ob_passes_take_hulls(&r->passes, now))
-		return ob_fail(e, "out of memory");
-	camera = ob_camera_follow(c, &r->list, r->setup.width, r->setup.height);
+	return (ob_draw_list_fill(&r->list, prev, now, t) && ob_passes_take_hulls(&r->passes, now)) ||
+	       ob_fail(e, "out of memory");
+}
+
+// Draws the picture, without overlays. through: with objects that are seen through.
+static bool paint(ob_renderer *r, const ob_view *v, bool through, ob_frame *f, ob_error *e)
+{
+	const bool averaged = r->light == OB_LIGHT_AVERAGED;
+	ob_frame_share share = { .count = averaged ? r->setup.samples : 1, .sky_maps = r->targets.sky_maps };
 	for (; share.number < share.count; share.number++) {
-		if (!draw_share(r, &camera, t, &share, &f))
+		if (!draw_share(r, v, through, &share, f))
 			return ob_fail(e, "out of memory");
 		if (averaged)
 			ob_passes_add(&r->passes, &r->targets, share.number, share.count);
 	}
 	if (averaged)
 		ob_passes_resolve(&r->passes, &r->targets);
-	if (!draw_overlays(r, now, &f.view))
-		return ob_fail(e, "out of memory");
+	return true;
+}
+
+// Reads the picture, and lets go of the context.
+static bool end(ob_renderer *r, uint8_t *rgba, ob_error *e)
+{
 	ob_passes_read(&r->targets, r->rough ? r->rough : rgba);
 	if (r->rough)
 		ob_smooth(r->rough, rgba, r->brightness, r->setup.width, r->setup.height);
-	GLenum error = glGetError();
+	const GLenum error = glGetError();
+	ob_context_release(&r->context);
 	return error == GL_NO_ERROR ? true : ob_fail(e, "the OpenGL driver reported error 0x%x while drawing", error);
 }
 
-OB_PART(ob_render_part) = { OB_PART_HEAD(ob_render_part), .create = create, .destroy = destroy, .draw = draw };
+static bool draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
+		 uint8_t *rgba, ob_error *e)
+{
+	ob_frame f = { 0 };
+	const int width = r->setup.width, height = r->setup.height;
+	if (!begin(r, prev, now, t, e))
+		return false;
+	const ob_camera_def camera = ob_camera_follow(c, &r->list, width, height);
+	const ob_view view = ob_view_of_camera(&camera, t, width, height);
+	if (!paint(r, &view, true, &f, e))
+		return false;
+	if (!draw_overlays(r, now, &f.view))
+		return ob_fail(e, "out of memory");
+	return end(r, rgba, e);
+}
+
+// Makes room for what a camera sensor sees.
+static bool prepare_sight(ob_renderer *r, size_t pixels, ob_error *e)
+{
+	r->rgba = r->rgba ? r->rgba : malloc(4 * pixels);
+	r->sight = r->sight ? r->sight : malloc(pixels * sizeof *r->sight);
+	return (r->rgba && r->sight) || ob_fail(e, "out of memory");
+}
+
+static bool sense(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t,
+		  const ob_sensor_passport *s, ob_pixel *pixel, ob_error *e)
+{
+	ob_frame f = { 0 };
+	const size_t pixels = (size_t)r->setup.width * (size_t)r->setup.height;
+	if (!prepare_sight(r, pixels, e) || !begin(r, prev, now, t, e) || !ob_targets_add_sight(&r->targets, e))
+		return false;
+	const ob_pose on = ob_draw_pose(prev, now, s->object, t);
+	const ob_mat3 body = ob_quat_matrix(on.q);
+	const ob_view view = ob_view_of_sensor(
+		s, (ob_pose){ ob_add(on.p, ob_rotate(&body, s->pose.p)), ob_quat_mul(on.q, s->pose.q) });
+	if (!paint(r, &view, false, &f, e))
+		return false;
+	if (!ob_instances_fill(&r->exact, &r->list, &view, r->setup.height, is_visible, &view))
+		return ob_fail(e, "out of memory");
+	ob_passes_sight(&r->passes, &r->targets, &r->exact, &r->list, &f, r->sight);
+	if (!end(r, r->rgba, e))
+		return false;
+	for (size_t i = 0; i < pixels; i++) {
+		pixel[i] = (ob_pixel){ .depth = r->sight[i][0],
+				       .id = r->sight[i][1] < 0 ? UINT32_MAX : (uint32_t)r->sight[i][1] };
+		memcpy(pixel[i].rgba, r->rgba + 4 * i, 4);
+	}
+	return true;
+}
+
+OB_PART(ob_render_part) = { OB_PART_HEAD(ob_render_part), .create = create, .destroy = destroy, .draw = draw,
+			    .sense = sense };

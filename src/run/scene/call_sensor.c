@@ -1,10 +1,11 @@
-// imu, encoder, force_torque, touch, lidar: sensors on objects and joints that have been declared.
+// imu, encoder, force_torque, touch, lidar, camera: sensors on objects and joints that have been declared.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/allocate.h"
 #include "base/spelling.h"
+#include "elementary/elementary.h"
 #include "scene/builder.h"
 #include "scene/object_limits.h"
 #include "scene/sandbox.h"
@@ -15,14 +16,15 @@
 #define RATE_MOST 1e5 // Hz
 #define DELAY_MOST 10 // s
 #define KEEP_MOST 1000000
+#define PIXELS_ACROSS_MOST 4096
 
 // Fields of a call.
 typedef struct sensor {
 	const char *on, *joint, *name;
 	ob_vec3 at;
 	ob_quat q, rotation;
-	double rate, delay, fan, rise, reach; // degrees
-	uint32_t keep, beams, rows;
+	double rate, delay, fan, rise, reach, fov; // degrees
+	uint32_t keep, beams, rows, width, height;
 	ob_sensor_noise noise[2];
 } sensor;
 
@@ -31,11 +33,12 @@ typedef struct sensor {
 #define NOISES(before, part) \
 	NOISE(before "noise", noise[part].white), NOISE(before "bias", noise[part].bias), \
 		NOISE(before "walk", noise[part].walk)
-#define COMMON \
+#define TIMES \
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
 		F(rate, .kind = OB_FIELD_NUMBER, .low = RATE_LEAST, .high = RATE_MOST), \
 		F(delay, .kind = OB_FIELD_NUMBER, .high = DELAY_MOST), \
-		F(keep, .kind = OB_FIELD_COUNT, .high = KEEP_MOST), NOISES("", 0)
+		F(keep, .kind = OB_FIELD_COUNT, .high = KEEP_MOST)
+#define COMMON TIMES, NOISES("", 0)
 #define ON F(on, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1, .required = true)
 #define JOINT F(joint, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1, .required = true)
 #define POSE \
@@ -55,17 +58,24 @@ static const ob_field lidar_fields[] = { ON,
 					 F(rise, .kind = OB_FIELD_NUMBER, .high = 180),
 					 F(reach, .kind = OB_FIELD_NUMBER, .low = OB_LENGTH_LEAST,
 					   .high = OB_LENGTH_MOST) };
+static const ob_field camera_fields[] = { ON,
+					  POSE,
+					  TIMES,
+					  F(width, .kind = OB_FIELD_COUNT, .low = 1, .high = PIXELS_ACROSS_MOST),
+					  F(height, .kind = OB_FIELD_COUNT, .low = 1, .high = PIXELS_ACROSS_MOST),
+					  F(fov, .kind = OB_FIELD_NUMBER, .low = 1, .high = 170) };
 
 static const struct {
 	const ob_field *field;
 	size_t fields;
-	uint32_t width; // 0: of its beams
+	uint32_t width; // 0: of its beams or pixels
 } calls[OB_SENSOR_KINDS] = {
 	[OB_SENSOR_IMU] = { imu_fields, sizeof imu_fields / sizeof *imu_fields, 6 },
 	[OB_SENSOR_ENCODER] = { encoder_fields, sizeof encoder_fields / sizeof *encoder_fields, 2 },
 	[OB_SENSOR_FORCE_TORQUE] = { force_torque_fields, sizeof force_torque_fields / sizeof *force_torque_fields, 6 },
 	[OB_SENSOR_TOUCH] = { touch_fields, sizeof touch_fields / sizeof *touch_fields, 1 },
 	[OB_SENSOR_LIDAR] = { lidar_fields, sizeof lidar_fields / sizeof *lidar_fields, 0 },
+	[OB_SENSOR_CAMERA] = { camera_fields, sizeof camera_fields / sizeof *camera_fields, 0 },
 };
 
 static uint32_t find_joint(lua_State *L, const ob_scene *s, const char *kind, const char *name)
@@ -147,28 +157,49 @@ static void add(lua_State *L, ob_builder *b, const char *kind, const ob_sensor_p
 	ob_sandbox_extend(L, OB_SCENE_OBJECT_INSTRUCTIONS);
 }
 
+// Sets beams or pixels, and the angles that they cover.
+static void spread(lua_State *L, const sensor *d, ob_sensor_passport *p)
+{
+	if (p->kind == OB_SENSOR_CAMERA) {
+		if ((uint64_t)d->width * d->height > OB_PIXELS_MAX)
+			ob_sandbox_fail(L, "camera.height: expected at most %d pixels, got %llu", OB_PIXELS_MAX,
+					(unsigned long long)d->width * d->height);
+		p->beams = d->width, p->rows = d->height, p->rise = d->fov * RADIANS;
+		p->fan = 2 * ob_atan2(ob_tan(.5 * p->rise) * d->width, d->height);
+		p->width = ob_picture_values(d->width, d->height);
+		return;
+	}
+	if ((uint64_t)d->beams * d->rows > OB_SENSOR_VALUES_MAX)
+		ob_sandbox_fail(L, "lidar.rows: expected at most %d beams in all rows, got %llu", OB_SENSOR_VALUES_MAX,
+				(unsigned long long)d->beams * d->rows);
+	p->beams = d->beams, p->rows = d->rows, p->fan = d->fan * RADIANS, p->rise = d->rise * RADIANS,
+	p->reach = d->reach;
+	p->width = calls[p->kind].width ? calls[p->kind].width : d->beams * d->rows;
+}
+
 int ob_scene_call_sensor(lua_State *L)
 {
 	ob_builder *b = ob_sandbox_user(L);
 	ob_sensor_passport p = { .kind = (uint32_t)lua_tointeger(L, lua_upvalueindex(1)) };
+	if (p.kind == OB_SENSOR_CAMERA && lua_type(L, 1) != LUA_TTABLE) // one that looks at the scene
+		return ob_scene_call_camera(L);
 	sensor d = { .q = { .w = NAN },
 		     .rotation = { .w = NAN },
 		     .beams = 360,
 		     .rows = 1,
 		     .fan = 360,
 		     .rise = 30,
-		     .reach = 30 };
+		     .reach = 30,
+		     .fov = 60,
+		     .width = 320,
+		     .height = 240 };
 	const char *kind = ob_sensor_kind_name(p.kind);
 	lua_settop(L, 1);
 	ob_fields_read(L, 1, kind, calls[p.kind].field, calls[p.kind].fields, &d);
-	if ((uint64_t)d.beams * d.rows > OB_SENSOR_VALUES_MAX)
-		ob_sandbox_fail(L, "%s.rows: expected at most %d beams in all rows, got %llu", kind,
-				OB_SENSOR_VALUES_MAX, (unsigned long long)d.beams * d.rows);
+	spread(L, &d, &p);
 	place(L, b->scene, kind, &d, &p);
 	set_name(L, b->scene, kind, d.name, &p);
 	p.rate = d.rate, p.delay = d.delay, p.kept = d.keep;
-	p.beams = d.beams, p.rows = d.rows, p.fan = d.fan * RADIANS, p.rise = d.rise * RADIANS, p.reach = d.reach;
-	p.width = calls[p.kind].width ? calls[p.kind].width : d.beams * d.rows;
 	memcpy(p.noise, d.noise, sizeof p.noise);
 	add(L, b, kind, &p);
 	lua_pushstring(L, p.name);

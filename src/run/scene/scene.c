@@ -84,7 +84,6 @@ static bool offer_calls(ob_sandbox *s, ob_error *e)
 		{ NULL, "heightfield", ob_scene_call_heightfield },
 		{ NULL, "mesh", ob_scene_call_mesh },
 		{ NULL, "material", ob_scene_call_material },
-		{ NULL, "camera", ob_scene_call_camera },
 		{ NULL, "script", ob_scene_call_script },
 		{ NULL, "param", ob_scene_call_param },
 		{ NULL, "controls", ob_scene_call_controls },

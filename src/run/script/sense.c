@@ -26,6 +26,8 @@ int ob_script_call_sense(lua_State *L)
 	const uint32_t sensor = find(L, r);
 	double value[OB_SENSOR_VALUES_MAX], time;
 	uint64_t number;
+	if (sensor != UINT32_MAX && r->data->sensor[sensor].kind == OB_SENSOR_CAMERA)
+		ob_sandbox_fail(L, "sense: \"%s\" is a camera, whose pictures are for programs", lua_tostring(L, 1));
 	if (sensor == UINT32_MAX || !ob_universe_get_samples(r->u, sensor, 0, &number, &time, value, 1))
 		return 0;
 	const uint32_t width = r->data->sensor[sensor].width;

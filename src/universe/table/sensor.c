@@ -26,7 +26,12 @@ uint64_t ob_sensor_room(const ob_sensor_passport *s, double h)
 
 uint64_t ob_sensors_numbers(const ob_universe *u)
 {
-	return u->header.sizes.sensor_values;
+	uint64_t sum = 0;
+	for (uint32_t i = 0; i < u->step_data.sensors; i++) {
+		const ob_sensor_passport *s = &u->step_data.sensor[i];
+		sum += s->kind == OB_SENSOR_CAMERA ? 0 : s->kept * (1 + (uint64_t)s->width);
+	}
+	return sum;
 }
 
 void ob_sensors_write(ob_universe *u, const ob_sensor_passport *sensor, uint32_t sensors)
@@ -50,13 +55,21 @@ uint64_t ob_sensor_due(const ob_sensor_passport *s, double h, uint64_t n, double
 	return due > 0 ? (uint64_t)(due * (1 + 1e-12) + 1e-9) : 0;
 }
 
+// Values of a sample are as many as its kind allows, and as its beams or pixels take.
+static bool has_width(const ob_sensor_passport *s)
+{
+	const uint64_t places = (uint64_t)s->beams * s->rows;
+	if (s->kind == OB_SENSOR_CAMERA)
+		return places >= 1 && places <= OB_PIXELS_MAX && s->width == ob_picture_values(s->beams, s->rows);
+	return s->width >= 1 && s->width <= OB_SENSOR_VALUES_MAX && places <= OB_SENSOR_VALUES_MAX;
+}
+
 bool ob_sensor_makes_sense(const ob_universe *u, const ob_sensor_passport *s)
 {
 	const uint64_t room = (uint64_t)s->kept * (1 + (uint64_t)s->width), all = u->header.sizes.sensor_values;
-	return s->kind < OB_SENSOR_KINDS && s->object < u->step_data.objects_max && s->width >= 1 &&
-	       s->width <= OB_SENSOR_VALUES_MAX && s->kept > 0 && room <= all && s->first <= all - room &&
-	       s->rate > 0 && isfinite(s->rate) && s->delay >= 0 &&
-	       (uint64_t)s->beams * s->rows <= OB_SENSOR_VALUES_MAX && memchr(s->name, 0, sizeof s->name);
+	return s->kind < OB_SENSOR_KINDS && s->object < u->step_data.objects_max && has_width(s) && s->kept > 0 &&
+	       room <= all && s->first <= all - room && s->rate > 0 && isfinite(s->rate) && s->delay >= 0 &&
+	       memchr(s->name, 0, sizeof s->name);
 }
 
 static ob_word *place_of(const ob_universe *u, const ob_sensor_passport *s, uint64_t number)
@@ -108,9 +121,9 @@ size_t ob_universe_get_samples(const ob_universe *u, uint32_t sensor, uint64_t a
 	size_t n = 0;
 	while (k++ < end) {
 		const ob_word *from = place_of(u, &s, k);
-		ob_word *to = (ob_word *)(value + n * s.width), *at = (ob_word *)&time[n];
+		ob_word *to = value ? (ob_word *)(value + n * s.width) : NULL, *at = (ob_word *)&time[n];
 		*at = __atomic_load_n(from, __ATOMIC_ACQUIRE);
-		for (uint32_t i = 0; i < s.width; i++)
+		for (uint32_t i = 0; to && i < s.width; i++)
 			to[i] = __atomic_load_n(from + 1 + i, __ATOMIC_ACQUIRE);
 		number[n] = k;
 		n += __atomic_load_n(taken, __ATOMIC_RELAXED) + 1 < k + s.kept;

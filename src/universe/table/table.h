@@ -123,7 +123,7 @@ ob_joint_load ob_joint_load_now(const ob_universe *u, uint32_t joint);
 ob_joint_load ob_joint_load_of(const ob_universe *u, uint32_t joint, uint64_t step);
 // Numbers that the universe keeps of a sensor's samples, with steps of h (s).
 uint64_t ob_sensor_room(const ob_sensor_passport *s, double h);
-// Sum of all sensors.
+// Sum of all sensors that simulators sample: all but cameras.
 uint64_t ob_sensors_numbers(const ob_universe *u);
 // Writes the scene's sensors; their rate may be 0: a sample in each step. Call from the host, before the run.
 void ob_sensors_write(ob_universe *u, const ob_sensor_passport *sensor, uint32_t sensors);
