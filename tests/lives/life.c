@@ -114,6 +114,18 @@ static void put_things(writer *w, life *l, uint64_t seed, uint64_t left, bool fr
 	}
 }
 
+// From a seed of their own, so that all else of a life is as it was without them.
+static void put_fmus(writer *w, uint64_t seed, uint64_t left)
+{
+	if (ob_splitmix(&seed) % 4)
+		return;
+	for (uint32_t i = 0; i < LIFE_FMUS; i++) {
+		const uint64_t mine = ob_splitmix(&seed);
+		if (left >> i & 1)
+			put_fmu(w, mine);
+	}
+}
+
 void life_make(life *l, uint64_t seed, life_parts left, bool free)
 {
 	uint64_t more = seed * 0xd1342543de82ef95u + 7;
@@ -141,6 +153,8 @@ void life_make(life *l, uint64_t seed, life_parts left, bool free)
 		if (left.objects >> i & 1)
 			put_object(&w, objects + i, l->scripts, l->closed);
 	put_things(&w, l, ob_splitmix(&more), left.objects >> LIFE_OBJECTS, free);
+	if (!free)
+		put_fmus(&w, seed * 0xaef17502108ef2d9u + 3, left.objects >> (LIFE_OBJECTS + LIFE_THINGS));
 	life_event strange[LIFE_EVENTS], deeds[LIFE_DEEDS];
 	take(l, strange, draw_events(l, events, strange), left.events);
 	take(l, deeds, draw_deeds(ob_splitmix(&more), deeds), left.events >> LIFE_EVENTS);

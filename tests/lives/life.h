@@ -2,8 +2,8 @@
 //
 // A life follows from its seed alone; objects and events can be left out of it, one by one, to shrink it.
 //
-//   bit        0 ..             LIFE_OBJECTS ..     62                       63
-//   objects    plain bodies     things (things.h)   a reader all the while   failing islands are frozen
+//   bit        0 ..             LIFE_OBJECTS ..     LIFE_OBJECTS + LIFE_THINGS ..   62                       63
+//   objects    plain bodies     things (things.h)   bodies with FMUs                a reader all the while   failing islands are frozen
 //   events     of a stranger    deeds of visitors (deeds.h) from LIFE_EVENTS on
 #ifndef OB_TESTS_LIVES_LIFE_H
 #define OB_TESTS_LIVES_LIFE_H
@@ -15,6 +15,7 @@ enum {
 	LIFE_STEPS = 300,
 	LIFE_OBJECTS = 12,
 	LIFE_THINGS = 12,
+	LIFE_FMUS = 4,
 	LIFE_EVENTS = 40,
 	LIFE_DEEDS = 24,
 	LIFE_READER = 62,

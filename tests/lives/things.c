@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <zip.h>
+
 #include "base/random.h"
 #include "import/import.h"
 
@@ -457,4 +459,68 @@ void put_thing(writer *w, things *t, uint32_t i, uint64_t seed)
 	default:
 		put_script(w, t, i);
 	}
+}
+
+// ---- FMUs
+
+typedef struct fmu_model {
+	const char *name; // of tests/fmu, for FMI 3
+	const char *variable[5]; // "name' causality='..", in the order of their references
+} fmu_model;
+
+static const fmu_model fmu_models[] = {
+	{ "hover",
+	  { "z' causality='input", "vz' causality='input", "mass' causality='input", "height' causality='parameter",
+	    "force' causality='output" } },
+	{ "van_der_pol",
+	  { "time' causality='output", "x0' causality='output", "x1' causality='local", "mu' causality='parameter",
+	    "force' causality='output" } },
+	{ "bad",
+	  { "time' causality='output", "how' causality='parameter", "x' causality='output",
+	    "when' causality='parameter", "force' causality='output" } },
+};
+
+// Packs a model, unless that has been done.
+static void write_fmu(const fmu_model *m)
+{
+	char path[300], about[2000], library[400], place[100];
+	snprintf(path, sizeof path, "%s/%s.fmu", things_folder(), m->name);
+	if (access(path, R_OK) == 0)
+		return;
+	writer w = { .to = about, .size = sizeof about };
+	put(&w,
+	    "<fmiModelDescription fmiVersion='3.0' modelName='%s' instantiationToken='{obsim}'><CoSimulation "
+	    "modelIdentifier='%s' canGetAndSetFMUState='true' canSerializeFMUState='true'/><ModelVariables>",
+	    m->name, m->name);
+	for (int i = 0; i < 5; i++)
+		put(&w, "<Float64 name='%s' valueReference='%d'/>", m->variable[i], i);
+	put(&w, "</ModelVariables></fmiModelDescription>");
+	snprintf(library, sizeof library, LIFE_FMUS_BUILT "/%s3.so", m->name);
+	snprintf(place, sizeof place, "binaries/" LIFE_MACHINE "-linux/%s.so", m->name);
+	zip_t *zip = zip_open(path, ZIP_CREATE, NULL);
+	if (!zip ||
+	    zip_file_add(zip, "modelDescription.xml", zip_source_buffer(zip, about, (size_t)w.used, 0), 0) < 0 ||
+	    zip_file_add(zip, place, zip_source_file(zip, library, 0, -1), 0) < 0 || zip_close(zip) != 0)
+		abort();
+}
+
+void put_fmu(writer *w, uint64_t seed)
+{
+	static const unsigned char faults[] = { 0, 2, 3, 4, 5, 6 }; // of bad.c; not 1, which hangs
+	w->seed = seed;
+	const fmu_model *m = &fmu_models[below(w, 3)];
+	write_fmu(m);
+	put_body(w, false);
+	put_vector(w, "at", -.5, 2.5);
+	put(w, " density = %.0f, fmu = '%s.fmu', outputs = { force = '%s.%c' },", within(w, 100, 3000), m->name,
+	    one_in(w, 4) ? "torque" : "force", 'x' + (int)below(w, 3));
+	if (m == &fmu_models[0])
+		put(w,
+		    " inputs = { z = 'position.z', vz = 'velocity.z', mass = 'mass' }, parameters = { height = %.2f }",
+		    within(w, .5, 3));
+	else if (m == &fmu_models[1])
+		put(w, " parameters = { mu = %.2f }", within(w, 0, 3));
+	else
+		put(w, " parameters = { how = %u, when = %.2f }", faults[below(w, sizeof faults)], within(w, 0, 5));
+	put(w, " }\n");
 }

@@ -1,5 +1,5 @@
 // Things of a life beside its plain bodies: bodies in chains of joints, compounds, hulls, ground of triangles, bodies that
-// follow paths, sensors, models of others, scripts that join and drive.
+// follow paths, sensors, models of others, scripts that join and drive, FMUs.
 #ifndef OB_TESTS_LIVES_THINGS_H
 #define OB_TESTS_LIVES_THINGS_H
 
@@ -18,6 +18,8 @@ typedef struct things {
 
 // Writes thing i, which follows from its seed and the things before it.
 void put_thing(writer *w, things *t, uint32_t i, uint64_t seed);
+// Writes a body with an FMU, half of them such as fail, and its file.
+void put_fmu(writer *w, uint64_t seed);
 // Writes a joint of any kind, with limits, springs, motors, strength by chance; b: "" is the world.
 void put_joint(writer *w, const char *a, const char *b, ob_vec3 at, const char *name);
 // Writes a free body of any shape but compounds, for a universe that runs.
