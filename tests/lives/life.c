@@ -114,7 +114,7 @@ static void put_things(writer *w, life *l, uint64_t seed, uint64_t left, bool fr
 	}
 }
 
-// From a seed of their own, so that all else of a life is as it was without them.
+// Draws them from a seed of their own, so that all else of a life is as it was without them.
 static void put_fmus(writer *w, uint64_t seed, uint64_t left)
 {
 	if (ob_splitmix(&seed) % 4)

@@ -464,7 +464,7 @@ void put_thing(writer *w, things *t, uint32_t i, uint64_t seed)
 // ---- FMUs
 
 typedef struct fmu_model {
-	const char *name; // of tests/fmu, for FMI 3
+	const char *name; // in tests/fmu, for FMI 3
 	const char *variable[5]; // "name' causality='..", in the order of their references
 } fmu_model;
 
@@ -506,7 +506,7 @@ static void write_fmu(const fmu_model *m)
 
 void put_fmu(writer *w, uint64_t seed)
 {
-	static const unsigned char faults[] = { 0, 2, 3, 4, 5, 6 }; // of bad.c; not 1, which hangs
+	static const unsigned char faults[] = { 0, 2, 3, 4, 5, 6 }; // in bad.c; 1, a hang, would take the run's patience
 	w->seed = seed;
 	const fmu_model *m = &fmu_models[below(w, 3)];
 	write_fmu(m);
