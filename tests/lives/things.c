@@ -506,7 +506,7 @@ static void write_fmu(const fmu_model *m)
 
 void put_fmu(writer *w, uint64_t seed)
 {
-	static const unsigned char faults[] = { 0, 2, 3, 4, 5, 6 }; // in bad.c; 1, a hang, would take the run's patience
+	static const unsigned char faults[] = { 0, 2, 3, 4, 5, 6 }; // in bad.c; 1 hangs
 	w->seed = seed;
 	const fmu_model *m = &fmu_models[below(w, 3)];
 	write_fmu(m);
