@@ -45,7 +45,7 @@ _PRESENT, _STATIC, _FROZEN, _KINEMATIC, _SENSOR = 1, 2, 4, 8, 64
 _WORLD = 0xffffffff
 _SAME = object()
 _numbers = itertools.count()
-_OPTIONS = {'step', 'seed', 'duration', 'arch', 'isolation', 'workers', 'harden', 'tolerance', 'on_death', 'name', 'room', 'check', 'resume'}  # all others are settings
+_OPTIONS = {'step', 'seed', 'duration', 'arch', 'isolation', 'workers', 'harden', 'tolerance', 'on_death', 'name', 'room', 'check', 'resume', 'record'}  # all others are settings
 
 
 def names():

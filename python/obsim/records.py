@@ -62,14 +62,21 @@ class Record:
                                  'name': [n.decode() for n in e['name']], 'what': [EVENTS[k] for k in e['kind']]})
 
     def samples(self, sensor: str) -> Any:
-        """Samples of a sensor: arrays of numbers, times (s) and values, shape (samples, width)."""
+        """Samples of a sensor: arrays of numbers, times (s) and values, shape (samples, width); of a camera pixels, shape (samples,
+        height, width), with the fields depth (m), id and colour (red, green, blue, alpha)."""
         known = [n.decode() for n in self._file['sensors']['name']] if 'sensors' in self._file else []
         if sensor not in known:
             raise KeyError(f'no sensor {sensor!r}, expected one of {known}')
-        width = int(self._file['sensors']['width'][known.index(sensor)])
+        about = self._file['sensors'][known.index(sensor)]
+        width = int(about['width'])
         rows = self._file['samples'][:]
         rows = rows[rows['sensor'] == known.index(sensor)]
         whole = rows[rows['first'] == 0]
+        if about['kind'] == 5: # a camera
+            shape = int(about['rows']), int(about['beams'])
+            first, n = whole['value'][:, 0].astype(int), shape[0] * shape[1]
+            pixels = [self._file['pixels'][f:f + n].reshape(shape) for f in first]
+            return whole['number'], whole['time'], numpy.array(pixels) if pixels else numpy.empty((0, *shape), self._file['pixels'].dtype)
         return whole['number'], whole['time'], rows['value'].reshape(len(whole), -1)[:, :width]
 
     def close(self) -> None:

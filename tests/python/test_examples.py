@@ -8,12 +8,16 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 try:
     import numpy
 except ImportError:
     print('python3-numpy is not installed')
     sys.exit(77)
+
+sys.path.append(os.path.join(os.path.dirname(__file__), '../run'))
+import mcap
 
 import obsim
 
@@ -35,9 +39,20 @@ class Learning(unittest.TestCase):
         self.assertTrue(balance['main']())
 
     def test_course(self):
-        """The car drives a lap by its lidar, and touches no wall."""
+        """The car drives a lap by its lidar and its camera, and touches no wall; its record opens as MCAP."""
         course = runpy.run_path(os.path.join(os.path.dirname(__file__), '../../examples/course.py'))
-        self.assertTrue(course['main']())
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'lap.h5')
+            with unittest.mock.patch('sys.argv', ['course.py', path]):
+                self.assertTrue(course['main']())
+            subprocess.run([os.environ['OBSIM'], 'export', path, path + '.mcap'], check=True, stdout=subprocess.DEVNULL)
+            with open(path + '.mcap', 'rb') as f:
+                found = mcap.messages(f.read())
+        states, last = len(found['/poses']), found['/poses'][-1][0]
+        self.assertGreater(last, 10)
+        self.assertEqual(len(found['/eye/depth']), round(10 * last))
+        self.assertEqual([len(m['ranges']) for _, _, m in found['/lidar']], [61] * len(found['/lidar']))
+        self.assertGreater(len(found['/lidar']), states - 2)
 
 
 class Examples(unittest.TestCase):

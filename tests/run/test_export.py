@@ -6,7 +6,6 @@ If OBSIM_PICTURES names a directory, screenshots are kept there.
 
 import base64
 import gzip
-import json
 import os
 import re
 import struct
@@ -14,6 +13,7 @@ import unittest
 
 import browser
 import glb
+import mcap
 import program
 import server
 
@@ -135,44 +135,32 @@ class Served(Case):
 		self.refuse("export", self.record, "/dev/full", saying="No space left on device", code=1)
 
 
-def mcap_records(data):
-	"""(type, content) of each record, by the specification of MCAP."""
-	magic = b"\x89MCAP0\r\n"
-	assert data.startswith(magic) and data.endswith(magic)
-	at = len(magic)
-	while at < len(data) - len(magic):
-		kind, size = struct.unpack_from("<BQ", data, at)
-		yield kind, data[at + 9:at + 9 + size]
-		at += 9 + size
-	assert at == len(data) - len(magic)
-
-
 class Mcap(Case):
 	def test_mcap(self):
 		path = self.path("run.mcap")
 		done = program.call("export", self.record, path)
 		self.assertEqual((done.returncode, done.stderr), (0, ""))
 		with open(path, "rb") as f:
-			records = list(mcap_records(f.read()))
+			data = f.read()
+		records = list(mcap.records(data))
 		self.assertEqual([kind for kind, _ in records if kind != 5], [1, 3, 4, 3, 4, 15, 2])
 		self.assertEqual(records[-1][1], bytes(20)) # no summary
-		messages, numbers, before = {1: [], 2: []}, {1: 0, 2: 0}, 0
+		messages, numbers, before = mcap.messages(data), {1: 0, 2: 0}, 0
 		for kind, content in records:
 			if kind == 5:
 				channel, number, log, publish = struct.unpack_from("<HIQQ", content)
 				self.assertEqual(number, numbers[channel])
 				self.assertTrue(before <= log == publish)
 				numbers[channel], before = number + 1, log
-				messages[channel].append((log * 1e-9, json.loads(content[22:])))
-		entities = [e for _, m in messages[1] for e in m["entities"]]
+		entities = [e for _, _, m in messages["/scene"] for e in m["entities"]]
 		names = {e["id"]: e["metadata"][0]["value"] for e in entities}
 		self.assertIn("ball", names.values())
 		for e in entities: # each shape has a body
 			self.assertTrue(e["cubes"] or e["spheres"] or e["cylinders"] or e["triangles"], names[e["id"]])
 			self.assertEqual(e["frame_id"], "object/" + e["id"])
-		self.assertEqual(sum(len(m["deletions"]) for _, m in messages[1]), 1) # the capsule dies
+		self.assertEqual(sum(len(m["deletions"]) for _, _, m in messages["/scene"]), 1) # the capsule dies
 		at = {}
-		for time, m in messages[2]:
+		for time, _, m in messages["/poses"]:
 			for t in m["transforms"]:
 				q = t["rotation"]
 				self.assertAlmostEqual(sum(v * v for v in q.values()), 1, 6)

@@ -63,6 +63,7 @@ complete -c obsim -n $serve -l readonly -d 'viewers may look, and change nothing
 complete -c obsim -n $serve -l viewers -x -d 'viewers at a time'
 complete -c obsim -n $serve -l log-requests -r -F -d 'what viewers ask for, and the state'
 complete -c obsim -n '__fish_seen_subcommand_from serve control' -l room -x -d 'objects that viewers may add'
+complete -c obsim -n '__fish_seen_subcommand_from control' -l record -r -F -d 'trajectories as HDF5'
 complete -c obsim -n $serve -l record -r -F -d 'record what is served'
 complete -c obsim -n $serve -l replay -r -F -d 'show what was recorded'
 complete -c obsim -n '__fish_seen_subcommand_from import' -F

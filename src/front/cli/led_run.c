@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/log.h"
 #include "checkpoint/saved_run.h"
 #include "cli/observe.h"
 #include "cli/quantity.h"
@@ -65,6 +66,43 @@ static const char **add_defines(const ob_led_run *r, const char *words, uint32_t
 	return NULL;
 }
 
+// ---- the record
+
+static void end_record(ob_led_run *r)
+{
+	ob_error e;
+	if (!ob_recorder_close(r->recorder, &e))
+		ob_log_warn("%s", e.text);
+	r->recorder = NULL;
+}
+
+// Records the state where the run stands, if it is the next one. Those that are put back are in the record already.
+static bool record(ob_led_run *r, ob_error *e)
+{
+	const ob_universe *u = ob_host_universe(r->host);
+	const uint64_t step = ob_step_count(u), every = r->scene->record_every;
+	if (!r->recorder || step % every || (r->recorded != UINT64_MAX && step != r->recorded + every))
+		return true;
+	r->recorded = step;
+	return ob_snapshot_take(&r->now, u, 0, e) && ob_recorder_sense(r->recorder, u, e) &&
+	       ob_recorder_append(r->recorder, &r->now, e);
+}
+
+// Runs to a step, and records the states on the way. A program that calls ends the way.
+static bool go(ob_led_run *r, uint64_t step, ob_error *e)
+{
+	const ob_universe *u = ob_host_universe(r->host);
+	uint64_t next;
+	do {
+		next = (ob_step_count(u) / r->scene->record_every + 1) * r->scene->record_every;
+		next = r->recorder && next < step ? next : step;
+		ob_host_go(r->host, next);
+		if (!ob_host_wait(r->host, e) || !record(r, e))
+			return false;
+	} while (next < step && ob_step_count(u) == next);
+	return true;
+}
+
 // ---- the run
 
 bool ob_led_run_start(ob_led_run *r, ob_error *e)
@@ -78,8 +116,11 @@ bool ob_led_run_start(ob_led_run *r, ob_error *e)
 		return false;
 	ob_warn_of_overlap(r->host);
 	r->step = ob_step_count(ob_host_universe(r->host));
-	ob_host_go(r->host, r->step);
-	return ob_host_wait(r->host, e);
+	end_record(r);
+	r->recorded = UINT64_MAX;
+	if (r->q.record && !(r->recorder = ob_request_record(&r->q, r->scene, ob_host_universe(r->host), e)))
+		return false;
+	return go(r, r->step, e);
 }
 
 // Begins the run anew, as a reset wants it. false and e: the run has ended.
@@ -164,14 +205,15 @@ bool ob_led_run_go_on(ob_led_run *r, ob_error *e)
 		}
 		if (r->q.isolation == OB_ISOLATION_INSIDE && ob_control_answered(r->control))
 			return true;
-		ob_host_go(r->host, r->step);
-		if (!ob_host_wait(r->host, e))
+		if (!go(r, r->step, e))
 			return false;
 	}
 }
 
 void ob_led_run_finish(ob_led_run *r)
 {
+	end_record(r);
+	ob_snapshot_finish(&r->now);
 	ob_host_stop(r->host);
 	ob_control_destroy(r->control);
 	ob_scene_free(r->scene);

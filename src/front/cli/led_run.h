@@ -7,6 +7,7 @@
 
 #include "cli/request.h"
 #include "host/control.h"
+#include "record/record.h"
 
 typedef struct ob_led_run {
 	const ob_arguments *a;
@@ -22,6 +23,9 @@ typedef struct ob_led_run {
 	ob_control *control;
 	ob_host *host;
 	uint64_t step; // to which it goes
+	ob_recorder *recorder; // NULL: it is not recorded
+	ob_snapshot now;
+	uint64_t recorded; // step of the last recorded state; UINT64_MAX: none yet
 } ob_led_run;
 
 // Reads options and scene, which the arguments keep. false and e: they are wrong. To be finished in any case.

@@ -69,7 +69,7 @@ typedef enum ob_command_bit {
 	X(COLOUR_BY, NULL, 0, "colour-by", OB_COLOUR_KEY_NAMES, "colour objects by who simulates them, and how (own)", \
 	  RUN) \
 	X(RECORD, "What is kept", 0, "record", "FILE", \
-	  "trajectories, and all that it takes to draw them again, as HDF5", RUN | SERVE) \
+	  "trajectories, and all that it takes to draw them again, as HDF5", RUN | SERVE | CONTROL) \
 	X(SERIES, NULL, 0, "series", "FILE", "energy, momentum, penetration of each step, as CSV", RUN) \
 	X(REPORT, NULL, 0, "report", "short|full", "five lines, or all that was measured (short)", RUN) \
 	X(JSON, NULL, 0, "json", "FILE", "the report, as JSON; - = standard output", RUN | COMPARE) \

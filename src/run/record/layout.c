@@ -135,7 +135,7 @@ static const ob_record_member sensor_members[] = {
 };
 const ob_record_table ob_record_sensors = {
 	{ "sensors", "SI, Hz, rad", "pose: in the object's frame",
-	  "kind: from 0, imu, encoder, force_torque, touch, lidar; rate 0: a sample in each step" },
+	  "kind: from 0, imu, encoder, force_torque, touch, lidar, camera; rate 0: a sample in each step" },
 	sizeof(ob_sensor_passport),
 	COUNT(sensor_members),
 	sensor_members,
@@ -151,10 +151,26 @@ static const ob_record_member sample_members[] = {
 };
 const ob_record_table ob_record_samples = {
 	{ "samples", "SI", "the sensor's",
-	  "samples that could be read at recorded states, six values a row, from the index `first` on; NaN: no value" },
+	  "samples that could be read at recorded states, six values a row, from the index `first` on; NaN: no value. "
+	  "Of a camera the first value is the row of its first pixel in "
+	  "/pixels" },
 	sizeof(ob_record_sample),
 	COUNT(sample_members),
 	sample_members,
+};
+
+static const ob_record_member pixel_members[] = {
+	MEMBER("depth", OB_RECORD_F32, offsetof(ob_pixel, depth), 0),
+	MEMBER("id", OB_RECORD_U32, offsetof(ob_pixel, id), 0),
+	MEMBER("colour", OB_RECORD_U8, offsetof(ob_pixel, rgba), 4),
+};
+const ob_record_table ob_record_pixels = {
+	{ "pixels", "m, 1, sRGB", "the camera's",
+	  "pictures of cameras, row after row, from the upper left: depth along the view, id of the object "
+	  "(4294967295: none), colour" },
+	sizeof(ob_pixel),
+	COUNT(pixel_members),
+	pixel_members,
 };
 
 #define CAMERA(name, type) MEMBER(#name, type, offsetof(ob_camera_def, name), 0)

@@ -75,7 +75,7 @@ typedef struct ob_record_motion {
 	ob_motion motion;
 } ob_record_motion;
 
-// Some values of a sample.
+// Some values of a sample. A picture has one: the row of its first pixel in /pixels.
 enum { OB_RECORD_VALUES = 6 };
 typedef struct ob_record_sample {
 	uint32_t sensor, first; // first: index of the first of these values
@@ -96,6 +96,7 @@ extern const ob_record_table ob_record_motions; // ob_record_motion: only the me
 extern const ob_record_table ob_record_hulls; // ob_record_hull
 extern const ob_record_table ob_record_sensors; // ob_sensor_passport
 extern const ob_record_table ob_record_samples; // ob_record_sample
+extern const ob_record_table ob_record_pixels; // ob_pixel
 extern const ob_record_table ob_record_cameras; // ob_camera_def
 extern const ob_record_table ob_record_look; // ob_look_def
 extern const ob_record_table ob_record_mesh_vertices; // ob_mesh_vertex

@@ -72,6 +72,11 @@ const ob_snapshot *ob_recording_state(const ob_recording *r)
 	return part_of(r)->state(r);
 }
 
+const ob_recorded_sample *ob_recording_samples(const ob_recording *r, size_t *n)
+{
+	return part_of(r)->samples(r, n);
+}
+
 uint64_t ob_recording_population(const ob_recording *r)
 {
 	return part_of(r)->population(r);

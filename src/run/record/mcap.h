@@ -1,6 +1,5 @@
-// A record as MCAP (mcap.dev, version 0), for Foxglove and other tools of robotics. Messages are JSON, by the schemas of
-// Foxglove: what each object looks like when it comes or changes (topic /scene, foxglove.SceneUpdate), and where it is at
-// each recorded instant (topic /poses, foxglove.FrameTransforms): frame "object/ID" in frame "world", metres, z up.
+// A record as MCAP (mcap.dev, version 0), for Foxglove, Rerun and other tools of robotics: the messages of foxglove.h, logged at
+// the recorded states.
 #ifndef OB_RECORD_MCAP_H
 #define OB_RECORD_MCAP_H
 

@@ -15,6 +15,7 @@ const ob_recording_info *ob_hdf5_recording_get_info(const ob_recording *r);
 void ob_hdf5_recording_close(ob_recording *r);
 bool ob_hdf5_recording_next(ob_recording *r, bool *ended, ob_error *e);
 const ob_snapshot *ob_hdf5_recording_state(const ob_recording *r);
+const ob_recorded_sample *ob_hdf5_recording_samples(const ob_recording *r, size_t *n);
 uint64_t ob_hdf5_recording_population(const ob_recording *r);
 
 typedef struct ob_record_part {
@@ -28,6 +29,7 @@ typedef struct ob_record_part {
 	void (*close)(ob_recording *r);
 	bool (*next)(ob_recording *r, bool *ended, ob_error *e);
 	const ob_snapshot *(*state)(const ob_recording *r);
+	const ob_recorded_sample *(*samples)(const ob_recording *r, size_t *n);
 	uint64_t (*population)(const ob_recording *r);
 } ob_record_part;
 

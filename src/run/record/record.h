@@ -7,6 +7,7 @@
 //   /time, /step [n]                the recorded states
 //   /position, /attitude, /velocity, /angular_velocity, /asleep [n][ids]   the same as numbers; NaN, 255: no object
 //   /sensors [k], /samples [s]         sensors of the scene; their samples
+//   /pixels [p]                        pictures of cameras
 //   /objects/id, name, shape, size ..  [ids]   the latest object of each id
 //
 // Each has attributes "units", "frame" and "description". n grows by one with each append, e and m with new entries,

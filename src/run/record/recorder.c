@@ -293,7 +293,7 @@ struct ob_recorder {
 	char *path;
 	hid_t file, set[COLUMNS]; // negative: missing
 	objects objects;
-	list events, motions, hulls, joints, samples;
+	list events, motions, hulls, joints, samples, pixels;
 	preallocation allocated;
 	hsize_t chunk_ids, chunk_rows[COLUMNS]; // in a chunk of the columns
 	uint32_t written_count; // ids in the previous row, 0: there is none
@@ -492,7 +492,7 @@ static bool create_file(ob_recorder *r, const ob_record_facts *about)
 	    !create_list(&r->events, r->file) || !create_list(&r->motions, r->file) ||
 	    !create_list(&r->hulls, r->file) || !create_list(&r->joints, r->file))
 		return false;
-	if (r->sensors && (!create_list(&r->samples, r->file) ||
+	if (r->sensors && (!create_list(&r->samples, r->file) || !create_list(&r->pixels, r->file) ||
 			   !write_table(r->file, &ob_record_sensors, about->scene->sensor, r->sensors)))
 		return false;
 	r->chunk_ids = r->count < IDS_AT_ONCE ? IDS_AT_ONCE : r->count;
@@ -527,6 +527,7 @@ ob_recorder *ob_hdf5_recorder_create(const char *path, const ob_record_facts *ab
 	r->hulls = list_of(&ob_record_hulls);
 	r->joints = list_of(&ob_record_joints);
 	r->samples = list_of(&ob_record_samples);
+	r->pixels = list_of(&ob_record_pixels);
 	r->sensors = about->scene->sensors;
 	r->sensed = calloc(r->sensors + 1, sizeof *r->sensed);
 	for (int i = 0; i < COLUMNS; i++)
@@ -814,9 +815,11 @@ static bool append_samples(ob_recorder *r, const ob_universe *u, uint32_t sensor
 {
 	ob_sensor_passport p;
 	haddr_t used = 0;
-	if (!ob_universe_get_sensor(u, sensor, &p) || p.kind == OB_SENSOR_CAMERA)
+	if (!ob_universe_get_sensor(u, sensor, &p))
 		return true;
-	const uint32_t parts = (p.width + OB_RECORD_VALUES - 1) / OB_RECORD_VALUES;
+	const bool is_camera = p.kind == OB_SENSOR_CAMERA;
+	const uint32_t width = is_camera ? 1 : p.width, parts = (width + OB_RECORD_VALUES - 1) / OB_RECORD_VALUES;
+	const hsize_t pixels = is_camera ? (hsize_t)p.beams * p.rows : 0, first = r->pixels.rows;
 	if (!OB_GROW(r->sample_number, p.kept) || !OB_GROW(r->sample_time, p.kept) ||
 	    !OB_GROW(r->sample_value, (size_t)p.kept * p.width) || !OB_GROW(r->fresh_sample, (size_t)p.kept * parts))
 		return ob_fail(e, "%s: no memory to record sensor \"%s\"", r->path, p.name);
@@ -833,12 +836,19 @@ static bool append_samples(ob_recorder *r, const ob_universe *u, uint32_t sensor
 					  r->sample_time[of],
 					  { 0 } };
 		for (uint32_t k = 0; k < OB_RECORD_VALUES; k++)
-			to->value[k] = to->first + k < p.width ? r->sample_value[of * p.width + to->first + k] : NAN;
+			to->value[k] = to->first + k < width ? r->sample_value[of * p.width + to->first + k] : NAN;
+		if (is_camera)
+			to->value[0] = (double)(first + of * pixels);
 	}
 	if (H5Fget_eoa(r->file, &used) >= 0 &&
-	    !preallocate(&r->allocated, r->path, used, list_bytes(&r->samples, n * parts) + INDEX_BYTES, e))
+	    !preallocate(&r->allocated, r->path, used,
+			 list_bytes(&r->samples, n * parts) + list_bytes(&r->pixels, n * pixels) + INDEX_BYTES, e))
 		return false;
-	return append_list(&r->samples, r->fresh_sample, n * parts) || ob_hdf5_fail(e, r->path, "append to the record");
+	bool good = true;
+	for (size_t i = 0; i < n && good; i++)
+		good = append_list(&r->pixels, r->sample_value + i * p.width, pixels);
+	return (good && append_list(&r->samples, r->fresh_sample, n * parts)) ||
+	       ob_hdf5_fail(e, r->path, "append to the record");
 }
 
 bool ob_hdf5_recorder_sense(ob_recorder *r, const ob_universe *u, ob_error *e)
@@ -880,6 +890,7 @@ bool ob_hdf5_recorder_close(ob_recorder *r, ob_error *e)
 	ok &= finish_list(&r->hulls);
 	ok &= finish_list(&r->joints);
 	ok &= finish_list(&r->samples);
+	ok &= finish_list(&r->pixels);
 	if (r->file >= 0)
 		ok &= H5Fclose(r->file) >= 0;
 	ok &= close_preallocation(&r->allocated, ob_hdf5_length(r->path));

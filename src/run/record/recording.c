@@ -16,7 +16,7 @@
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/utf8.h"
-#include "record/layout.h"
+#include "record/recorded.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"
 #include "table/layout.h"
@@ -28,73 +28,11 @@ enum {
 	HULLS_MAX = UINT16_MAX + 1,
 	EVERY_MAX = 1 << 30
 };
-enum { BYTES_AT_ONCE = 1 << 18 };
 // Limits of the first reading, whatever the size of the file: the budget's bytes of memory, and half of its seconds of CPU for
 // each of the advances, the first of which opens the record; the other half is for the second reading. An advance ends
 // with the first state after PAUSE seconds of CPU. The limit of wall time is WALL_PER_CPU times as long. A healthy record takes about 2 s of CPU for each 2^30 bytes.
 enum { SECONDS = OB_BUDGET_SECONDS / 2, PAUSE = 2, WALL_PER_CPU = 30 };
 static const double number_max = 1e15; // largest of any number in SI units
-
-// A dataset of compounds, read in blocks.
-typedef struct list {
-	const ob_record_table *table;
-	hid_t set, type; // negative: missing
-	uint64_t total, first, held; // total: in the dataset; first, held: the block in memory
-	uint64_t room; // largest block
-	char *item; // [held], of table->size
-} list;
-
-// The process that reads the record before this one does.
-typedef struct reader {
-	pid_t pid; // 0: none
-	int link; // socket to it
-	uint64_t states; // read by it so far; UINT64_MAX: all
-} reader;
-
-struct ob_recording {
-	ob_record_base base;
-	reader first;
-	char *path; // for messages: the file is read through its descriptor
-	hid_t file; // negative: missing
-	uint64_t file_bytes;
-	ob_recording_info info;
-	double *time; // [states]
-	uint64_t *step, *motions_until; // [states]
-	list events, motions, joints; // joints: empty in a record older than they are
-	uint64_t state; // current state; UINT64_MAX: none yet
-	uint64_t event, motion, joint; // first ones of a later state
-	ob_snapshot now;
-	uint64_t population;
-};
-
-static bool damaged(const ob_recording *r, const char *what, ob_error *e)
-{
-	return ob_fail(e, "%s: this record is damaged: %s", r->path, what);
-}
-
-// ---- links
-
-// Nothing in a record may name another file, or load code: links lead to objects in the file itself, datasets lie
-// there, too, and no filter has to be loaded.
-
-// Looks up a name of groups and their members, link by link. false and e: one of the links leaves the file.
-static bool find(const ob_recording *r, const char *name, bool *there, ob_error *e)
-{
-	char what[96], part[64];
-	H5L_info_t link;
-	*there = true;
-	for (size_t n = 1; *there && n <= strlen(name); n++) {
-		if (name[n] && name[n] != '/')
-			continue;
-		snprintf(part, sizeof part, "%.*s", (int)n, name);
-		*there = H5Lexists(r->file, part, H5P_DEFAULT) > 0;
-		if (*there && (H5Lget_info(r->file, part, &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_HARD)) {
-			snprintf(what, sizeof what, "/%s is a link to something else", part);
-			return damaged(r, what, e);
-		}
-	}
-	return true;
-}
 
 // ---- attributes
 
@@ -134,95 +72,13 @@ static bool read_attribute(hid_t at, const char *name, hid_t type, void *numbers
 	return ok;
 }
 
-// ---- datasets
-
-// True if the dataset's elements are stored unfiltered in the file. Checked before all else: for a virtual dataset,
-// even a query of its size opens the files that it names.
-static bool lies_in_file(hid_t set)
-{
-	hid_t how = H5Dget_create_plist(set);
-	const H5D_layout_t layout = H5Pget_layout(how);
-	const bool here = (layout == H5D_CHUNKED || layout == H5D_CONTIGUOUS) && H5Pget_external_count(how) == 0 &&
-			  H5Pget_nfilters(how) == 0;
-	H5Pclose(how);
-	return here;
-}
-
-// Opens a dataset of the file itself with this rank, all on the disk. Negative and e: there is none.
-static hid_t open_set(const ob_recording *r, const char *name, H5T_class_t kind, int rank, uint64_t *count, ob_error *e)
-{
-	char what[80];
-	bool there = false;
-	if (!find(r, name, &there, e))
-		return H5I_INVALID_HID;
-	hid_t set = there ? H5Dopen2(r->file, name, H5P_DEFAULT) : H5I_INVALID_HID;
-	if (set >= 0 && !lies_in_file(set)) {
-		H5Dclose(set);
-		set = H5I_INVALID_HID;
-	}
-	if (set >= 0) {
-		hid_t type = H5Dget_type(set), space = H5Dget_space(set);
-		hssize_t points = H5Sget_simple_extent_npoints(space);
-		uint64_t bytes = 0, stored = H5Dget_storage_size(set);
-		bool fits = H5Tget_class(type) == kind && H5Sget_simple_extent_ndims(space) == rank && points >= 0 &&
-			    !__builtin_mul_overflow((uint64_t)points, (uint64_t)H5Tget_size(type), &bytes) &&
-			    bytes <= stored && stored <= r->file_bytes;
-		*count = (uint64_t)points;
-		H5Sclose(space);
-		H5Tclose(type);
-		if (fits)
-			return set;
-		H5Dclose(set);
-	}
-	snprintf(what, sizeof what, "/%s is not as it should be", name);
-	damaged(r, what, e);
-	return H5I_INVALID_HID;
-}
-
-static bool open_list(ob_recording *r, list *l, ob_error *e)
-{
-	l->set = open_set(r, l->table->label.name, H5T_COMPOUND, 1, &l->total, e);
-	if (l->set < 0)
-		return false;
-	l->type = ob_record_type_in_memory(l->table);
-	l->room = BYTES_AT_ONCE / l->table->size;
-	l->item = calloc(l->room, l->table->size);
-	return l->item ? true : ob_fail(e, "%s: no memory", r->path);
-}
-
-static void close_list(list *l)
-{
-	if (l->set >= 0)
-		H5Dclose(l->set);
-	if (l->type >= 0)
-		H5Tclose(l->type);
-	free(l->item);
-}
-
-// Returns item i < total; NULL: it cannot be read.
-static const void *item_at(list *l, uint64_t i)
-{
-	if (i < l->first || i >= l->first + l->held) {
-		hsize_t from = i, count = l->total - i < l->room ? l->total - i : l->room;
-		hid_t in_file = H5Dget_space(l->set), in_memory = H5Screate_simple(1, &count, NULL);
-		memset(l->item, 0, l->room * l->table->size);
-		bool ok = H5Sselect_hyperslab(in_file, H5S_SELECT_SET, &from, NULL, &count, NULL) >= 0 &&
-			  H5Dread(l->set, l->type, in_memory, in_file, H5P_DEFAULT, l->item) >= 0;
-		H5Sclose(in_memory);
-		H5Sclose(in_file);
-		l->first = i;
-		l->held = ok ? count : 0;
-		if (!ok)
-			return NULL;
-	}
-	return l->item + (i - l->first) * l->table->size;
-}
+// ---- datasets of numbers
 
 // Reads a dataset of numbers as a whole; limits *rows to its length.
 static void *read_numbers(ob_recording *r, const char *name, H5T_class_t kind, hid_t type, uint64_t *rows, ob_error *e)
 {
 	uint64_t count;
-	hid_t set = open_set(r, name, kind, 1, &count, e);
+	hid_t set = ob_recorded_set_open(r, name, kind, 1, &count, e);
 	if (set < 0)
 		return NULL;
 	void *numbers = count <= OB_RECORD_STATES_MAX ? calloc(count + 1, 8) : NULL;
@@ -230,7 +86,7 @@ static void *read_numbers(ob_recording *r, const char *name, H5T_class_t kind, h
 	H5Dclose(set);
 	if (!ok) {
 		free(numbers);
-		damaged(r, "the times of its states cannot be read", e);
+		ob_recording_damaged(r, "the times of its states cannot be read", e);
 		return NULL;
 	}
 	*rows = count < *rows ? count
@@ -248,11 +104,11 @@ static bool check_states(const ob_recording *r, ob_error *e)
 		double expected = (double)r->step[k] * i->scene.run.step_length;
 		if (r->step[k] > UINT32_MAX || r->step[k] % every != 0 ||
 		    (k > 0 && r->step[k] != r->step[k - 1] + every))
-			return damaged(r, "its states are not in order", e);
+			return ob_recording_damaged(r, "its states are not in order", e);
 		if (!(fabs(r->time[k] - expected) <= 1e-6 * (i->scene.run.step_length + expected)))
-			return damaged(r, "the times of its states are not those of its steps", e);
+			return ob_recording_damaged(r, "the times of its states are not those of its steps", e);
 		if (r->motions_until[k] > r->motions.total || (k > 0 && r->motions_until[k] < r->motions_until[k - 1]))
-			return damaged(r, "it lacks motions", e);
+			return ob_recording_damaged(r, "it lacks motions", e);
 	}
 	return true;
 }
@@ -266,8 +122,10 @@ static bool open_states(ob_recording *r, ob_error *e)
 	r->motions_until =
 		r->step ? read_numbers(r, "motions_until", H5T_INTEGER, H5T_NATIVE_UINT64, &i->states, e) : NULL;
 	bool jointed = false;
-	if (!r->motions_until || !open_list(r, &r->events, e) || !open_list(r, &r->motions, e) ||
-	    !find(r, r->joints.table->label.name, &jointed, e) || (jointed && !open_list(r, &r->joints, e)))
+	if (!r->motions_until || !ob_recorded_list_open(r, &r->events, e) ||
+	    !ob_recorded_list_open(r, &r->motions, e) ||
+	    !ob_recording_find(r, r->joints.table->label.name, &jointed, e) ||
+	    (jointed && !ob_recorded_list_open(r, &r->joints, e)))
 		return false;
 	if (i->states == 0)
 		return ob_fail(e, "%s: this record is empty: its run ended before the first state", r->path);
@@ -310,30 +168,30 @@ static bool camera_makes_sense(ob_camera_def *c)
 static bool open_cameras(ob_recording *r, ob_error *e)
 {
 	ob_scene *scene = &r->info.scene;
-	list cameras = { .table = &ob_record_cameras, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
-	bool ok = open_list(r, &cameras, e);
+	ob_recorded_list cameras = ob_recorded_list_of(&ob_record_cameras);
+	bool ok = ob_recorded_list_open(r, &cameras, e);
 	if (ok && (cameras.total < 1 || cameras.total > CAMERAS_MAX))
-		ok = damaged(r, "it has no cameras, or too many", e);
+		ok = ob_recording_damaged(r, "it has no cameras, or too many", e);
 	if (ok && !(scene->camera = calloc(cameras.total, sizeof *scene->camera)))
 		ok = ob_fail(e, "%s: no memory", r->path);
 	for (uint64_t i = 0; ok && i < cameras.total; i++) {
-		const ob_camera_def *c = item_at(&cameras, i);
+		const ob_camera_def *c = ob_recorded_item(&cameras, i);
 		if (c)
 			scene->camera[i] = *c;
 		scene->cameras++;
 		if (!c || !camera_makes_sense(&scene->camera[i]))
-			ok = damaged(r, "its cameras make no sense", e);
+			ok = ob_recording_damaged(r, "its cameras make no sense", e);
 	}
-	close_list(&cameras);
+	ob_recorded_list_close(&cameras);
 	return ok;
 }
 
 static bool open_look(ob_recording *r, ob_error *e)
 {
-	list l = { .table = &ob_record_look, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+	ob_recorded_list l = ob_recorded_list_of(&ob_record_look);
 	ob_look_def *look = &r->info.scene.look;
-	bool ok = open_list(r, &l, e);
-	const char *item = ok && l.total == 1 ? item_at(&l, 0) : NULL;
+	bool ok = ob_recorded_list_open(r, &l, e);
+	const char *item = ok && l.total == 1 ? ob_recorded_item(&l, 0) : NULL;
 	if (item) {
 		uint8_t grid = (uint8_t)item[offsetof(ob_look_def, grid)];
 		memcpy(look, item, sizeof *look);
@@ -341,8 +199,8 @@ static bool open_look(ob_recording *r, ob_error *e)
 	}
 	if (ok && !(item && is_colour(look->sky_top, 3) && is_colour(look->sky_horizon, 3) &&
 		    is_colour(look->ground_colour, 3) && finite3(look->sun)))
-		ok = damaged(r, "/look makes no sense", e);
-	close_list(&l);
+		ok = ob_recording_damaged(r, "/look makes no sense", e);
+	ob_recorded_list_close(&l);
 	return ok;
 }
 
@@ -350,7 +208,7 @@ static bool take_recorded_hull(ob_recording *r, const ob_record_hull *h, ob_erro
 {
 	ob_snapshot *s = &r->now;
 	if (!h || h->number >= s->hulls || s->hull[h->number] || !ob_hull_makes_sense(&h->hull))
-		return damaged(r, "its hulls make no sense", e);
+		return ob_recording_damaged(r, "its hulls make no sense", e);
 	s->hull[h->number] = malloc(sizeof h->hull);
 	if (!s->hull[h->number])
 		return ob_fail(e, "%s: no memory for its hulls", r->path);
@@ -361,22 +219,22 @@ static bool take_recorded_hull(ob_recording *r, const ob_record_hull *h, ob_erro
 // Opens the hulls. Records older than hulls lack them.
 static bool open_hulls(ob_recording *r, ob_error *e)
 {
-	list hulls = { .table = &ob_record_hulls, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+	ob_recorded_list hulls = ob_recorded_list_of(&ob_record_hulls);
 	ob_snapshot *s = &r->now;
-	bool there = false, ok = find(r, hulls.table->label.name, &there, e);
+	bool there = false, ok = ob_recording_find(r, hulls.table->label.name, &there, e);
 	if (!there)
 		return ok;
-	ok = ok && open_list(r, &hulls, e);
+	ok = ok && ob_recorded_list_open(r, &hulls, e);
 	if (ok && hulls.total > HULLS_MAX)
-		ok = damaged(r, "it has too many hulls", e);
+		ok = ob_recording_damaged(r, "it has too many hulls", e);
 	if (ok && hulls.total > 0 && !(s->hull = calloc(HULLS_MAX, sizeof *s->hull)))
 		ok = ob_fail(e, "%s: no memory for its hulls", r->path);
 	s->hulls = s->hull ? HULLS_MAX : 0;
 	for (uint64_t i = 0; ok && i < hulls.total; i++)
-		ok = take_recorded_hull(r, item_at(&hulls, i), e);
+		ok = take_recorded_hull(r, ob_recorded_item(&hulls, i), e);
 	while (s->hulls > 0 && !s->hull[s->hulls - 1])
 		s->hulls--;
-	close_list(&hulls);
+	ob_recorded_list_close(&hulls);
 	return ok;
 }
 
@@ -386,7 +244,7 @@ static void *read_mesh_table(ob_recording *r, uint32_t number, const ob_record_t
 {
 	char name[32];
 	snprintf(name, sizeof name, "meshes/%u/%s", number, table->label.name);
-	hid_t set = open_set(r, name, H5T_COMPOUND, 1, count, e);
+	hid_t set = ob_recorded_set_open(r, name, H5T_COMPOUND, 1, count, e);
 	if (set < 0)
 		return NULL;
 	hid_t type = ob_record_type_in_memory(table);
@@ -396,7 +254,7 @@ static void *read_mesh_table(ob_recording *r, uint32_t number, const ob_record_t
 	if (fits && !items)
 		ob_fail(e, "%s: no memory for its meshes", r->path);
 	else if (!read)
-		damaged(r, "its meshes make no sense", e);
+		ob_recording_damaged(r, "its meshes make no sense", e);
 	H5Tclose(type);
 	H5Dclose(set);
 	if (read)
@@ -423,7 +281,7 @@ static bool take_image_size(hid_t set, uint64_t pixels, ob_mesh_image *image)
 static bool open_image(ob_recording *r, const char *name, uint64_t *pixels, ob_mesh_image *image, ob_error *e)
 {
 	uint64_t numbers = 0;
-	hid_t set = open_set(r, name, H5T_INTEGER, 3, &numbers, e);
+	hid_t set = ob_recorded_set_open(r, name, H5T_INTEGER, 3, &numbers, e);
 	if (set < 0)
 		return false;
 	const bool fits = take_image_size(set, *pixels, image);
@@ -435,7 +293,7 @@ static bool open_image(ob_recording *r, const char *name, uint64_t *pixels, ob_m
 	H5Dclose(set);
 	if (fits && !image->rgba)
 		return ob_fail(e, "%s: no memory for its meshes", r->path);
-	return read || damaged(r, "its meshes make no sense", e);
+	return read || ob_recording_damaged(r, "its meshes make no sense", e);
 }
 
 // Opens parts and images of a mesh; meshes without images lack both.
@@ -444,7 +302,7 @@ static bool open_parts(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e
 	char name[48];
 	uint64_t parts = 0, pixels = OB_MESH_PIXELS_MAX;
 	snprintf(name, sizeof name, "meshes/%u/parts", number);
-	bool there = false, ok = find(r, name, &there, e);
+	bool there = false, ok = ob_recording_find(r, name, &there, e);
 	if (!ok || !there)
 		return ok;
 	m->part = read_mesh_table(r, number, &ob_record_mesh_parts, OB_MESH_PARTS_MAX, &parts, e);
@@ -456,7 +314,8 @@ static bool open_parts(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e
 	m->parts = (uint32_t)parts;
 	while (ok && there && m->images < OB_MESH_IMAGES_MAX) {
 		snprintf(name, sizeof name, "meshes/%u/images/%u", number, m->images + 1);
-		ok = find(r, name, &there, e) && (!there || open_image(r, name, &pixels, &m->image[m->images++], e));
+		ok = ob_recording_find(r, name, &there, e) &&
+		     (!there || open_image(r, name, &pixels, &m->image[m->images++], e));
 	}
 	return ok;
 }
@@ -474,7 +333,7 @@ static bool open_mesh(ob_recording *r, uint32_t number, ob_mesh *m, ob_error *e)
 	m->indices = 3 * (uint32_t)triangles;
 	if (!open_parts(r, number, m, e))
 		return false;
-	return ob_mesh_makes_sense(m) || damaged(r, "its meshes make no sense", e);
+	return ob_mesh_makes_sense(m) || ob_recording_damaged(r, "its meshes make no sense", e);
 }
 
 // Opens the meshes. Records of scenes without meshes lack the group.
@@ -483,7 +342,7 @@ static bool open_meshes(ob_recording *r, ob_error *e)
 	ob_scene *s = &r->info.scene;
 	char name[32] = "meshes";
 	size_t bytes = 0;
-	bool there = false, ok = find(r, name, &there, e);
+	bool there = false, ok = ob_recording_find(r, name, &there, e);
 	if (!ok || !there)
 		return ok;
 	s->mesh = calloc(OB_SCENE_MESHES_MAX, sizeof *s->mesh);
@@ -491,14 +350,14 @@ static bool open_meshes(ob_recording *r, ob_error *e)
 		return ob_fail(e, "%s: no memory for its meshes", r->path);
 	while (ok && there && s->meshes < OB_SCENE_MESHES_MAX) {
 		snprintf(name, sizeof name, "meshes/%u", s->meshes + 1);
-		ok = find(r, name, &there, e);
+		ok = ob_recording_find(r, name, &there, e);
 		if (!ok || !there)
 			break;
 		s->meshes++;
 		ok = open_mesh(r, s->meshes, &s->mesh[s->meshes - 1], e);
 		bytes += ob_mesh_bytes(&s->mesh[s->meshes - 1]);
 		if (bytes > OB_SCENE_MESH_BYTES)
-			ok = damaged(r, "its meshes are too large together", e);
+			ok = ob_recording_damaged(r, "its meshes are too large together", e);
 	}
 	return ok;
 }
@@ -521,11 +380,11 @@ static bool open_facts(ob_recording *r, ob_error *e)
 		     read_attribute(r->file, "record_every", H5T_NATIVE_DOUBLE, &every, 1) &&
 		     read_attribute(r->file, "seed", H5T_NATIVE_UINT64, &scene->seed, 1);
 	if (!there)
-		return damaged(r, "it does not say what was run", e);
+		return ob_recording_damaged(r, "it does not say what was run", e);
 	if (!(workers >= 0 && workers <= UINT32_MAX) || !finite3(scene->run.gravity) ||
 	    !(scene->run.step_length >= 1e-9 && scene->run.step_length <= 1e6) ||
 	    !(scene->duration > 0 && scene->duration <= 1e9) || !(every >= 1 && every <= EVERY_MAX))
-		return damaged(r, "its steps or its duration make no sense", e);
+		return ob_recording_damaged(r, "its steps or its duration make no sense", e);
 	i->workers = (uint32_t)workers;
 	scene->record_every = (uint32_t)every;
 	return true;
@@ -543,7 +402,7 @@ static bool check_format(const ob_recording *r, ob_error *e)
 		return ob_fail(e, "%s: this is an HDF5 file, but no record of obsim", r->path);
 	}
 	if (number == 0 && !read_attribute(r->file, "format_version", H5T_NATIVE_DOUBLE, &number, 1))
-		return damaged(r, "it does not say of which version it is", e);
+		return ob_recording_damaged(r, "it does not say of which version it is", e);
 	if (number == OB_RECORD_VERSION)
 		return true;
 	return ob_fail(e,
@@ -565,13 +424,13 @@ static bool open_file(ob_recording *r, int fd, ob_error *e)
 		return ob_fail(e, "%s: this record cannot be opened: it is being written, cut short, or damaged",
 			       r->path);
 	return check_format(r, e) && open_facts(r, e) && open_cameras(r, e) && open_look(r, e) && open_hulls(r, e) &&
-	       open_meshes(r, e) && open_states(r, e);
+	       open_meshes(r, e) && open_states(r, e) && ob_recorded_samples_open(r, e);
 }
 
 // ---- the first reading, by a child
 
 // Ends it, and returns its status as waitpid gives it.
-static int end_reader(reader *first)
+static int end_reader(ob_recording_reader *first)
 {
 	int status = 0;
 	if (first->pid) {
@@ -584,7 +443,7 @@ static int end_reader(reader *first)
 }
 
 // Takes over first.
-static ob_recording *open_here(const char *path, int fd, uint64_t bytes, reader first, ob_error *e)
+static ob_recording *open_here(const char *path, int fd, uint64_t bytes, ob_recording_reader first, ob_error *e)
 {
 	ob_hdf5_silence();
 	H5PLset_loading_state(0); // filters unknown to this HDF5 would be loaded as libraries from a folder
@@ -598,9 +457,11 @@ static ob_recording *open_here(const char *path, int fd, uint64_t bytes, reader 
 	r->first = first;
 	r->file = H5I_INVALID_HID;
 	r->file_bytes = bytes;
-	r->events = (list){ .table = &ob_record_events, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
-	r->motions = (list){ .table = &ob_record_motions, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
-	r->joints = (list){ .table = &ob_record_joints, .set = H5I_INVALID_HID, .type = H5I_INVALID_HID };
+	r->events = ob_recorded_list_of(&ob_record_events);
+	r->motions = ob_recorded_list_of(&ob_record_motions);
+	r->joints = ob_recorded_list_of(&ob_record_joints);
+	r->samples = ob_recorded_list_of(&ob_record_samples);
+	r->pixels = ob_recorded_list_of(&ob_record_pixels);
 	r->state = UINT64_MAX;
 	if (open_file(r, fd, e))
 		return r;
@@ -667,7 +528,7 @@ static _Noreturn void be_child(const char *path, int fd, uint64_t bytes, int lin
 		_exit(1); // the parent died before that
 	limit_child(fd);
 	double until = begin_advance();
-	ob_recording *r = open_here(path, fd, bytes, (reader){ .states = UINT64_MAX }, &said.e);
+	ob_recording *r = open_here(path, fd, bytes, (ob_recording_reader){ .states = UINT64_MAX }, &said.e);
 	for (bool good = r; good; until = begin_advance()) {
 		do
 			said.states += good = ob_hdf5_recording_next(r, &ended, &said.e);
@@ -696,7 +557,7 @@ static bool fail_child(const char *path, int status, ob_error *e)
 }
 
 // Waits until the first reader pauses or ends. false and e: it found damage, or died.
-static bool take_report(reader *first, const char *path, ob_error *e)
+static bool take_report(ob_recording_reader *first, const char *path, ob_error *e)
 {
 	report said = { .states = 0 };
 	ssize_t n;
@@ -712,7 +573,7 @@ static bool take_report(reader *first, const char *path, ob_error *e)
 }
 
 // Starts the first reader, which opens the record and reads some of it, or all.
-static bool start_reader(reader *first, const char *path, int fd, uint64_t bytes, ob_error *e)
+static bool start_reader(ob_recording_reader *first, const char *path, int fd, uint64_t bytes, ob_error *e)
 {
 	int ends[2];
 	const pid_t parent = getpid();
@@ -729,7 +590,7 @@ static bool start_reader(reader *first, const char *path, int fd, uint64_t bytes
 		close(ends[0]);
 		return ob_fail(e, "%s: no process to read it: %s", path, strerror(why));
 	}
-	*first = (reader){ .pid = child, .link = ends[0] };
+	*first = (ob_recording_reader){ .pid = child, .link = ends[0] };
 	return take_report(first, path, e);
 }
 
@@ -742,13 +603,13 @@ static bool is_read(ob_recording *r, ob_error *e)
 		if (!take_report(&r->first, r->path, e))
 			return false;
 	}
-	return next < r->first.states || damaged(r, "it cannot be read any further", e);
+	return next < r->first.states || ob_recording_damaged(r, "it cannot be read any further", e);
 }
 
 ob_recording *ob_hdf5_recording_open(const char *path, ob_error *e)
 {
 	uint64_t bytes = 0;
-	reader first;
+	ob_recording_reader first;
 	ob_error why;
 	const int fd = ob_file_open(path, UINT64_MAX, &bytes, &why);
 	if (fd < 0)
@@ -768,9 +629,10 @@ void ob_hdf5_recording_close(ob_recording *r)
 	if (!r)
 		return;
 	end_reader(&r->first);
-	close_list(&r->events);
-	close_list(&r->motions);
-	close_list(&r->joints);
+	ob_recorded_list_close(&r->events);
+	ob_recorded_list_close(&r->motions);
+	ob_recorded_list_close(&r->joints);
+	ob_recorded_samples_close(r);
 	if (r->file >= 0)
 		H5Fclose(r->file);
 	ob_snapshot_finish(&r->now);
@@ -827,10 +689,10 @@ static bool take_event(ob_recording *r, const ob_record_event *event, ob_error *
 	now.passport.name[OB_NAME_MAX - 1] = 0;
 	if (now.step != r->step[r->state] || id >= OBJECTS_MAX || now.kind < OB_RECORD_CREATED ||
 	    now.kind > OB_RECORD_REMOVED)
-		return damaged(r, "its events make no sense", e);
+		return ob_recording_damaged(r, "its events make no sense", e);
 	bool there = is_present(s, id), same = there && s->passport[id].generation == now.passport.generation;
 	if (now.kind == OB_RECORD_CREATED ? there : !same)
-		return damaged(r, "an object goes that is not there, or comes twice", e);
+		return ob_recording_damaged(r, "an object goes that is not there, or comes twice", e);
 	if (now.kind == OB_RECORD_REMOVED) {
 		memset(&s->passport[id], 0, sizeof *s->passport);
 		memset(&s->motion[id], 0, sizeof *s->motion);
@@ -838,7 +700,7 @@ static bool take_event(ob_recording *r, const ob_record_event *event, ob_error *
 	}
 	if (!passport_makes_sense(&now.passport) || !has_its_hull(s, &now.passport) ||
 	    now.passport.mesh > r->info.scene.meshes)
-		return damaged(r, "an object makes no sense", e);
+		return ob_recording_damaged(r, "an object makes no sense", e);
 	if (!make_room(s, id + 1))
 		return ob_fail(e, "%s: no memory for %u objects", r->path, id + 1);
 	s->passport[id] = now.passport;
@@ -878,13 +740,13 @@ static bool take_joint(ob_recording *r, const ob_record_joint *event, ob_error *
 	ob_record_joint now = *event;
 	if (now.step != r->step[r->state] || now.number >= JOINTS_MAX || now.kind < OB_RECORD_CREATED ||
 	    now.kind > OB_RECORD_REMOVED || ob_snapshot_has_joint(s, now.number) != (now.kind != OB_RECORD_CREATED))
-		return damaged(r, "its joints make no sense", e);
+		return ob_recording_damaged(r, "its joints make no sense", e);
 	if (now.kind == OB_RECORD_REMOVED) {
 		memset(&s->joint[now.number], 0, sizeof *s->joint);
 		return true;
 	}
 	if (!joint_makes_sense(s, &now.passport))
-		return damaged(r, "a joint makes no sense", e);
+		return ob_recording_damaged(r, "a joint makes no sense", e);
 	if (!make_room_for_joints(s, now.number + 1))
 		return ob_fail(e, "%s: no memory for %u joints", r->path, now.number + 1);
 	s->joint[now.number] = now.passport;
@@ -894,9 +756,9 @@ static bool take_joint(ob_recording *r, const ob_record_joint *event, ob_error *
 static bool take_joints(ob_recording *r, ob_error *e)
 {
 	for (; r->joint < r->joints.total; r->joint++) {
-		const ob_record_joint *event = item_at(&r->joints, r->joint);
+		const ob_record_joint *event = ob_recorded_item(&r->joints, r->joint);
 		if (!event)
-			return damaged(r, "/joints cannot be read", e);
+			return ob_recording_damaged(r, "/joints cannot be read", e);
 		if (event->step > r->step[r->state])
 			break;
 		if (!take_joint(r, event, e))
@@ -910,7 +772,7 @@ static bool take_motion(ob_recording *r, const ob_record_motion *m, ob_error *e)
 	const ob_motion *now = &m->motion;
 	if (!is_present(&r->now, m->id) || !ob_motion_makes_sense(now) || !finite3(now->p) || !finite3(now->v) ||
 	    !finite3(now->w) || !finite3(now->a) || now->t0 > r->now.time + r->info.interval || now->t0 < -number_max)
-		return damaged(r, "a motion makes no sense", e);
+		return ob_recording_damaged(r, "a motion makes no sense", e);
 	r->now.motion[m->id] = *now;
 	r->now.motion[m->id].step = (uint32_t)r->step[r->state];
 	if (!(now->flags & OB_MOTION_SWINGS)) {
@@ -921,15 +783,15 @@ static bool take_motion(ob_recording *r, const ob_record_motion *m, ob_error *e)
 }
 
 // Checks that each object added in this state has a motion, or stands somewhere.
-static bool check_new(const ob_recording *r, uint64_t first, list *events, ob_error *e)
+static bool check_new(const ob_recording *r, uint64_t first, ob_recorded_list *events, ob_error *e)
 {
 	for (uint64_t i = first; i < r->event; i++) {
-		const ob_record_event *event = item_at(events, i);
+		const ob_record_event *event = ob_recorded_item(events, i);
 		if (!event)
-			return damaged(r, "/events cannot be read", e);
+			return ob_recording_damaged(r, "/events cannot be read", e);
 		if (is_present(&r->now, event->passport.id) &&
 		    !ob_motion_makes_sense(&r->now.motion[event->passport.id]))
-			return damaged(r, "an object is nowhere", e);
+			return ob_recording_damaged(r, "an object is nowhere", e);
 	}
 	return true;
 }
@@ -944,9 +806,9 @@ bool ob_hdf5_recording_next(ob_recording *r, bool *ended, ob_error *e)
 	r->now.step = r->info.first + r->state;
 	const uint64_t first = r->event;
 	for (; r->event < r->events.total; r->event++) {
-		const ob_record_event *event = item_at(&r->events, r->event);
+		const ob_record_event *event = ob_recorded_item(&r->events, r->event);
 		if (!event)
-			return damaged(r, "/events cannot be read", e);
+			return ob_recording_damaged(r, "/events cannot be read", e);
 		if (event->step > r->step[r->state])
 			break;
 		if (!take_event(r, event, e))
@@ -956,13 +818,13 @@ bool ob_hdf5_recording_next(ob_recording *r, bool *ended, ob_error *e)
 	if (!take_joints(r, e))
 		return false;
 	for (; r->motion < r->motions_until[r->state]; r->motion++) {
-		const ob_record_motion *m = item_at(&r->motions, r->motion);
+		const ob_record_motion *m = ob_recorded_item(&r->motions, r->motion);
 		if (!m)
-			return damaged(r, "/motions cannot be read", e);
+			return ob_recording_damaged(r, "/motions cannot be read", e);
 		if (!take_motion(r, m, e))
 			return false;
 	}
-	return check_new(r, first, &r->events, e);
+	return check_new(r, first, &r->events, e) && ob_recorded_samples_take(r, e);
 }
 
 const ob_snapshot *ob_hdf5_recording_state(const ob_recording *r)
@@ -973,4 +835,10 @@ const ob_snapshot *ob_hdf5_recording_state(const ob_recording *r)
 uint64_t ob_hdf5_recording_population(const ob_recording *r)
 {
 	return r->population;
+}
+
+const ob_recorded_sample *ob_hdf5_recording_samples(const ob_recording *r, size_t *n)
+{
+	*n = r->recents;
+	return r->recent;
 }

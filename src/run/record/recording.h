@@ -20,7 +20,8 @@
 typedef struct ob_recording ob_recording;
 
 typedef struct ob_recording_info {
-	ob_scene scene; // title, gravity, step length, duration, seed, cameras, look, record_every; no objects, no text
+	ob_scene
+		scene; // title, gravity, step length, duration, seed, cameras, look, sensors, record_every; no objects, no text
 	char universe[OB_NAME_MAX], isolation[16], version[32], commit[64], created[32];
 	uint32_t workers;
 	uint64_t states; // recorded, at least 1
@@ -40,6 +41,16 @@ bool ob_recording_next(ob_recording *r, bool *ended, ob_error *e);
 // Current state. step counts intervals from the run's start; there are no contacts. Valid until the next call of
 // ob_recording_next.
 const ob_snapshot *ob_recording_state(const ob_recording *r);
+// A sample of a sensor of the scene (info.scene.sensor), with as many values as the sensor's width: as of
+// ob_universe_get_samples.
+typedef struct ob_recorded_sample {
+	uint32_t sensor;
+	uint64_t number;
+	double time; // s
+	const double *value;
+} ob_recorded_sample;
+// Samples since the state before, by this state's time; n of them. Likewise valid.
+const ob_recorded_sample *ob_recording_samples(const ob_recording *r, size_t *n);
 // Grows with each state in which an object was added, removed or changed.
 uint64_t ob_recording_population(const ob_recording *r);
 

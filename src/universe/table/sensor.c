@@ -55,8 +55,7 @@ uint64_t ob_sensor_due(const ob_sensor_passport *s, double h, uint64_t n, double
 	return due > 0 ? (uint64_t)(due * (1 + 1e-12) + 1e-9) : 0;
 }
 
-// Values of a sample are as many as its kind allows, and as its beams or pixels take.
-static bool has_width(const ob_sensor_passport *s)
+bool ob_sensor_has_width(const ob_sensor_passport *s)
 {
 	const uint64_t places = (uint64_t)s->beams * s->rows;
 	if (s->kind == OB_SENSOR_CAMERA)
@@ -67,9 +66,9 @@ static bool has_width(const ob_sensor_passport *s)
 bool ob_sensor_makes_sense(const ob_universe *u, const ob_sensor_passport *s)
 {
 	const uint64_t room = (uint64_t)s->kept * (1 + (uint64_t)s->width), all = u->header.sizes.sensor_values;
-	return s->kind < OB_SENSOR_KINDS && s->object < u->step_data.objects_max && has_width(s) && s->kept > 0 &&
-	       room <= all && s->first <= all - room && s->rate > 0 && isfinite(s->rate) && s->delay >= 0 &&
-	       memchr(s->name, 0, sizeof s->name);
+	return s->kind < OB_SENSOR_KINDS && s->object < u->step_data.objects_max && ob_sensor_has_width(s) &&
+	       s->kept > 0 && room <= all && s->first <= all - room && s->rate > 0 && isfinite(s->rate) &&
+	       s->delay >= 0 && memchr(s->name, 0, sizeof s->name);
 }
 
 static ob_word *place_of(const ob_universe *u, const ob_sensor_passport *s, uint64_t number)

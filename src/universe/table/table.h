@@ -129,6 +129,8 @@ uint64_t ob_sensors_numbers(const ob_universe *u);
 void ob_sensors_write(ob_universe *u, const ob_sensor_passport *sensor, uint32_t sensors);
 // Number of a sensor's last sample that is due when n steps are complete, or was due `delay` (s) before.
 uint64_t ob_sensor_due(const ob_sensor_passport *s, double h, uint64_t n, double delay);
+// True if a sample has as many values as the kind allows, and as beams or pixels take.
+bool ob_sensor_has_width(const ob_sensor_passport *s);
 // True if its numbers are plausible, and its samples lie within those of the universe.
 bool ob_sensor_makes_sense(const ob_universe *u, const ob_sensor_passport *s);
 // Publishes its next sample, of time t (s), whose number is one more than the last one's.
