@@ -1,5 +1,6 @@
 #include "render/part.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +9,8 @@
 #include "render/smooth.h"
 
 enum { SAMPLES = 4 }; // a pixel, on a GPU, unless the setup says how many
+// Renderers of a process take turns: contexts that draw side by side have crashed Mesa's software driver (22.3).
+static pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
 static const double occlusion_height = .8; // m above the ground, up to which a body occludes it
 
 struct ob_renderer {
@@ -26,10 +29,8 @@ struct ob_renderer {
 	float (*sight)[2]; // its depths and numbers; NULL until there is one
 };
 
-static void destroy(ob_renderer *r)
+static void finish(ob_renderer *r)
 {
-	if (!r)
-		return;
 	if (r->context.context && ob_context_make_current(&r->context, NULL)) {
 		ob_passes_destroy(&r->passes);
 		ob_targets_destroy(&r->targets);
@@ -62,7 +63,7 @@ static bool prepare_samples(ob_renderer *r, ob_error *e)
 	return (r->rough && r->brightness) || ob_fail(e, "out of memory");
 }
 
-static ob_renderer *create(const ob_render_setup *setup, const ob_look_def *look, ob_error *e)
+static ob_renderer *start(const ob_render_setup *setup, const ob_look_def *look, ob_error *e)
 {
 	if (setup->width < 1 || setup->height < 1 || setup->samples < 0) {
 		ob_fail(e, "frames of %dx%d with %d samples: expected at least 1x1, and no less than 0 samples",
@@ -89,8 +90,24 @@ static ob_renderer *create(const ob_render_setup *setup, const ob_look_def *look
 			return r;
 		}
 	}
-	destroy(r);
+	finish(r);
 	return NULL;
+}
+
+static ob_renderer *create(const ob_render_setup *setup, const ob_look_def *look, ob_error *e)
+{
+	pthread_mutex_lock(&turn);
+	ob_renderer *r = start(setup, look, e);
+	pthread_mutex_unlock(&turn);
+	return r;
+}
+
+static void destroy(ob_renderer *r)
+{
+	pthread_mutex_lock(&turn);
+	if (r)
+		finish(r);
+	pthread_mutex_unlock(&turn);
 }
 
 static bool casts_shadow(const ob_draw_item *body, const void *ortho)
@@ -175,9 +192,10 @@ static bool draw_share(ob_renderer *r, const ob_view *v, bool through, const ob_
 	return true;
 }
 
-// Makes the context current, and evaluates all motions.
+// Takes the turn, makes the context current, and evaluates all motions. end follows.
 static bool begin(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, ob_error *e)
 {
+	pthread_mutex_lock(&turn);
 	if (!ob_context_make_current(&r->context, e))
 		return false;
 	return (ob_draw_list_fill(&r->list, prev, now, t) && ob_passes_take_hulls(&r->passes, now)) ||
@@ -200,31 +218,37 @@ static bool paint(ob_renderer *r, const ob_view *v, bool through, ob_frame *f, o
 	return true;
 }
 
-// Reads the picture, and lets go of the context.
-static bool end(ob_renderer *r, uint8_t *rgba, ob_error *e)
+// Lets go of the context, and of the turn. Returns drawn.
+static bool end(ob_renderer *r, bool drawn)
+{
+	ob_context_release(&r->context);
+	pthread_mutex_unlock(&turn);
+	return drawn;
+}
+
+static bool read_picture(ob_renderer *r, uint8_t *rgba, ob_error *e)
 {
 	ob_passes_read(&r->targets, r->rough ? r->rough : rgba);
 	if (r->rough)
 		ob_smooth(r->rough, rgba, r->brightness, r->setup.width, r->setup.height);
 	const GLenum error = glGetError();
-	ob_context_release(&r->context);
 	return error == GL_NO_ERROR ? true : ob_fail(e, "the OpenGL driver reported error 0x%x while drawing", error);
+}
+
+static bool draw_all(ob_renderer *r, double t, const ob_camera_def *c, uint8_t *rgba, ob_error *e)
+{
+	ob_frame f = { 0 };
+	const int width = r->setup.width, height = r->setup.height;
+	const ob_camera_def camera = ob_camera_follow(c, &r->list, width, height);
+	const ob_view view = ob_view_of_camera(&camera, t, width, height);
+	return paint(r, &view, true, &f, e) &&
+	       (draw_overlays(r, r->list.now, &f.view) || ob_fail(e, "out of memory")) && read_picture(r, rgba, e);
 }
 
 static bool draw(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t, const ob_camera_def *c,
 		 uint8_t *rgba, ob_error *e)
 {
-	ob_frame f = { 0 };
-	const int width = r->setup.width, height = r->setup.height;
-	if (!begin(r, prev, now, t, e))
-		return false;
-	const ob_camera_def camera = ob_camera_follow(c, &r->list, width, height);
-	const ob_view view = ob_view_of_camera(&camera, t, width, height);
-	if (!paint(r, &view, true, &f, e))
-		return false;
-	if (!draw_overlays(r, now, &f.view))
-		return ob_fail(e, "out of memory");
-	return end(r, rgba, e);
+	return end(r, begin(r, prev, now, t, e) && draw_all(r, t, c, rgba, e));
 }
 
 // Makes room for what a camera sensor sees.
@@ -235,23 +259,19 @@ static bool prepare_sight(ob_renderer *r, size_t pixels, ob_error *e)
 	return (r->rgba && r->sight) || ob_fail(e, "out of memory");
 }
 
-static bool sense(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t,
-		  const ob_sensor_passport *s, ob_pixel *pixel, ob_error *e)
+static bool sense_all(ob_renderer *r, const ob_sensor_passport *s, ob_pose on, ob_pixel *pixel, ob_error *e)
 {
 	ob_frame f = { 0 };
 	const size_t pixels = (size_t)r->setup.width * (size_t)r->setup.height;
-	if (!prepare_sight(r, pixels, e) || !begin(r, prev, now, t, e) || !ob_targets_add_sight(&r->targets, e))
-		return false;
-	const ob_pose on = ob_draw_pose(prev, now, s->object, t);
 	const ob_mat3 body = ob_quat_matrix(on.q);
 	const ob_view view = ob_view_of_sensor(
 		s, (ob_pose){ ob_add(on.p, ob_rotate(&body, s->pose.p)), ob_quat_mul(on.q, s->pose.q) });
-	if (!paint(r, &view, false, &f, e))
+	if (!prepare_sight(r, pixels, e) || !ob_targets_add_sight(&r->targets, e) || !paint(r, &view, false, &f, e))
 		return false;
 	if (!ob_instances_fill(&r->exact, &r->list, &view, r->setup.height, is_visible, &view))
 		return ob_fail(e, "out of memory");
 	ob_passes_sight(&r->passes, &r->targets, &r->exact, &r->list, &f, r->sight);
-	if (!end(r, r->rgba, e))
+	if (!read_picture(r, r->rgba, e))
 		return false;
 	for (size_t i = 0; i < pixels; i++) {
 		pixel[i] = (ob_pixel){ .depth = r->sight[i][0],
@@ -259,6 +279,12 @@ static bool sense(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *no
 		memcpy(pixel[i].rgba, r->rgba + 4 * i, 4);
 	}
 	return true;
+}
+
+static bool sense(ob_renderer *r, const ob_snapshot *prev, const ob_snapshot *now, double t,
+		  const ob_sensor_passport *s, ob_pixel *pixel, ob_error *e)
+{
+	return end(r, begin(r, prev, now, t, e) && sense_all(r, s, ob_draw_pose(prev, now, s->object, t), pixel, e));
 }
 
 OB_PART(ob_render_part) = { OB_PART_HEAD(ob_render_part), .create = create, .destroy = destroy, .draw = draw,
