@@ -23,12 +23,12 @@ class Refused(Exception):
 class Viewer:
 	"""A WebSocket client that keeps the part of the universe that tests need."""
 
-	def __init__(self, port, path="/universe", headers=(), address="127.0.0.1"):
+	def __init__(self, port, path="/universe", headers=(), address="127.0.0.1", protocol="obsim"):
 		self.socket = socket.create_connection((address, port), timeout=program.PATIENCE)
 		self.buffer = b""
 		key = base64.b64encode(os.urandom(16)).decode()
 		lines = [f"GET {path} HTTP/1.1", "Upgrade: websocket", "Connection: Upgrade", f"Sec-WebSocket-Key: {key}",
-			"Sec-WebSocket-Version: 13", "Sec-WebSocket-Protocol: obsim"]
+			"Sec-WebSocket-Version: 13", f"Sec-WebSocket-Protocol: {protocol}"]
 		if not any(h.lower().startswith("host:") for h in headers):
 			lines.append(f"Host: {address}:{port}")
 		self.socket.sendall("\r\n".join([*lines, *headers, "", ""]).encode())
@@ -64,8 +64,8 @@ class Viewer:
 	def send(self, **command):
 		self.send_frame(OPEN, json.dumps(command).encode())
 
-	def receive(self):
-		"""Receives the next message, and applies it. Raises EOFError with the reason when the server closes."""
+	def message(self):
+		"""The next message. Raises EOFError with the reason when the server closes."""
 		whole = b""
 		while True:
 			first, n = self.take(2)
@@ -78,14 +78,18 @@ class Viewer:
 			if kind > 2:
 				continue
 			whole += data
-			if not whole or not first & 0x80:
-				continue
-			if whole[:1] == b"{":
-				for name, value in json.loads(whole).items():
-					self.told[name] = value
-			elif whole[0] == MOTIONS:
-				self.follow(whole)
-			return whole
+			if whole and first & 0x80:
+				return whole
+
+	def receive(self):
+		"""Receives the next message, and applies it."""
+		whole = self.message()
+		if whole[:1] == b"{":
+			for name, value in json.loads(whole).items():
+				self.told[name] = value
+		elif whole[0] == MOTIONS:
+			self.follow(whole)
+		return whole
 
 	def follow(self, m):
 		flags, rate, self.time, removed, created, motions = struct.unpack_from("<xB2xfdIII", m)

@@ -59,6 +59,7 @@ complete -c obsim -n '__fish_seen_subcommand_from run serve' -l pace -x -a 'real
 set -l serve '__fish_seen_subcommand_from serve'
 complete -c obsim -n '__fish_seen_subcommand_from serve compare' -l listen -x -a '127.0.0.1:8080 127.0.0.1:0' -d 'where viewers come to'
 complete -c obsim -n $serve -l paused -d 'stand still until a viewer lets it run'
+complete -c obsim -n $serve -l foxglove -d 'speak the live protocol of Foxglove'
 complete -c obsim -n $serve -l readonly -d 'viewers may look, and change nothing'
 complete -c obsim -n $serve -l viewers -x -d 'viewers at a time'
 complete -c obsim -n $serve -l log-requests -r -F -d 'what viewers ask for, and the state'

@@ -53,6 +53,8 @@ typedef enum ob_command_bit {
 	X(LISTEN, "The server", 0, "listen", "ADDR:PORT", \
 	  "where viewers come to; port 0 is a free one (127.0.0.1:8080)", SERVE | COMPARE) \
 	X(PAUSED, NULL, 0, "paused", NULL, "stand still until a viewer lets it run", SERVE) \
+	X(FOXGLOVE, NULL, 0, "foxglove", NULL, \
+	  "lets Foxglove connect at the same address (ws://..), from any origin, to watch", SERVE) \
 	X(READONLY, NULL, 0, "readonly", NULL, "viewers may look, and change nothing", SERVE) \
 	X(VIEWERS, NULL, 0, "viewers", "N", "viewers at a time (64)", SERVE) \
 	X(ROOM, NULL, 0, "room", "N", "objects that viewers may add (1000)", SERVE | CONTROL) \

@@ -50,6 +50,7 @@ static bool read_request(serve_request *q, const ob_arguments *a, ob_error *e)
 {
 	const char *listen = a->value[OB_OPTION_LISTEN];
 	*q = (serve_request){ .server = { .look_only = a->value[OB_OPTION_READONLY] != NULL,
+					  .foxglove = a->value[OB_OPTION_FOXGLOVE] != NULL,
 					  .viewers = 64,
 					  .version = ob_version_commit },
 			      .room = 1000,

@@ -45,6 +45,7 @@ typedef struct ob_client {
 	ob_allowance commands, creations;
 	uint64_t roster; // its number when creations were last counted
 	uint32_t awaited; // creations since then
+	struct ob_foxglove *foxglove; // NULL: a page of ours
 	char command[OB_COMMAND_BYTES_MAX + 1];
 	size_t command_size;
 } ob_client;

@@ -27,14 +27,19 @@ static bool is_own_name(const char *host, const char *address, int port)
 	return false;
 }
 
-bool ob_http_is_ours(struct lws *wsi, const char *address, int port, bool any_name)
+bool ob_http_is_page(struct lws *wsi)
+{
+	return lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) > 0;
+}
+
+bool ob_http_is_ours(struct lws *wsi, const char *address, int port, bool any_name, bool any_origin)
 {
 	char host[128], origin[160], expected[160];
 	if (lws_hdr_copy(wsi, host, sizeof host, WSI_TOKEN_HOST) <= 0)
 		return false;
 	if (!any_name && !is_own_name(host, address, port))
 		return false;
-	if (lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) == 0)
+	if (any_origin || !ob_http_is_page(wsi))
 		return true; // not a page but a program
 	snprintf(expected, sizeof expected, "http://%s", host);
 	return lws_hdr_copy(wsi, origin, sizeof origin, WSI_TOKEN_ORIGIN) > 0 && strcmp(origin, expected) == 0;

@@ -40,6 +40,7 @@ bool ob_listen_read(ob_listen *l, const char *text, ob_error *e);
 typedef struct ob_server_config {
 	ob_listen listen;
 	bool look_only; // all visitors watch
+	bool foxglove; // viewers of Foxglove may connect, also from pages of other origins, which watch
 	uint32_t viewers; // at most
 	const ob_scene *scene;
 	const char *version;

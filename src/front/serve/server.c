@@ -20,6 +20,7 @@
 #include "serve/facts.h"
 #include "serve/feed.h"
 #include "serve/film_page.h"
+#include "serve/foxglove.h"
 #include "serve/http.h"
 #include "serve/part.h"
 #include "serve/peer.h"
@@ -52,7 +53,7 @@ typedef struct own_content {
 typedef struct world {
 	ob_host *host;
 	ob_feed *feed;
-	ob_client *clients;
+	ob_client *clients, *foxgloves; // foxgloves: viewers of Foxglove
 	uint64_t frozen_sent; // ns: time of the latest failure that viewers were sent
 } world;
 
@@ -93,6 +94,11 @@ typedef struct session {
 static world *world_of(ob_server *s, const ob_client *c)
 {
 	return &s->world[c->world];
+}
+
+static bool is_foxglove(struct lws *wsi)
+{
+	return strcmp(lws_get_protocol(wsi)->name, OB_FOXGLOVE_PROTOCOL) == 0;
 }
 
 // ---- sending
@@ -217,6 +223,11 @@ static void send_news(ob_server *s)
 	}
 	ob_message_release(told);
 	for (uint32_t i = 0; s->anew && i < s->worlds; i++) {
+		for (ob_client *c = s->world[i].foxgloves; c; c = c->next) { // its channels may be others now
+			ob_foxglove_destroy(c->foxglove);
+			c->foxglove = NULL;
+			lws_set_timeout(c->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
+		}
 		for (ob_client *c = s->world[i].clients; c; c = c->next) {
 			c->avatar = c->inspected = UINT32_MAX;
 			send_all_about(s, c);
@@ -240,18 +251,28 @@ static void send_details(ob_server *s, world *w, bool paused)
 	send_all(w, ob_facts_statistics(w->host, s->count, energy, paused), false);
 }
 
+static void drop_stuck(ob_client *c, double now)
+{
+	if (c->queue.count == 0)
+		c->taken_at = now;
+	else if (now - c->taken_at > OB_SERVER_STUCK)
+		lws_set_timeout(c->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
+}
+
 static void look_at(ob_server *s, world *w, double now, bool details)
 {
 	const ob_pace_state pace = ob_pace_get(s->pace);
 	bool contacts = false;
 	if (w->clients)
 		send_all(w, ob_feed_next(w->feed, &pace), false);
+	for (ob_client *c = w->foxgloves; c; c = c->next) {
+		drop_stuck(c, now);
+		if (c->foxglove)
+			ob_foxglove_look(c->foxglove, ob_host_universe(w->host));
+	}
 	for (ob_client *c = w->clients; c; c = c->next) {
 		contacts |= c->contacts;
-		if (c->queue.count == 0)
-			c->taken_at = now;
-		else if (now - c->taken_at > OB_SERVER_STUCK)
-			lws_set_timeout(c->wsi, PENDING_TIMEOUT_KILLED_BY_PARENT, LWS_TO_KILL_ASYNC);
+		drop_stuck(c, now);
 		if (details && c->inspected != UINT32_MAX)
 			send_one(c, ob_facts_details(s->config.scene, w->host, c->inspected));
 	}
@@ -355,6 +376,27 @@ static int refuse_client(ob_client *c, enum lws_close_status status, const char 
 	return -1;
 }
 
+// Reads a part of a message of a viewer of Foxglove.
+static int receive_foxglove(ob_server *s, ob_client *c, const char *bytes, size_t size)
+{
+	const bool begins = lws_is_first_fragment(c->wsi) && c->command_size == 0,
+		   ends = lws_is_final_fragment(c->wsi) && lws_remaining_packet_payload(c->wsi) == 0;
+	ob_request r;
+	ob_error e;
+	if (!c->foxglove || lws_frame_is_binary(c->wsi))
+		return refuse_client(c, LWS_CLOSE_STATUS_UNACCEPTABLE_OPCODE, "messages are text");
+	if (begins && !ob_allowance_take(&c->commands, ob_clock_wall(), commands_rate))
+		return refuse_client(c, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too many messages in a second");
+	c->command_size = ends ? 0 : 1;
+	for (bool more = ob_foxglove_read(c->foxglove, bytes, size, begins, ends, &r); more;
+	     more = ob_foxglove_read(c->foxglove, NULL, 0, false, false, &r)) {
+		r.origin = c->number;
+		if (!ob_host_ask_as(world_of(s, c)->host, c->role, &r, &e))
+			ob_foxglove_complain(c->foxglove, e.text);
+	}
+	return 0;
+}
+
 static int receive(ob_server *s, ob_client *c, const char *bytes, size_t size)
 {
 	ob_command asked;
@@ -440,7 +482,10 @@ static int let_in(const ob_server *s, struct lws *wsi)
 {
 	const char *why = NULL;
 	unsigned status = HTTP_STATUS_FORBIDDEN;
-	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback)) {
+	const bool foxglove = is_foxglove(wsi);
+	if (foxglove && !s->config.foxglove) {
+		why = "viewers of Foxglove are let in by obsim serve --foxglove";
+	} else if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback, foxglove)) {
 		why = "only pages of this server may connect to this universe";
 	} else if (!has_token(s, wsi)) {
 		why = "the token is missing or wrong: use the address that obsim serve has printed";
@@ -470,7 +515,7 @@ static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const 
 	const char *why = NULL;
 	ob_door_move(wsi, OB_AT_ANSWER, ob_clock_wall());
 	lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); // else the library ends a long answer, at any speed
-	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback))
+	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback, false))
 		why = "this is not the name of this server";
 	else if ((strcmp(path, film_path) == 0 || strcmp(path, metrics_path) == 0 ||
 		  strncmp(path, meshes_path, strlen(meshes_path)) == 0) &&
@@ -506,7 +551,8 @@ static void look_at_door(lws_sorted_usec_list_t *tick)
 	lws_sul_schedule(s->context, 0, &s->door_tick, look_at_door, (lws_usec_t)(1e6 * door_interval));
 }
 
-static void enter(ob_server *s, ob_client *c, struct lws *wsi)
+// Other than 0: it is closed.
+static int enter(ob_server *s, ob_client *c, struct lws *wsi)
 {
 	int bytes = SEND_BUFFER;
 	double now = ob_clock_wall();
@@ -519,23 +565,37 @@ static void enter(ob_server *s, ob_client *c, struct lws *wsi)
 			  .number = ++s->numbers,
 			  .commands = { commands_rate, now },
 			  .creations = { creations_rate, now } };
-	c->next = world_of(s, c)->clients;
-	world_of(s, c)->clients = c;
+	const bool foxglove = is_foxglove(wsi);
+	ob_client **list = foxglove ? &world_of(s, c)->foxgloves : &world_of(s, c)->clients;
+	c->next = *list;
+	*list = c;
 	s->count++;
 	ob_door_move(wsi, OB_AT_VIEWER, now);
 	setsockopt(lws_get_socket_fd(wsi), SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes);
-	send_all_about(s, c);
+	if (!foxglove) {
+		send_all_about(s, c);
+		return 0;
+	}
+	c->role = ob_http_is_page(wsi) ? OB_ROLE_WATCH : c->role;
+	c->foxglove = ob_foxglove_create(s->config.scene, s->config.version, c, send_one);
+	return c->foxglove ? 0 : -1;
+}
+
+static bool take_out(ob_client **list, const ob_client *c)
+{
+	while (*list && *list != c)
+		list = &(*list)->next;
+	if (!*list)
+		return false;
+	*list = c->next;
+	return true;
 }
 
 static void leave(ob_server *s, ob_client *c)
 {
-	for (ob_client **at = &world_of(s, c)->clients; *at; at = &(*at)->next) {
-		if (*at == c) {
-			*at = c->next;
-			s->count--;
-			break;
-		}
-	}
+	world *w = world_of(s, c);
+	ob_foxglove_destroy(c->foxglove);
+	s->count -= take_out(&w->clients, c) || take_out(&w->foxgloves, c); // one that was refused is in neither
 	ob_client_queue_clear(&c->queue);
 	ob_error e;
 	ob_request lets_go = { .kind = OB_REQUEST_RELEASE, .id = UINT32_MAX, .origin = c->number };
@@ -551,7 +611,7 @@ static int write_some(ob_server *s, ob_client *c)
 		return -1;
 	if (c->queue.count != before || c->queue.sent != sent)
 		c->taken_at = ob_clock_wall();
-	if (c->behind && c->queue.count == 0) {
+	if (c->behind && c->queue.count == 0 && !is_foxglove(c->wsi)) {
 		ob_pace_state pace = ob_pace_get(s->pace);
 		c->behind = false;
 		send_one(c, ob_feed_whole(world_of(s, c)->feed, &pace));
@@ -589,10 +649,10 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 	case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
 		return let_in(s, wsi);
 	case LWS_CALLBACK_ESTABLISHED:
-		enter(s, &now->client, wsi);
-		return 0;
+		return enter(s, &now->client, wsi);
 	case LWS_CALLBACK_RECEIVE:
-		return receive(s, &now->client, in, size);
+		return is_foxglove(wsi) ? receive_foxglove(s, &now->client, in, size)
+					: receive(s, &now->client, in, size);
 	case LWS_CALLBACK_SERVER_WRITEABLE:
 		return write_some(s, &now->client);
 	case LWS_CALLBACK_CLOSED:
@@ -607,6 +667,10 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 
 static const struct lws_protocols protocols[] = {
 	{ .name = "obsim",
+	  .callback = on_event,
+	  .per_session_data_size = sizeof(session),
+	  .rx_buffer_size = OB_COMMAND_BYTES_MAX },
+	{ .name = OB_FOXGLOVE_PROTOCOL,
 	  .callback = on_event,
 	  .per_session_data_size = sizeof(session),
 	  .rx_buffer_size = OB_COMMAND_BYTES_MAX },
