@@ -41,7 +41,7 @@ ROOMS = {
         'exchange': 'cluster schedule solver table',
         'baseline': 'exchange ode table base',
         'step': 'sensor baseline exchange cluster schedule solver contact shape motion table base',
-        'free': 'step solver shape motion table base exchange/results.h',
+        'free': 'step schedule solver shape motion table base exchange/results.h',
     },
     'run': {
         'ranks': 'base',

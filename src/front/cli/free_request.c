@@ -52,6 +52,20 @@ static bool has_compounds(const ob_scene *s)
 	return i < s->hulls;
 }
 
+// The same of one that is solved in groups, by lockstep's step.
+static bool check_groups(const ob_run_request *r, const ob_scene *s, ob_error *e)
+{
+	const char *const given = r->asked.record_schedule || r->asked.replay_schedule ? "record_schedule"
+				  : r->free.jitter > 0                                 ? "jitter"
+				  : r->free.delay > 0                                  ? "delay"
+										       : NULL;
+	if (given)
+		return ob_fail(e, "--set %s does not go with coupling=group: leave one of them away", given);
+	if (r->free.rate_most != r->free.update_rate || r->free.update_rate != 1 / r->run.step_length)
+		return ob_fail(e, "--set coupling=group: all bodies have the rate of --step: leave update_rate away");
+	return true;
+}
+
 // Refuses what a free run cannot have.
 static bool check(const ob_run_request *r, const ob_scene *s, ob_error *e)
 {
@@ -67,6 +81,8 @@ static bool check(const ob_run_request *r, const ob_scene *s, ob_error *e)
 		return ob_fail(e, "--sync free: the scene has scripts, which run in lockstep alone");
 	if (s->joints > 0)
 		return ob_fail(e, "--sync free: the scene has joints, which hold in lockstep alone");
+	if (r->free.coupling == OB_COUPLING_GROUP)
+		return check_groups(r, s, e);
 	if (has_compounds(s))
 		return ob_fail(e, "--sync free: the scene has compounds, which collide in lockstep alone");
 	if (s->terrains)
@@ -140,6 +156,8 @@ bool ob_free_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e)
 	f->seed = r->scene_options.has_seed ? r->scene_options.seed : s->seed;
 	if (!check(r, s, e))
 		return false;
+	if (f->coupling == OB_COUPLING_GROUP)
+		return true;
 	f->heavy = r->run.solver == OB_SOLVER_GHOST;
 	// as many substeps a second as the default has, and one a step at least
 	r->run.tolerance = 0;

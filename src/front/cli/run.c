@@ -375,7 +375,10 @@ static void report_free(const run *r, ob_report *p)
 		return;
 	ob_free_sums sums;
 	ob_free_sum(ob_host_universe(r->host), &sums);
-	snprintf(p->coupling, sizeof p->coupling, "%s", free->coupling == OB_COUPLING_LEDGER ? "ledger" : "own");
+	snprintf(p->coupling, sizeof p->coupling, "%s",
+		 free->coupling == OB_COUPLING_GROUP    ? "group"
+		 : free->coupling == OB_COUPLING_LEDGER ? "ledger"
+							: "own");
 	p->update_rate = free->update_rate;
 	p->max_lag = isinf(free->max_lag) ? NAN : free->max_lag;
 	p->jitter = free->jitter;

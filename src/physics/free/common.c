@@ -12,6 +12,7 @@
 #include "free/free.h"
 #include "free/view.h"
 #include "motion/flight.h"
+#include "table/group.h"
 #include "table/home.h"
 
 static const double window_seconds =
@@ -28,13 +29,13 @@ static double most_rate(const ob_free_settings *f, double step)
 void ob_free_plan_depths(const ob_free_settings *f, double step, uint32_t capacity, uint32_t *history,
 			 uint32_t *ledgers)
 {
-	enum { LEAST = 8, MOST = 1 << 15 };
+	enum { LEAST = 8, MOST = 1 << 15, GROUPED = 16 };
 	const double rate = most_rate(f, step), lag = isinf(f->max_lag) ? 0 : f->max_lag,
 		     fits = (double)history_bytes / ((double)capacity * sizeof(ob_motion)),
 		     least = LEAST + ceil(rate * (f->delay + lag + 4 * step)),
 		     window = ob_free_lead(f, step) > 0 ? 0 : window_seconds,
 		     depth = ob_max(least, ob_min(fits, ceil(rate * (window + f->delay + lag))));
-	*history = (uint32_t)ob_min(MOST, depth);
+	*history = f->coupling == OB_COUPLING_GROUP ? GROUPED : (uint32_t)ob_min(MOST, depth);
 	// a ledger is read as of the newest version, unless publications are delayed
 	*ledgers = f->coupling == OB_COUPLING_LEDGER ? 2 + (uint32_t)ob_min(*history - 2, ceil(rate * f->delay)) : 0;
 }
@@ -45,6 +46,8 @@ uint64_t ob_free_window(const ob_universe *u)
 	const ob_free_settings *f = ob_free_settings_of(u);
 	const double step = ob_universe_settings(u)->step_length, rate = most_rate(f, step),
 		     steps = floor((ob_free_depth(u) - SLACK) / (rate * step)) - 1;
+	if (ob_group_is(u))
+		return ob_free_depth(u) - SLACK;
 	if (ob_free_lead(f, step) > 0 && steps > BOUNDED)
 		return BOUNDED;
 	return steps < 1 ? 1 : (uint64_t)steps;
@@ -97,6 +100,8 @@ void ob_free_enter_objects(ob_universe *u)
 			m.flags = OB_MOTION_FREE;
 			ob_home_set(u, id, ob_free_worker_of(u, id));
 		}
+		if (kind == OB_FREE_SIMULATED && ob_group_is(u))
+			ob_group_enter(u, id, ob_free_worker_of(u, id), ob_newest_motion(u, id));
 		ob_free_enter(u, id, kind, p.generation, &m);
 	}
 	if (changed || passports != ob_free_passports(u))
@@ -132,8 +137,41 @@ static void show(ob_universe *u, uint32_t id, uint64_t step, double t)
 	ob_publish_motion(u, id, &shown);
 }
 
+// Steps that all bodies of a run in groups have made, `until` at most.
+static uint64_t steps_made(const ob_universe *u, uint64_t until)
+{
+	uint64_t least = until;
+	for (uint32_t id = 0; id < ob_universe_ids(u) && least > ob_step_count(u); id++)
+		if (ob_free_kind_of(u, id, NULL) == OB_FREE_SIMULATED)
+			least = ob_group_step(u, id) < least ? ob_group_step(u, id) : least;
+	return least;
+}
+
+// The same of a run in groups: versions are motions as lockstep publishes them, so the newest is shown, if it is another one.
+static uint64_t complete_groups(ob_universe *u, uint64_t until)
+{
+	const uint64_t made = steps_made(u, until);
+	uint32_t simulated = 0;
+	if (made <= ob_step_count(u))
+		return ob_step_count(u);
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		ob_motion m;
+		if (ob_free_kind_of(u, id, NULL) != OB_FREE_SIMULATED)
+			continue;
+		simulated++;
+		if (ob_free_version(u, id) != ob_motion_version(u, id) &&
+		    ob_group_read(u, id, (uint32_t)made, &m, NULL) && memcmp(&m, ob_newest_motion(u, id), sizeof m))
+			ob_publish_motion(u, id, &m);
+	}
+	while (ob_step_count(u) < made)
+		ob_step_complete(u, simulated, 0, 0);
+	return made;
+}
+
 uint64_t ob_free_complete(ob_universe *u, uint64_t until)
 {
+	if (ob_group_is(u))
+		return complete_groups(u, until);
 	const double length = ob_universe_settings(u)->step_length;
 	for (uint64_t step = ob_step_count(u) + 1; step <= until; step++) {
 		const double t = (double)step * length;
@@ -156,11 +194,28 @@ static bool waits(const ob_universe *u, uint32_t id)
 	       ob_free_time(u, blocker) < ob_free_time(u, id);
 }
 
+// Finds the part of each worker in a run in groups.
+static void find_parts_of_groups(const ob_universe *u, unsigned char *part, uint64_t next)
+{
+	uint32_t other;
+	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
+		if (ob_free_kind_of(u, id, NULL) != OB_FREE_SIMULATED || ob_group_step(u, id) >= next ||
+		    ob_free_due_ns(u, ob_free_time(u, id)) > ob_clock_ns())
+			continue;
+		const uint32_t w = ob_group_place_of(u, id).worker;
+		part[w] = ob_group_blocker(u, w, &other) ? OB_FREE_WAITS : OB_FREE_HOLDS;
+	}
+}
+
 void ob_free_find_parts(const ob_universe *u, unsigned char *part)
 {
 	const uint64_t next = ob_step_count(u) + 1, until = ob_free_until(u), now = ob_clock_ns();
 	const double t = (double)(next < until ? next : until) * ob_universe_settings(u)->step_length - instant;
 	memset(part, OB_FREE_DONE, ob_universe_workers(u));
+	if (ob_group_is(u)) {
+		find_parts_of_groups(u, part, next < until ? next : until);
+		return;
+	}
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		if (ob_free_kind_of(u, id, NULL) != OB_FREE_SIMULATED || ob_free_time(u, id) >= t ||
 		    ob_free_due_ns(u, ob_free_time(u, id)) > now)
@@ -196,4 +251,6 @@ void ob_free_sum(const ob_universe *u, ob_free_sums *out)
 		out->least_time = ob_min(out->least_time, ob_free_time(u, id));
 		out->most_time = ob_max(out->most_time, ob_free_time(u, id));
 	}
+	for (uint32_t w = 0; ob_group_is(u) && w < ob_universe_workers(u); w++)
+		ob_group_count(u, w, &out->counts.updates, &out->counts.waits);
 }

@@ -10,9 +10,11 @@
 
 #include "base/clock.h"
 #include "free/free.h"
+#include "free/group_worker.h"
 #include "free/lag.h"
 #include "free/view.h"
 #include "step/fault.h"
+#include "table/group.h"
 #include "table/trace.h"
 
 typedef struct worker {
@@ -322,6 +324,8 @@ static void replay(worker *w)
 bool ob_free_work(ob_universe *u, uint32_t number, ob_error *e)
 {
 	worker w;
+	if (ob_group_is(u))
+		return ob_free_work_in_groups(u, number, e);
 	if (!begin(&w, u, number))
 		return ob_fail(e, "worker %u: no memory", number);
 	bool fine = ob_free_schedule_open(&w.scratch.schedule, u, e) &&

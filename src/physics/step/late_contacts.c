@@ -590,3 +590,45 @@ void ob_late_contacts_check(ob_sim *s, uint32_t first, uint32_t end, bool solved
 	if (late)
 		ob_late_contacts_note(s->u);
 }
+
+// Puts a motion back to staged, if the step that is complete has published it.
+static bool unpublish(ob_universe *u, uint32_t id, uint64_t steps)
+{
+	const bool solved = ob_schedule_is_dynamic(&ob_universe_step_data(u)->schedule[id]) &&
+			    ob_universe_step_data(u)->schedule[id].since == steps;
+	if (solved)
+		ob_uncommit_motion(u, id);
+	return solved;
+}
+
+// Begins the pairs of two objects as at the end of the step that is complete: it measures and checks them once more.
+static void meet(ob_sim *s, uint32_t a, uint32_t b)
+{
+	ob_universe *u = s->u;
+	const uint64_t steps = ob_step_count(u);
+	ob_step_set(u, steps - 1);
+	const bool of_a = unpublish(u, a, steps), of_b = unpublish(u, b, steps);
+	ob_pairs_begin(u, a, b, steps);
+	ob_pairs_measure(u, steps);
+	ob_late_contacts_check(s, 0, ob_checks_count(s->data), true);
+	s->data->count->checks = 0;
+	if (of_a)
+		ob_commit_motion(u, a);
+	if (of_b)
+		ob_commit_motion(u, b);
+	ob_step_set(u, steps);
+}
+
+void ob_sim_meet(ob_sim *s, uint32_t id)
+{
+	const ob_step_data *data = s->data;
+	const uint32_t ids = ob_universe_ids(s->u);
+	uint32_t *found = data->scratch;
+	if (ob_broadphase_query_pending(s->u, id) || ob_step_count(s->u) == 0)
+		return;
+	const uint32_t n = ob_index_query(s->u, id, found, ids, &s->solver.counters.box_tests);
+	for (uint32_t i = 0; i < n && i < ids; i++)
+		if (!ob_broadphase_query_pending(s->u, found[i]) && ob_may_touch(s->u, id, found[i]) &&
+		    !ob_pairs_have(data, id, found[i]))
+			meet(s, id, found[i]);
+}

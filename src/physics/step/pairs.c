@@ -139,6 +139,44 @@ void ob_pairs_drop(ob_universe *u, uint32_t id)
 	}
 }
 
+void ob_pairs_drop_listed(ob_universe *u, uint32_t id)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	ob_pair_place at;
+	while (ob_pair_at(data, data->first_pair[id], &at)) {
+		ob_pair_release_record(u, &data->pair[at.pair]);
+		drop_pair(u, at.pair);
+	}
+}
+
+void ob_pairs_take_in(ob_universe *u, const ob_pair_key *key, const ob_pair_state *before, const double *impulse_b,
+		      uint32_t stamp, uint32_t check)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const ob_calendar look = ob_calendar_of_pairs(u);
+	uint32_t pair;
+	if (!take_pair(u, &pair))
+		return;
+	ob_pair_key *k = &data->pair[pair];
+	*k = *key;
+	k->record = before ? ob_record_take(u) : OB_NO_RECORD;
+	k->late = k->in_island = 0;
+	if (k->record != OB_NO_RECORD) {
+		ob_pair_record *r = &data->record[k->record];
+		r->version[0] = *before;
+		r->stamp[0] = stamp;
+		if (data->impulse_b && impulse_b)
+			memcpy(data->impulse_b[k->record][0], impulse_b, sizeof data->impulse_b[k->record][0]);
+	}
+	link_pair(u, pair);
+	ob_calendar_set(&look, pair, check);
+}
+
+uint32_t ob_pairs_next_check(const ob_step_data *data, uint32_t pair)
+{
+	return UINT32_MAX - data->look.one[pair]; // calendar.c
+}
+
 // ---- new pairs
 
 static double plane_distance(const ob_universe *u, uint32_t plane, ob_vec3 at, double sphere)
@@ -295,6 +333,21 @@ static void add_pairs(ob_universe *u, uint32_t id, uint32_t other, uint64_t step
 	const bool plane = ob_shape_is(a->shape, OB_UNBOUNDED) || ob_shape_is(b->shape, OB_UNBOUNDED);
 	uint32_t (*const parts_of)(const ob_universe *u, const ob_passport *p) = plane ? parts_on_plane : ob_parts_of;
 	add_part_pairs(u, k, parts_of(u, a), parts_of(u, b), steps);
+}
+
+void ob_pairs_begin(ob_universe *u, uint32_t a, uint32_t b, uint64_t steps)
+{
+	ob_universe_step_data(u)->count->checks = 0;
+	add_pairs(u, a, b, steps);
+}
+
+bool ob_pairs_have(const ob_step_data *data, uint32_t id, uint32_t other)
+{
+	ob_pair_place at;
+	bool found = false;
+	for (uint32_t link = data->first_pair[id]; !found && ob_pair_at(data, link, &at); link = ob_pair_next(data, at))
+		found = (at.side ? data->pair[at.pair].a : data->pair[at.pair].b) == other;
+	return found;
 }
 
 void ob_pairs_measure(ob_universe *u, uint64_t steps)

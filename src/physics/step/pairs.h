@@ -36,6 +36,17 @@ void ob_pairs_measure(ob_universe *u, uint64_t steps);
 double ob_pair_first_limit(const ob_universe *u, const ob_pair_key *k, uint64_t steps);
 // Drops all pairs of an object that is removed.
 void ob_pairs_drop(ob_universe *u, uint32_t id);
+// Same for one that moves, by its list: as far as it is the only one of two that moves, its static partners keep none.
+void ob_pairs_drop_listed(ob_universe *u, uint32_t id);
+// Host, paused: takes in a pair from another universe; both objects are here. before: newest state of its contact, with
+// its stamp (ob_pair_record); NULL: none. check: step of its next check, as ob_pairs_next_check there.
+void ob_pairs_take_in(ob_universe *u, const ob_pair_key *key, const ob_pair_state *before, const double *impulse_b,
+		      uint32_t stamp, uint32_t check);
+uint32_t ob_pairs_next_check(const ob_step_data *data, uint32_t pair); // UINT32_MAX: none
+// Host, paused after `steps`: begins pairs of two objects, and lists them in ob_step_data.check, from 0 on.
+void ob_pairs_begin(ob_universe *u, uint32_t a, uint32_t b, uint64_t steps);
+// True if the object has a pair with another.
+bool ob_pairs_have(const ob_step_data *data, uint32_t id, uint32_t other);
 // Rebuilds the data that follow from schedule[] and pair[], which the caller has filled: all lists, both calendars
 // (schedule/calendar.h), and the list of pairs in the last step's islands. Takes the records of those that touch no more.
 void ob_pairs_link(ob_universe *u);

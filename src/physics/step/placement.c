@@ -252,6 +252,34 @@ static void take_out(ob_universe *u, uint32_t id)
 	ob_pin_drop(u, id);
 }
 
+void ob_sim_take_in(ob_universe *u, const ob_taken_object *o)
+{
+	ob_step_data *data = ob_universe_step_data(u);
+	const uint32_t id = o->id;
+	data->schedule[id] = o->schedule;
+	data->result_island[id] = UINT32_MAX;
+	memcpy(data->bounds[id], o->bounds, sizeof data->bounds[id]);
+	ob_publish_motion(u, id, &o->before);
+	if (memcmp(&o->before, &o->motion, sizeof o->motion) != 0)
+		ob_publish_motion(u, id, &o->motion);
+	ob_calendar_enter_due(u, id);
+	data->count->checked = UINT32_MAX; // its pairs may be due for a check
+	if (o->neighbours == UINT32_MAX) {
+		ob_pairs_requery(u, id);
+		return;
+	}
+	data->neighbours[id].count = o->neighbours;
+	ob_index_put(u, id);
+}
+
+void ob_sim_hand_out(ob_universe *u, uint32_t id)
+{
+	ob_pairs_drop_listed(u, id);
+	ob_broadphase_remove(u, id);
+	ob_universe_step_data(u)->schedule[id] = (ob_schedule){ .state = OB_SCHEDULE_ABSENT };
+	ob_calendar_enter_due(u, id);
+}
+
 static void replace(ob_universe *u, uint32_t id, const ob_passport *p, const ob_state *state)
 {
 	take_out(u, id);

@@ -64,6 +64,22 @@ void ob_sim_place_anew(ob_universe *u, uint32_t id, const ob_state *state);
 // calendars (step/pairs.h).
 void ob_sim_restore(ob_universe *u);
 
+// An object as another universe has it when so many steps are complete.
+typedef struct ob_taken_object {
+	uint32_t id;
+	uint32_t neighbours; // as ob_step_data.neighbours
+	ob_motion before, motion; // one step ago, and now
+	ob_schedule schedule;
+	float bounds[6];
+} ob_taken_object;
+// Same for an object that comes from another universe, after its passport, or goes on in one, which nothing here touches. Its
+// pairs follow (ob_pairs_take_in, ob_pairs_meet).
+void ob_sim_take_in(ob_universe *u, const ob_taken_object *o);
+void ob_sim_hand_out(ob_universe *u, uint32_t id);
+// Same, after all of these: begins the pairs of an object with those that came from other universes, as the step that is complete
+// would have begun them with both here.
+void ob_sim_meet(ob_sim *s, uint32_t id);
+
 // Host, paused: removes an object and clears its passport; its neighbours wake.
 void ob_sim_remove(ob_universe *u, uint32_t id);
 

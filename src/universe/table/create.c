@@ -33,11 +33,13 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 {
 	struct timespec now;
 	clock_gettime(CLOCK_REALTIME, &now);
-	ob_layout_plan(h, &(ob_layout_plan_of){ setup->capacity, setup->workers, setup->hulls, setup->traced,
-						setup->harden & 1 << OB_HARDEN_OUTBOX, setup->script_cells,
-						setup->script_bytes, setup->history, setup->ledgers, setup->joints,
-						setup->terrains ? (uint32_t)setup->terrains->bytes : 0, setup->sensors,
-						setup->sensor_values });
+	ob_layout_plan(h, &(ob_layout_plan_of){
+				  setup->capacity, setup->workers, setup->hulls, setup->traced,
+				  setup->harden & 1 << OB_HARDEN_OUTBOX, setup->script_cells, setup->script_bytes,
+				  setup->history, setup->ledgers,
+				  setup->free && setup->free->coupling == OB_COUPLING_GROUP ? OB_GROUP_CONTACTS : 0,
+				  setup->joints, setup->terrains ? (uint32_t)setup->terrains->bytes : 0, setup->sensors,
+				  setup->sensor_values });
 	h->version = OB_LAYOUT_VERSION;
 	h->host_pid = getpid();
 	h->created = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
@@ -74,11 +76,12 @@ static bool fill(ob_universe *u, const ob_universe_setup *setup, ob_error *e)
 static bool map_new(ob_universe *u, ob_error *e)
 {
 	uint64_t bytes = u->header.bytes;
-	if (!check_room(u->fd, ob_layout_likely_bytes(&u->header), e))
+	if (u->fd >= 0 && !check_room(u->fd, ob_layout_likely_bytes(&u->header), e))
 		return false;
-	if (ftruncate(u->fd, (off_t)bytes) != 0)
+	if (u->fd >= 0 && ftruncate(u->fd, (off_t)bytes) != 0)
 		return ob_fail(e, "cannot give shared memory %" PRIu64 " bytes: %s", bytes, strerror(errno));
-	void *base = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, u->fd, 0);
+	void *base = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
+			  (u->fd < 0 ? MAP_PRIVATE | MAP_ANONYMOUS : MAP_SHARED) | MAP_NORESERVE, u->fd, 0);
 	if (base == MAP_FAILED)
 		return ob_fail(e, "cannot map %" PRIu64 " bytes of shared memory: %s", bytes, strerror(errno));
 	ob_layout_bind(u, base);
@@ -94,7 +97,9 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 	char own[OB_NAME_MAX];
 	snprintf(own, sizeof own, "obsim-%d", (int)getpid());
 	const char *name = setup->name ? setup->name : own;
-	ob_segment_remove_stale();
+	const bool shared = *name;
+	if (shared)
+		ob_segment_remove_stale();
 	ob_universe *u = calloc(1, sizeof *u);
 	if (!u) {
 		ob_fail(e, "out of memory");
@@ -110,11 +115,12 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 	u->rank = setup->rank;
 	u->ranks = setup->ranks ? setup->ranks : 1;
 	u->shares_contacts = setup->shares_contacts;
-	u->fd = ob_segment_create(e);
+	u->fd = shared ? ob_segment_create(e) : -1;
 	const uint32_t foreign = setup->script_bytes ? ob_script_count_foreign(setup->script_text, UINT32_MAX) : 0;
-	if (u->fd >= 0 && map_new(u, e) && fill(u, setup, e) && ob_desks_create(u, foreign, e) &&
-	    ob_segment_publish(u->fd, name, e)) {
-		ob_pages_track(u);
+	if ((!shared || u->fd >= 0) && map_new(u, e) && fill(u, setup, e) && ob_desks_create(u, foreign, e) &&
+	    (!shared || ob_segment_publish(u->fd, name, e))) {
+		if (shared)
+			ob_pages_track(u);
 		return u;
 	}
 	ob_universe_destroy(u, false);

@@ -172,6 +172,8 @@ double ob_free_holds(const ob_universe *u, uint32_t id)
 double ob_free_time(const ob_universe *u, uint32_t id)
 {
 	const ob_free_cell *c = cell_of(u, id);
+	if (u->header.sizes.grouped)
+		return ob_group_step(u, id) * u->header.run.step_length;
 	for (;;) {
 		const uint64_t holds = __atomic_load_n(&c->holds, __ATOMIC_SEQ_CST),
 			       time = __atomic_load_n(&c->time, __ATOMIC_SEQ_CST);
@@ -453,7 +455,7 @@ void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t gene
 	if (!ob_free_version(u, id))
 		__atomic_store_n(&c->awaited, nobody, __ATOMIC_RELAXED);
 	__atomic_store_n(&c->holds, 0, __ATOMIC_SEQ_CST);
-	if (kind == OB_FREE_SIMULATED)
+	if (kind == OB_FREE_SIMULATED && !u->header.sizes.grouped)
 		ob_free_publish(u, id, m, u->header.sizes.ledgers ? &none : NULL);
 	__atomic_store_n(&c->generation, generation, __ATOMIC_RELAXED);
 	__atomic_store_n(&c->kind, kind, __ATOMIC_RELEASE);

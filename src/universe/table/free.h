@@ -119,6 +119,11 @@ typedef struct ob_free_bed {
 		at; // where it sleeps: 0 = it does not; OB_FREE_OWN_WORD; else 1 + the object whose `moved` it waits for
 	uint64_t
 		next; // bits of a double: own time, s, of the next that it has to do; it sleeps while `until` is not beyond
+	uint32_t made; // steps that all bodies of its world have completed (group.h)
+	uint32_t blocker; // 1 + the worker that it waits for; 0 = none
+	uint32_t awaited; // 1 = a worker may wait for it
+	uint32_t waits; // how often it has waited for another
+	uint64_t updates; // versions that it has published
 } ob_free_bed;
 
 enum { OB_FREE_OWN_WORD = INT32_MAX };

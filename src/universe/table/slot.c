@@ -28,6 +28,11 @@ void ob_commit_motion(ob_universe *u, uint32_t id)
 	ob_ring_commit(&u->slot[id].version);
 }
 
+void ob_uncommit_motion(ob_universe *u, uint32_t id)
+{
+	__atomic_fetch_sub(&u->slot[id].version, 1, __ATOMIC_RELEASE);
+}
+
 const ob_motion *ob_newest_motion(const ob_universe *u, uint32_t id)
 {
 	const ob_slot *s = u->slot + id;
@@ -78,6 +83,11 @@ const ob_hull *ob_hull_at(const ob_universe *u, uint32_t hull)
 const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p)
 {
 	return ob_shape_is(p->shape, OB_HULLED) ? ob_hull_at(u, p->hull) : NULL;
+}
+
+const ob_terrain_set *ob_universe_terrains(const ob_universe *u)
+{
+	return u->terrains;
 }
 
 bool ob_universe_has_terrains(const ob_universe *u)

@@ -17,6 +17,11 @@ uint32_t ob_step_scheduler(const ob_universe *u)
 	return __atomic_load_n(&ob_universe_step_data(u)->count->scheduler, __ATOMIC_RELAXED);
 }
 
+void ob_step_set(ob_universe *u, uint64_t step)
+{
+	__atomic_store_n(&u->control->step, step, __ATOMIC_RELEASE);
+}
+
 void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t islands)
 {
 	ob_control *c = u->control;

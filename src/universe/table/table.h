@@ -42,7 +42,8 @@ typedef enum ob_phase {
 } ob_phase;
 
 typedef struct ob_universe_setup {
-	const char *name; // unique on this machine; NULL = "obsim-<pid>"
+	const char *
+		name; // unique on this machine; NULL = "obsim-<pid>"; "": in this process's own memory, seen by no other
 	uint32_t capacity; // object slots
 	uint32_t workers; // >= 1
 	uint32_t hulls; // maximum of hulls, of the scene and created
@@ -195,6 +196,7 @@ void ob_publish_motion(ob_universe *u, uint32_t id, const ob_motion *m);
 void ob_stage_motion(ob_universe *u, uint32_t id, const ob_motion *m);
 const ob_motion *ob_staged_motion(const ob_universe *u, uint32_t id);
 void ob_commit_motion(ob_universe *u, uint32_t id);
+void ob_uncommit_motion(ob_universe *u, uint32_t id); // the newest is staged again, in a universe without readers
 // Called by the host, while the universe is paused or starting.
 void ob_write_passport(ob_universe *u, uint32_t id, const ob_passport *p);
 // Same, for a hull that no body properties refer to yet. Returns false if there is no room, or it is inconsistent.
@@ -212,6 +214,7 @@ const ob_hull *ob_hull_of(const ob_universe *u, const ob_passport *p); // NULL: 
 const ob_hull *ob_part_of(const ob_universe *u, const ob_passport *p, uint32_t part);
 uint32_t ob_parts_of(const ob_universe *u, const ob_passport *p); // 0: not a compound
 bool ob_universe_has_terrains(const ob_universe *u);
+const ob_terrain_set *ob_universe_terrains(const ob_universe *u); // NULL: there are none
 const ob_terrain *ob_terrain_of(const ob_universe *u, const ob_passport *p); // NULL: not a terrain
 // The data of the step (step_data.h); ordered by the gate.
 ob_step_data *ob_universe_step_data(const ob_universe *u);
@@ -221,6 +224,8 @@ uint64_t ob_step_count(const ob_universe *u);
 // Worker that scheduled last, set by itself; any thread may read it.
 void ob_step_set_scheduler(ob_universe *u, uint32_t worker);
 uint32_t ob_step_scheduler(const ob_universe *u);
+// Sets the clock, of a universe in which nothing moves.
+void ob_step_set(ob_universe *u, uint64_t step);
 void ob_step_complete(ob_universe *u, uint32_t awake, uint32_t pairs, uint32_t islands);
 // Starts the timing of steps: from one completion to the next; after a pause, from here.
 void ob_step_begin(ob_universe *u);

@@ -1,0 +1,83 @@
+"""Free runs that are solved in groups end in the bits of lockstep: random scenes of boxes and balls, stacks, heaps, a gas, with
+births and deaths, in threads and processes, few and one for each object, and after kills.
+
+Arguments: the number of scenes, or the first seed and the number of scenes."""
+
+import random
+import sys
+import unittest
+
+import program
+
+NUMBERS = [int(a) for a in sys.argv[1:] if a.isdigit()]
+FIRST, SCENES = [[1, 6], [1] + NUMBERS, NUMBERS][len(NUMBERS)]
+WAYS = [["--workers", 1], ["--workers", 2], ["--workers", "objects"], ["--workers", 3, "--isolation", "process"],
+	["--workers", "objects", "--isolation", "process"]]
+
+
+def number(draw, low, high):
+	return f"{draw.uniform(low, high):.3f}"
+
+
+def body(draw, at, more=""):
+	size = draw.uniform(.2, .6)
+	shape = f"box {{ size = {{ {size:.3f}, {number(draw, .2, .6)}, {number(draw, .2, .6)} }}, q = random_rotation()"
+	if draw.random() < .4:
+		shape = f"sphere {{ radius = {size / 2:.3f}"
+	return f"{shape}, at = {{ {', '.join(f'{x:.3f}' for x in at)} }}{more} }}"
+
+
+def stack(draw, x, y):
+	return [f"box {{ size = {{ .5, .5, .4 }}, at = {{ {x}, {y}, {.2 + .4 * i:.3f} }} }}" for i in range(draw.randint(2, 6))]
+
+
+def heap(draw, x, y):
+	return [body(draw, [x + draw.uniform(-.6, .6), y + draw.uniform(-.6, .6), .5 + .6 * i]) for i in range(draw.randint(3, 9))]
+
+
+def shots(draw, x, y):
+	life = draw.choice(["", "", f", born = {number(draw, .05, .3)}", f", dies = {number(draw, .1, .4)}"])
+	return [body(draw, [x + 3, y + i, draw.uniform(.3, 2)], f", velocity = {{ {number(draw, -12, -4)}, 0, {number(draw, 0, 3)} }}{life}")
+		for i in range(draw.randint(1, 3))]
+
+
+def gas(draw, x, y):
+	return [body(draw, [x + i % 3, y + i // 3 % 3, 2 + i // 9], f", restitution = 1, velocity = {{ {number(draw, -4, 4)}, "
+		f"{number(draw, -4, 4)}, {number(draw, -4, 4)} }}") for i in range(draw.randint(4, 14))]
+
+
+class Group(program.Case):
+	def scene(self, draw):
+		falls = draw.random() < .8
+		lines = [f"scene {{ duration = {number(draw, .4, 1.2)}" + ("" if falls else ", gravity = { 0, 0, 0 }") +
+			draw.choice(["", "", ", tolerance = .01", ", sleeping = false"]) + " }", "ground {}"]
+		for _ in range(draw.randint(1, 4)):
+			x, y = draw.randint(-4, 4), draw.randint(-4, 4)
+			lines += draw.choice([stack, heap, shots, gas] if falls else [gas, shots])(draw, x, y)
+		path = self.path("scene.lua")
+		with open(path, "w") as f:
+			f.write("\n".join(lines) + "\n")
+		return path
+
+	def test_bits(self):
+		for seed in range(FIRST, FIRST + SCENES):
+			draw = random.Random(seed)
+			scene = self.scene(draw)
+			lockstep = program.report(scene, "--seed", seed)["state_hash"]
+			ways = [*program.ways(*WAYS), *([way + ["--fault", f"kill:p={p},seed={seed}"] for way in WAYS[3:]
+				for p in (.002, .005)] if seed % 2 else [])]
+			for way in ways:
+				with self.subTest(seed=seed, way=way):
+					r = program.report(scene, "--seed", seed, "--sync", "free", "--set", "coupling=group", *way)
+					self.assertEqual(r["state_hash"], lockstep, f"{r['deaths']} deaths")
+
+	def test_refused(self):
+		for words in (["--set", "jitter=.1"], ["--set", "delay=.01"], ["--set", "update_rate=500"], ["--set", "record_schedule=x"]):
+			done = program.call("run", program.scene("stack"), "--sync", "free", "--set", "coupling=group", *words)
+			self.assertEqual(done.returncode, 2, done.stderr)
+			self.assertIn("coupling=group", done.stderr)
+
+
+if __name__ == "__main__":
+	sys.argv = sys.argv[:1] + [a for a in sys.argv[1:] if not a.isdigit()]
+	unittest.main()
