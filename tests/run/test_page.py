@@ -348,6 +348,33 @@ class Page(server.Case):
 		self.assertEqual(b.console(), [])
 		self.end()
 
+	def test_cameras(self):
+		"""Pictures of a camera on an object come again and again, and are what it sees."""
+		with open(self.path("scene.lua"), "w") as f:
+			f.write("""ground {}
+				box { name = "car", size = { .2, .2, .2 }, at = { 0, 0, 1 }, static = true }
+				box { size = { .1, 6, 6 }, at = { 3, -3, 1 }, static = true, colour = "#ff0000" }
+				camera { on = "car", name = "eye", at = { .2, 0, 0 }, width = 640, height = 300, rate = 20 }
+				camera "main" { eye = { -6, -2, 5 }, target = { 0, -2, 0 } }""")
+		self.serve_file(self.path("scene.lua"))
+		b = self.open()
+		b.wait("document.querySelector('#pictures img')?.naturalWidth > 0")
+		self.assertEqual(b.run("""const i = document.querySelector('#pictures img'), canvas = document.createElement('canvas');
+			window.first = i.src;
+			canvas.width = 320;
+			window.sees = () => { // the sky on the left, a red wall on the right
+				const c = canvas.getContext('2d', { willReadFrequently: true });
+				c.drawImage(i, 0, 0); // nothing, while the next one comes
+				const [left, right] = [20, 300].map((x) => c.getImageData(x, 30, 1, 1).data);
+				return left[2] > left[0] && right[0] > right[2];
+			};
+			return [i.naturalWidth, i.naturalHeight]"""), [320, 150])
+		b.wait("sees()")
+		b.wait("document.querySelector('#pictures img').src !== first")
+		self.assertEqual(b.run("return document.querySelector('#pictures figcaption').textContent"), "eye")
+		self.assertEqual(b.console(), [])
+		self.end()
+
 	def test_visits(self):
 		"""The first visit shows four steps, which can be walked or skipped; a later one does not. Panels stay as they were left."""
 		self.serve("--isolation", "process", "--workers", "3", scene="falling_boxes")

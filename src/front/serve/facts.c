@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -72,6 +73,54 @@ static void put_offers(ob_message *m, const ob_scene *s)
 	ob_message_put_json(m, s->avatar ? s->avatar->passport.name : "");
 }
 
+// Cameras on objects, whose pictures the page fetches.
+static void put_pictures(ob_message *m, const ob_scene *scene)
+{
+	bool first = true;
+	ob_message_print(m, ",\"pictures\":[");
+	for (uint32_t i = 0; i < scene->sensors; i++) {
+		if (scene->sensor[i].kind != OB_SENSOR_CAMERA)
+			continue;
+		ob_message_print(m, "%s{\"sensor\":%u,\"name\":", first ? "" : ",", i);
+		ob_message_put_json(m, scene->sensor[i].name);
+		ob_message_print(m, "}");
+		first = false;
+	}
+	ob_message_print(m, "]");
+}
+
+ob_message *ob_facts_picture(const ob_universe *u, uint32_t sensor)
+{
+	enum { HEAD = 54, ACROSS = 320, BITS = 24, INFO = 40 };
+	ob_sensor_passport p;
+	uint64_t number;
+	double time;
+	if (!ob_universe_get_sensor(u, sensor, &p) || p.kind != OB_SENSOR_CAMERA)
+		return NULL;
+	double *value = malloc(p.width * sizeof *value);
+	ob_message *m =
+		value && ob_universe_get_samples(u, sensor, 0, &number, &time, value, 1) ? ob_message_new(false) : NULL;
+	const ob_pixel *pixel = ob_picture_of(value);
+	const uint32_t most = p.beams > p.rows ? p.beams : p.rows, each = (most + ACROSS - 1) / ACROSS;
+	const uint32_t width = p.beams / each ? p.beams / each : 1, height = p.rows / each ? p.rows / each : 1,
+		       row = (3 * width + 3) / 4 * 4;
+	const uint32_t head[] = { HEAD + row * height, 0, HEAD, INFO, width, -height, 1 | BITS << 16, 0,
+				  row * height,        0, 0,    0,    0 };
+	if (m) {
+		ob_message_put(m, "BM", 2);
+		ob_message_put(m, head, sizeof head);
+	}
+	for (uint32_t y = 0; m && y < height; y++) {
+		for (uint32_t x = 0; x < width; x++) {
+			const uint8_t *c = pixel[(size_t)y * each * p.beams + (size_t)x * each].rgba;
+			ob_message_put(m, (uint8_t[]){ c[2], c[1], c[0] }, 3);
+		}
+		ob_message_put(m, (uint8_t[3]){ 0 }, row - 3 * width);
+	}
+	free(value);
+	return m;
+}
+
 ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_universe_info *info, bool free_run,
 			     const ob_content *mesh)
 {
@@ -115,7 +164,9 @@ ob_message *ob_facts_welcome(const ob_server_config *c, ob_role role, const ob_u
 		ob_message_print(m, i ? "," : "");
 		ob_message_put_json(m, mesh[i].path + 1); // the path in the page
 	}
-	ob_message_print(m, "]}}");
+	ob_message_print(m, "]");
+	put_pictures(m, scene);
+	ob_message_print(m, "}}");
 	return m;
 }
 

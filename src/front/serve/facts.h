@@ -20,6 +20,8 @@ ob_message *ob_facts_notice(const char *text);
 ob_message *ob_facts_avatar(uint32_t id, uint32_t generation);
 // {"workers": [[pid, rank, objects of the last step, CPU (s), object that it is busy with, or null, s since it died last, or null], ..]}
 ob_message *ob_facts_workers(ob_host *h);
+// Newest picture of a camera on an object, at most 320 pixels across, as a file of BMP. NULL: there is none.
+ob_message *ob_facts_picture(const ob_universe *u, uint32_t sensor);
 // The universe's figures in the text format of Prometheus (version 0.0.4), of less than 4 kB
 ob_message *ob_facts_metrics(ob_host *h, uint32_t viewers);
 // {"notice": the latest failure after *since (ns) that froze objects, in words}, and sets since; NULL also if there is none

@@ -1,6 +1,7 @@
 #include "serve/http.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -83,15 +84,25 @@ static int end_transaction(struct lws *wsi)
 	return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
-static bool write_text(struct lws *wsi, unsigned status, const char *text, size_t n)
+static bool write_whole(struct lws *wsi, unsigned status, const char *type, const void *bytes, size_t n)
 {
 	head h;
-	unsigned char body[LWS_PRE + OB_HTTP_TEXT];
-	begin_head(&h, wsi, status, "text/plain; charset=utf-8", n);
+	unsigned char *body = malloc(LWS_PRE + n);
+	if (!body)
+		return false;
+	begin_head(&h, wsi, status, type, n);
+	add(&h, "cache-control:", "no-store");
 	if (status == HTTP_STATUS_METHOD_NOT_ALLOWED)
 		add(&h, "allow:", "GET, HEAD");
-	memcpy(body + LWS_PRE, text, n);
-	return write_head(&h) && lws_write(wsi, body + LWS_PRE, n, LWS_WRITE_HTTP_FINAL) >= 0;
+	memcpy(body + LWS_PRE, bytes, n);
+	const bool written = write_head(&h) && lws_write(wsi, body + LWS_PRE, n, LWS_WRITE_HTTP_FINAL) >= 0;
+	free(body);
+	return written;
+}
+
+static bool write_text(struct lws *wsi, unsigned status, const char *text, size_t n)
+{
+	return write_whole(wsi, status, "text/plain; charset=utf-8", text, n);
 }
 
 static int refuse(struct lws *wsi, unsigned status, const char *text)
@@ -114,7 +125,7 @@ static bool has_body(struct lws *wsi)
 	       lws_hdr_total_length(wsi, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0;
 }
 
-int ob_http_answer_text(struct lws *wsi, const char *text, size_t size)
+int ob_http_answer_whole(struct lws *wsi, const char *type, const void *bytes, size_t size)
 {
 	char *uri;
 	int length;
@@ -122,7 +133,7 @@ int ob_http_answer_text(struct lws *wsi, const char *text, size_t size)
 		return refuse_body(wsi, HTTP_STATUS_METHOD_NOT_ALLOWED, "only GET is answered here\n");
 	if (has_body(wsi))
 		return refuse_body(wsi, HTTP_STATUS_REQ_ENTITY_TOO_LARGE, "requests have no body here\n");
-	return size <= OB_HTTP_TEXT && write_text(wsi, HTTP_STATUS_OK, text, size) ? end_transaction(wsi) : -1;
+	return write_whole(wsi, HTTP_STATUS_OK, type, bytes, size) ? end_transaction(wsi) : -1;
 }
 
 // By default browsers keep a content, but revalidate its tag each time.

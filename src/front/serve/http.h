@@ -21,9 +21,8 @@ bool ob_http_is_page(struct lws *wsi);
 // Both return the value of the library's callback: other than 0 ends the connection. own: contents that take precedence
 // over content.h; ends with one without a path.
 int ob_http_answer_request(struct lws *wsi, ob_http_answer *a, const char *path, const ob_content *own);
-// A short text, made for this request. The value is that of the callback, too.
-enum { OB_HTTP_TEXT = 4096 };
-int ob_http_answer_text(struct lws *wsi, const char *text, size_t size);
+// A content made for this request, some 100 kB at most. The value is that of the callback, too.
+int ob_http_answer_whole(struct lws *wsi, const char *type, const void *bytes, size_t size);
 int ob_http_go_on(struct lws *wsi, ob_http_answer *a);
 
 #endif

@@ -33,7 +33,7 @@ static const double commands_rate = 200, creations_rate = 40; // 1/s, per client
 enum { CREATIONS_AWAITED = 8 }; // of a client: a step that takes long finds no more of them when it ends
 static const char film_path[] = "/recording", meshes_path[] = "/meshes/";
 static const char player_path[] = "/player.html"; // a page for the record that a viewer makes
-static const char metrics_path[] = "/metrics";
+static const char metrics_path[] = "/metrics", pictures_path[] = "/pictures/";
 static const char comparison_path[] = "/compare.html"; // the page of several worlds
 static const double door_interval = .25; // s, between two checks of deadlines
 static const struct timespec idle_wait = { .tv_nsec = 1000000 };
@@ -502,10 +502,14 @@ static int let_in(const ob_server *s, struct lws *wsi)
 	return why != NULL;
 }
 
-static int answer_metrics(const ob_server *s, struct lws *wsi)
+static bool is_below(const char *path, const char *folder)
 {
-	ob_message *m = ob_facts_metrics(s->world->host, s->count);
-	const int result = m && !m->failed ? ob_http_answer_text(wsi, (const char *)m->bytes, m->size) : -1;
+	return strncmp(path, folder, strlen(folder)) == 0;
+}
+
+static int answer_message(struct lws *wsi, const char *type, ob_message *m)
+{
+	const int result = m && !m->failed ? ob_http_answer_whole(wsi, type, m->bytes, m->size) : -1;
 	ob_message_release(m);
 	return result;
 }
@@ -517,12 +521,18 @@ static int answer(const ob_server *s, struct lws *wsi, ob_http_answer *a, const 
 	lws_set_timeout(wsi, NO_PENDING_TIMEOUT, 0); // else the library ends a long answer, at any speed
 	if (!ob_http_is_ours(wsi, s->config.listen.address, s->port, !s->config.listen.loopback, false))
 		why = "this is not the name of this server";
-	else if ((strcmp(path, film_path) == 0 || strcmp(path, metrics_path) == 0 ||
-		  strncmp(path, meshes_path, strlen(meshes_path)) == 0) &&
+	else if ((strcmp(path, film_path) == 0 || strcmp(path, metrics_path) == 0 || is_below(path, meshes_path) ||
+		  is_below(path, pictures_path)) &&
 		 !has_token(s, wsi))
 		why = "the token is missing or wrong: use the address that obsim serve has printed";
 	if (!why && s->worlds == 1 && strcmp(path, metrics_path) == 0)
-		return answer_metrics(s, wsi);
+		return answer_message(wsi, "text/plain; charset=utf-8", ob_facts_metrics(s->world->host, s->count));
+	ob_message *picture = why || !s->worlds || !is_below(path, pictures_path)
+				      ? NULL
+				      : ob_facts_picture(ob_host_universe(s->world->host),
+							 (uint32_t)strtoul(path + strlen(pictures_path), NULL, 10));
+	if (picture)
+		return answer_message(wsi, "image/bmp", picture);
 	if (!why)
 		return ob_http_answer_request(wsi, a, s->worlds > 1 && strcmp(path, "/") == 0 ? comparison_path : path,
 					      s->own);

@@ -12,6 +12,7 @@ import { Hand } from './hand.js';
 import { Explore } from './explore.js';
 import { Recorder } from './recorder.js';
 import { Offers } from './offers.js';
+import { Pictures } from './pictures.js';
 import { Sharpness } from './sharpness.js';
 import { addressOf, count, kept, token } from './page.js';
 import { Walk } from './walk.js';
@@ -26,7 +27,7 @@ const AGAIN = [0.5, 1, 2, 5]; // s: waits before attempts to reconnect
 const canvas = document.querySelector('#picture');
 const asked = new URLSearchParams(location.hash.slice(1));
 const recording = document.querySelector('meta[name=recording]').content;
-const universe = recording ? new Film(recording) : new Universe(`ws://${location.host}${addressOf('/universe')}`), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), recorder = new Recorder(universe), sharpness = new Sharpness(), walk = new Walk(), tour = new Tour(universe, workers, walk, kill);
+const universe = recording ? new Film(recording) : new Universe(`ws://${location.host}${addressOf('/universe')}`), camera = new Camera(), panel = new Panel(), workers = new Workers(), hand = new Hand(universe, camera), explore = new Explore(universe), offers = new Offers(), pictures = new Pictures(), recorder = new Recorder(universe), sharpness = new Sharpness(), walk = new Walk(), tour = new Tour(universe, workers, walk, kill);
 let drawing, look, cameras = [], shownCamera = 0, picked = null, avatar = null, read = [], tries = 0, frames = 0, framesTold = 0, shown = '', shownForm = '', shownView = null;
 
 // ---- the picture
@@ -399,6 +400,7 @@ universe.addEventListener('welcome', (e) => {
 	look = e.detail;
 	cameras = look.cameras;
 	panel.welcome(look);
+	pictures.welcome(look);
 	avatar = null;
 	workers.welcome(look, panel.kills);
 	if (offers.welcome(look) && !panel.on.offers && (kept('panels')?.offers ?? true))

@@ -75,7 +75,7 @@ export class Recorder extends EventTarget {
 			return answer;
 		};
 		const meshes = await Promise.all(welcome.meshes.map(async (path) => (await fetched(path)).arrayBuffer()));
-		const looksOnly = { ...welcome, role: 'watch', look_only: true, meshes: [], controls: [], params: [] };
+		const looksOnly = { ...welcome, role: 'watch', look_only: true, meshes: [], controls: [], params: [], pictures: [] };
 		const film = { begin, end, interval: welcome.step_length, created: new Date().toISOString(), version: welcome.version, commit: '', objects: [], events: [], gaps: true };
 		const workers = this.workers ? [JSON.stringify({ workers: this.workers })] : [];
 		const head = [JSON.stringify({ welcome: looksOnly }), JSON.stringify({ film }), ...workers, ...meshes].flatMap(framed);
