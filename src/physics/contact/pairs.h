@@ -11,14 +11,14 @@
 #define OB_PAIRS(PAIR) \
 	PAIR(SPHERE, SPHERE, ob_manifold_spheres) \
 	PAIR(SPHERE, PLANE, ob_manifold_sphere_plane) \
-	PAIR(SPHERE, BOX, ob_manifold_sphere_box) \
+	PAIR(SPHERE, BOX, ob_manifold_round_hull) \
 	PAIR(SPHERE, HULL, ob_manifold_round_hull) \
 	PAIR(BOX, PLANE, ob_manifold_box_plane) \
 	PAIR(BOX, BOX, ob_manifold_boxes) \
 	PAIR(BOX, HULL, ob_manifold_polytopes) \
 	PAIR(CAPSULE, PLANE, ob_manifold_capsule_plane) \
 	PAIR(CAPSULE, SPHERE, ob_manifold_capsule_sphere) \
-	PAIR(CAPSULE, BOX, ob_manifold_capsule_box) \
+	PAIR(CAPSULE, BOX, ob_manifold_round_hull) \
 	PAIR(CAPSULE, CAPSULE, ob_manifold_capsules) \
 	PAIR(CAPSULE, HULL, ob_manifold_round_hull) \
 	PAIR(CYLINDER, PLANE, ob_manifold_cylinder_plane) \
@@ -37,14 +37,12 @@
 
 void ob_manifold_spheres(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_sphere_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
-void ob_manifold_sphere_box(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_round_hull(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_box_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_boxes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_polytopes(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_capsule_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_capsule_sphere(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
-void ob_manifold_capsule_box(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_capsules(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_cylinder_plane(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);
 void ob_manifold_cylinder_sphere(const ob_placed *a, const ob_placed *b, double margin, ob_manifold *out);

@@ -37,29 +37,11 @@ static const ob_hull box_topology = {
 		  { 3, 7, 1, 3 } },
 };
 
-// Shape in world axes, from an origin that both of a pair share. Corners and faces stay in the shape's own frame;
-// vectors are turned into it for comparison, since most corners are never needed in the world.
-typedef struct polytope {
-	const ob_placed *placed;
-	const ob_hull *shape; // topology, and normals of the faces
-	const ob_vec3 *corner; // m, from the centre
-	const double *offset; // m, of each face from the centre
-	ob_vec3 centre;
-	double inner, radius, thin; // m: see ob_hull
-	ob_vec3 box_corner[8];
-	double box_offset[6];
-} polytope;
-
-static double radius_of(const ob_placed *x)
-{
-	return x->hull ? x->hull->radius : ob_norm(x->size);
-}
-
-static void polytope_init(polytope *x, const ob_placed *from, ob_vec3 origin)
+void ob_polytope_init(ob_polytope *x, const ob_placed *from, ob_vec3 origin)
 {
 	x->placed = from;
 	x->centre = ob_sub(from->p, origin);
-	x->radius = radius_of(from);
+	x->radius = ob_polytope_radius(from);
 	if (!from->hull) {
 		const ob_vec3 h = from->size;
 		x->shape = &box_topology;
@@ -80,29 +62,29 @@ static void polytope_init(polytope *x, const ob_placed *from, ob_vec3 origin)
 	}
 }
 
-static ob_vec3 to_world(const polytope *x, ob_vec3 direction)
+static ob_vec3 to_world(const ob_polytope *x, ob_vec3 direction)
 {
 	return ob_rotate(&x->placed->r, direction);
 }
 
-static ob_vec3 to_local(const polytope *x, ob_vec3 direction)
+static ob_vec3 to_local(const ob_polytope *x, ob_vec3 direction)
 {
 	return ob_rotate_back(&x->placed->r, direction);
 }
 
-static ob_vec3 corner_of(const polytope *x, uint32_t k)
+static ob_vec3 corner_of(const ob_polytope *x, uint32_t k)
 {
 	return ob_add(x->centre, to_world(x, x->corner[k]));
 }
 
-static ob_vec3 normal_of(const polytope *x, uint32_t face)
+static ob_vec3 normal_of(const ob_polytope *x, uint32_t face)
 {
 	return to_world(x, x->shape->normal[face]);
 }
 
 // Position along n of the lowest corner, from the centre (m). n: in the shape's frame. Keeps four minima side by side;
 // a single one would wait for each comparison.
-static double lowest_along(const polytope *x, ob_vec3 n)
+static double lowest_along(const ob_polytope *x, ob_vec3 n)
 {
 	const ob_vec3 *c = x->corner;
 	const uint32_t corners = x->shape->corners; // four at least
@@ -120,7 +102,7 @@ static double lowest_along(const polytope *x, ob_vec3 n)
 }
 
 // Returns the corner that is lowest along n. low: result of lowest_along.
-static uint32_t lowest_corner(const polytope *x, ob_vec3 n, double low)
+static uint32_t lowest_corner(const ob_polytope *x, ob_vec3 n, double low)
 {
 	uint32_t k = 0;
 	while (k + 1 < x->shape->corners && ob_dot(n, x->corner[k]) > low)
@@ -128,7 +110,7 @@ static uint32_t lowest_corner(const polytope *x, ob_vec3 n, double low)
 	return k;
 }
 
-static ob_vec3 velocity_at(const polytope *x, ob_vec3 at)
+static ob_vec3 velocity_at(const ob_polytope *x, ob_vec3 at)
 {
 	return ob_add(x->placed->v, ob_cross(x->placed->w, ob_sub(at, x->centre)));
 }
@@ -176,7 +158,7 @@ typedef struct heights {
 } heights;
 
 // Returns the face above which the point is highest. point: in the frame of the faces.
-static uint32_t find_heights(const polytope *of, ob_vec3 point, double *height)
+static uint32_t find_heights(const ob_polytope *of, ob_vec3 point, double *height)
 {
 	const uint32_t faces = of->shape->faces;
 	double highest = -INFINITY;
@@ -190,7 +172,7 @@ static uint32_t find_heights(const polytope *of, ob_vec3 point, double *height)
 	return f;
 }
 
-static void add_face(axes *s, const polytope *of, bool of_b, double rest, uint32_t f, double gap)
+static void add_face(axes *s, const ob_polytope *of, bool of_b, double rest, uint32_t f, double gap)
 {
 	const ob_vec3 n = normal_of(of, f);
 	const axis x = { .gap = gap, .is_face = true, .of_b = of_b, .face = f, .normal = of_b ? n : ob_scale(n, -1) };
@@ -201,7 +183,7 @@ static void add_face(axes *s, const polytope *of, bool of_b, double rest, uint32
 }
 
 // Tries the faces of one shape, beginning with the one that looks most at the other's centre.
-static void try_faces(axes *s, const polytope *of, const polytope *other, bool of_b, double rest, heights *h)
+static void try_faces(axes *s, const ob_polytope *of, const ob_polytope *other, bool of_b, double rest, heights *h)
 {
 	const ob_vec3 d = to_local(of, ob_sub(other->centre, of->centre));
 	const uint32_t first = find_heights(of, d, h->of_centre);
@@ -240,7 +222,8 @@ static bool is_above_edge(double left, double right, double cosine, double least
 
 // Collects edges that may be part of an axis with a gap of "needed" (m). A point is not above an edge if it is in front
 // of neither of its faces.
-static uint32_t collect_edges(const polytope *x, const polytope *other, double needed, const heights *h, near_edge *out)
+static uint32_t collect_edges(const ob_polytope *x, const ob_polytope *other, double needed, const heights *h,
+			      near_edge *out)
 {
 	enum { POINT = 1, CENTRE = 2 };
 	const double slack = 1e-9 * (x->radius + other->radius), of_point = needed - slack,
@@ -269,7 +252,7 @@ static uint32_t collect_edges(const polytope *x, const polytope *other, double n
 	return n;
 }
 
-static void try_edges(axes *s, const polytope *a, const polytope *b, double needed, double rest, double discount,
+static void try_edges(axes *s, const ob_polytope *a, const ob_polytope *b, double needed, double rest, double discount,
 		      const heights *heights_a, const heights *heights_b)
 {
 	near_edge of_a[OB_HULL_EDGES_MAX], of_b[OB_HULL_EDGES_MAX];
@@ -303,7 +286,7 @@ static void try_edges(axes *s, const polytope *a, const polytope *b, double need
 // ---- choice of the axis
 
 // Rate (m/s) at which the gap of a face opens: the least rate of the other shape's lowest corners.
-static double face_rate(const polytope *of, const polytope *other, ob_vec3 n)
+static double face_rate(const ob_polytope *of, const ob_polytope *other, ob_vec3 n)
 {
 	const ob_vec3 l = to_local(other, n);
 	const double low = lowest_along(other, l) + as_low * other->radius;
@@ -318,7 +301,7 @@ static double face_rate(const polytope *of, const polytope *other, ob_vec3 n)
 }
 
 // Finds the nearest points of the lines that carry two edges or, if limited, of the edges themselves.
-static void nearest_on_edges(const polytope *a, const polytope *b, const axis *x, bool limited, ob_vec3 *xa,
+static void nearest_on_edges(const ob_polytope *a, const ob_polytope *b, const axis *x, bool limited, ob_vec3 *xa,
 			     ob_vec3 *xb)
 {
 	const ob_hull_edge *ea = &a->shape->edge[x->edge_a], *eb = &b->shape->edge[x->edge_b];
@@ -335,7 +318,7 @@ static void nearest_on_edges(const polytope *a, const polytope *b, const axis *x
 	*xb = ob_madd(pb, t, v);
 }
 
-static double opening_rate(const polytope *a, const polytope *b, const axis *x)
+static double opening_rate(const ob_polytope *a, const ob_polytope *b, const axis *x)
 {
 	ob_vec3 xa, xb;
 	if (x->is_face)
@@ -347,7 +330,7 @@ static double opening_rate(const polytope *a, const polytope *b, const axis *x)
 // Chooses an axis as between boxes: the one that closes last, but first a touching face that does not close. Returns
 // NULL if no axis separates. crossing: the shapes touch along two crossing faces that do not close. together: the sum of
 // the normals of axes that close last at the same instant; otherwise 0.
-static const axis *closing_last(const polytope *a, const polytope *b, const axes *s, double rest, double discount,
+static const axis *closing_last(const ob_polytope *a, const ob_polytope *b, const axes *s, double rest, double discount,
 				bool *crossing, ob_vec3 *together)
 {
 	const axis *best = NULL, *touching = NULL;
@@ -519,7 +502,7 @@ static void clip(ob_polygon *p, double u, double w, double nu, double nw)
 }
 
 // Returns the incident face: among those at the lowest corners along n, the one that looks most against n.
-static uint32_t incident_face(const polytope *in, ob_vec3 n)
+static uint32_t incident_face(const ob_polytope *in, ob_vec3 n)
 {
 	const ob_vec3 l = to_local(in, n);
 	const double low = lowest_along(in, l) + as_low * in->radius;
@@ -540,7 +523,7 @@ static uint32_t incident_face(const polytope *in, ob_vec3 n)
 }
 
 // Returns the face of an edge that looks most against n.
-static uint32_t incident_face_of_edge(const polytope *in, uint32_t edge, ob_vec3 n)
+static uint32_t incident_face_of_edge(const ob_polytope *in, uint32_t edge, ob_vec3 n)
 {
 	const ob_hull_edge *e = &in->shape->edge[edge];
 	return ob_dot(normal_of(in, e->right), n) < ob_dot(normal_of(in, e->left), n) ? e->right : e->left;
@@ -548,7 +531,7 @@ static uint32_t incident_face_of_edge(const polytope *in, uint32_t edge, ob_vec3
 
 // Manifold over a face: the incident face, projected along the axis and clipped. The axis is the face's normal, or that
 // of two edges, one of this face; their crossing is then a corner of the projection.
-static void face_manifold(const polytope *ref, const polytope *in, const axis *x, uint32_t face, bool of_b,
+static void face_manifold(const ob_polytope *ref, const ob_polytope *in, const axis *x, uint32_t face, bool of_b,
 			  ob_vec3 origin, double margin, ob_manifold *m)
 {
 	const ob_hull *top = ref->shape;
@@ -589,7 +572,7 @@ static void face_manifold(const polytope *ref, const polytope *in, const axis *x
 	}
 }
 
-static void edge_manifold(const polytope *a, const polytope *b, const axis *x, ob_vec3 origin, ob_manifold *m)
+static void edge_manifold(const ob_polytope *a, const ob_polytope *b, const axis *x, ob_vec3 origin, ob_manifold *m)
 {
 	ob_vec3 xa, xb;
 	nearest_on_edges(a, b, x, true, &xa, &xb);
@@ -600,7 +583,7 @@ static void edge_manifold(const polytope *a, const polytope *b, const axis *x, o
 }
 
 // Collects the one or two corners that are lowest along n. Returns their number; 0 for more.
-static int collect_lowest(const polytope *x, ob_vec3 n, ob_vec3 at[2])
+static int collect_lowest(const ob_polytope *x, ob_vec3 n, ob_vec3 at[2])
 {
 	const ob_vec3 l = to_local(x, n);
 	const double low = lowest_along(x, l) + as_low * x->radius;
@@ -617,7 +600,7 @@ static int collect_lowest(const polytope *x, ob_vec3 n, ob_vec3 at[2])
 // Manifold of a corner that meets a corner, or of two parallel edges, exactly head-on: the faces on all sides close at
 // the same instant, and none of them decides. The mean of their normals does, so mirrored bodies stay mirrored.
 // Returns false where other features meet.
-static bool corners_manifold(const polytope *a, const polytope *b, ob_vec3 n, ob_vec3 origin, double margin,
+static bool corners_manifold(const ob_polytope *a, const ob_polytope *b, ob_vec3 n, ob_vec3 origin, double margin,
 			     ob_manifold *m)
 {
 	ob_vec3 xa[2], xb[2];
@@ -648,7 +631,7 @@ static bool corners_manifold(const polytope *a, const polytope *b, ob_vec3 n, ob
 
 // Finds the face whose normal is nearest to the axis of two edges, among the faces of these edges. Returns false if
 // none is near enough.
-static bool face_along(const polytope *a, const polytope *b, const axis *x, uint32_t *face, bool *of_b)
+static bool face_along(const ob_polytope *a, const ob_polytope *b, const axis *x, uint32_t *face, bool *of_b)
 {
 	double best = along_face;
 	bool found = false;
@@ -664,7 +647,7 @@ static bool face_along(const polytope *a, const polytope *b, const axis *x, uint
 
 // Finds the points over the axis' face, or over a face that looks along an axis of edges; failing that, the edges'
 // point.
-static void manifold_along(const polytope *a, const polytope *b, const axis *x, ob_vec3 origin, double margin,
+static void manifold_along(const ob_polytope *a, const ob_polytope *b, const axis *x, ob_vec3 origin, double margin,
 			   ob_manifold *out)
 {
 	uint32_t face = x->face;
@@ -689,18 +672,18 @@ static bool is_proven(const ob_manifold *m, double gap)
 
 void ob_manifold_polytopes(const ob_placed *pa, const ob_placed *pb, double margin, ob_manifold *out)
 {
-	polytope a, b;
+	ob_polytope a, b;
 	axes s = { .face = { .gap = -INFINITY }, .edge = { .gap = -INFINITY } };
 	heights heights_a, heights_b;
 	bool crossing;
 	const ob_vec3 origin = pb->p;
 	const double rest = ob_min(pa->rest_depth, pb->rest_depth);
 	out->points = 0;
-	out->separation = ob_norm(ob_sub(pa->p, pb->p)) - radius_of(pa) - radius_of(pb);
+	out->separation = ob_norm(ob_sub(pa->p, pb->p)) - ob_polytope_radius(pa) - ob_polytope_radius(pb);
 	if (out->separation > margin)
 		return;
-	polytope_init(&a, pa, origin);
-	polytope_init(&b, pb, origin);
+	ob_polytope_init(&a, pa, origin);
+	ob_polytope_init(&b, pb, origin);
 	const double thin = ob_min(a.thin, b.thin), discount = ob_min(prefer_face * thin, rest),
 		     touch = rest + same_gap * thin;
 	try_faces(&s, &a, &b, false, touch, &heights_a);
