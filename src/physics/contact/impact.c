@@ -35,11 +35,6 @@ typedef struct point_rows {
 	double rate; // kg: factor from a velocity to an impulse in an iteration, small enough to converge
 } point_rows;
 
-// J M^-1 J' of one point: normal, normal with friction, friction (11 12 22)
-typedef struct point_matrix {
-	double nn, nt[2], tt[3];
-} point_matrix;
-
 // Set of points that are solved together.
 typedef struct impact_set {
 	uint32_t bodies, points;
@@ -48,9 +43,8 @@ typedef struct impact_set {
 	ob_impact_change *change; // [bodies]
 	double largest; // m/s: largest velocity of the points
 	double share; // factor of e: 1, or 0 for the plastic impact
-	point_matrix one; // for a set of one point
 	const ob_impact_links *links; // NULL: no joints
-	double *response; // [rows][rows]: J P M^-1 J', with the joints' share P; NULL without joints
+	double *response; // [rows][rows]: J P M^-1 J', with the joints' share P; NULL: too many points, and no joints
 	const ob_impact_payer *payer; // NULL: no budget
 } impact_set;
 
@@ -113,17 +107,6 @@ static void point_rows_init(point_rows *r, const ob_impact_body *body, const ob_
 	}
 }
 
-// Symmetric in the two bodies.
-static point_matrix point_matrix_of(const point_rows *r)
-{
-	double a[3][3];
-	for (int i = 0; i < 3; i++)
-		for (int j = 0; j <= i; j++)
-			a[i][j] = ob_dot(r->about_a[i], r->turn_a[j]) + ob_dot(r->about_b[i], r->turn_b[j]) +
-				  (i == j ? r->mass_a + r->mass_b : 0);
-	return (point_matrix){ a[0][0], { a[1][0], a[2][0] }, { a[1][1], a[2][1], a[2][2] } };
-}
-
 // Sets the rates. A body with k points counts as a k-th of itself in each, so that no iteration overshoots (mass
 // splitting: Tonge et al. 2012).
 static void set_rates(impact_set *s, uint32_t *count)
@@ -140,17 +123,6 @@ static void set_rates(impact_set *s, uint32_t *count)
 		}
 		r->rate = 1 / (a * count[r->a] + b * count[r->b]);
 	}
-}
-
-// Sets the matrix and the rate of a set of one point.
-static void set_matrix(impact_set *s)
-{
-	point_rows *r = s->point;
-	const double *a = s->response;
-	s->one = !a             ? point_matrix_of(r)
-		 : s->dims == 1 ? (point_matrix){ .nn = a[0] }
-				: (point_matrix){ a[0], { a[1], a[2] }, { a[4], a[5], a[8] } };
-	r->rate = 1 / (s->one.nn + (s->dims == 3 ? s->one.tt[0] + s->one.tt[2] : 0));
 }
 
 static void add_changes(const impact_set *s, const double *x)
@@ -194,48 +166,52 @@ static double answer_of(const impact_set *s, uint32_t row, double before, const 
 	return before;
 }
 
-// Finds the response of all rows to each other with joints: a column by a unit impulse.
+// Velocity of row i of r by a unit impulse of row j of q, without joints.
+static double coupling(const point_rows *r, int i, const point_rows *q, int j)
+{
+	const double along = ob_dot(r->along[i], q->along[j]);
+	double sum = 0;
+	if (r->a == q->a)
+		sum += r->mass_a * along + ob_dot(r->about_a[i], q->turn_a[j]);
+	if (r->b == q->b)
+		sum += r->mass_b * along + ob_dot(r->about_b[i], q->turn_b[j]);
+	if (r->a == q->b)
+		sum -= r->mass_a * along + ob_dot(r->about_a[i], q->turn_b[j]);
+	if (r->b == q->a)
+		sum -= r->mass_b * along + ob_dot(r->about_b[i], q->turn_a[j]);
+	return sum;
+}
+
+// Finds the response of all rows to each other; with joints a column by a unit impulse.
 static void find_response(impact_set *s, double *x)
 {
-	const uint32_t rows = s->points * (uint32_t)s->dims;
-	s->response = ob_allocate(rows * rows * sizeof *s->response);
+	const uint32_t dims = (uint32_t)s->dims, rows = s->points * dims;
+	double *a = s->response;
+	for (uint32_t i = 0; !s->links && i < rows; i++)
+		for (uint32_t j = 0; j <= i; j++)
+			a[i * rows + j] = a[j * rows + i] =
+				coupling(&s->point[i / dims], (int)(i % dims), &s->point[j / dims], (int)(j % dims));
 	memset(x, 0, rows * sizeof *x);
-	for (uint32_t j = 0; j < rows; j++) {
+	for (uint32_t j = 0; s->links && j < rows; j++) {
 		x[j] = 1;
 		add_changes(s, x);
 		x[j] = 0;
 		for (uint32_t i = 0; i < rows; i++)
-			s->response[i * rows + j] = velocity_of(s, i, 0);
+			a[i * rows + j] = velocity_of(s, i, 0);
 	}
-}
-
-static void find_velocities_of_one(const impact_set *s, const double *x, double *u)
-{
-	const point_rows *r = s->point;
-	const point_matrix *a = &s->one;
-	u[0] = r->before[0] + a->nn * x[0] + s->share * r->e * r->before[0];
-	if (s->dims == 1)
-		return;
-	u[0] += a->nt[0] * x[1] + a->nt[1] * x[2];
-	u[1] = r->before[1] + a->nt[0] * x[0] + a->tt[0] * x[1] + a->tt[1] * x[2];
-	u[2] = r->before[2] + a->nt[1] * x[0] + a->tt[1] * x[1] + a->tt[2] * x[2];
 }
 
 // Computes the velocities u of all rows with the impulses x. A normal row has the excess over the law: 0 if the point
 // leaves at exactly -e times its approach.
 static void find_velocities(const impact_set *s, const double *x, double *u)
 {
-	if (s->points == 1) {
-		find_velocities_of_one(s, x, u);
-		return;
-	}
 	const uint32_t dims = (uint32_t)s->dims;
-	if (!s->response)
+	if (!s->links) // a sum of responses to impulses that share a load cancels
 		add_changes(s, x);
 	for (uint32_t i = 0; i < s->points * dims; i++) {
 		const point_rows *r = &s->point[i / dims];
 		const double before = r->before[i % dims];
-		u[i] = s->response ? answer_of(s, i, before, x) : velocity_of(s, i, before);
+		u[i] = s->links ? answer_of(s, i, before, x) : velocity_of(s, i, before);
 		if (i % dims == 0)
 			u[i] += s->share * r->e * before;
 	}
@@ -303,35 +279,10 @@ static void iterate(const impact_set *s, int iterations, double *x, double *u)
 
 typedef struct newton_system {
 	int n;
-	double a[MAX_DENSE_ROWS][MAX_DENSE_ROWS]; // J M^-1 J'
+	const double *a; // [n][n]: the response
 	double m[MAX_DENSE_ROWS][MAX_DENSE_ROWS], step[MAX_DENSE_ROWS];
 	int open[MAX_DENSE_ROWS], opens; // rows of points under load; the other points' impulses go to zero
 } newton_system;
-
-static double coupling(const point_rows *r, int i, const point_rows *q, int j)
-{
-	const double along = ob_dot(r->along[i], q->along[j]);
-	double sum = 0;
-	if (r->a == q->a)
-		sum += r->mass_a * along + ob_dot(r->about_a[i], q->turn_a[j]);
-	if (r->b == q->b)
-		sum += r->mass_b * along + ob_dot(r->about_b[i], q->turn_b[j]);
-	if (r->a == q->b)
-		sum -= r->mass_a * along + ob_dot(r->about_a[i], q->turn_b[j]);
-	if (r->b == q->a)
-		sum -= r->mass_b * along + ob_dot(r->about_b[i], q->turn_a[j]);
-	return sum;
-}
-
-static void fill_matrix(const impact_set *s, newton_system *y)
-{
-	y->n = (int)s->points * s->dims;
-	for (int i = 0; i < y->n; i++)
-		for (int j = 0; j <= i; j++)
-			y->a[i][j] = y->a[j][i] = s->response ? s->response[i * y->n + j]
-							      : coupling(&s->point[i / s->dims], i % s->dims,
-									 &s->point[j / s->dims], j % s->dims);
-}
 
 // Eliminates the first n rows and columns with row pivots. Returns false if they are singular.
 static bool eliminate(newton_system *y, int n)
@@ -369,8 +320,8 @@ static bool eliminate(newton_system *y, int n)
 // Makes row "row" reach zero velocity.
 static void put_stop(newton_system *y, int row, double u)
 {
-	memcpy(y->m[row], y->a[row], (unsigned)y->n * sizeof **y->m);
-	y->m[row][row] += proximity * y->a[row][row];
+	memcpy(y->m[row], y->a + row * y->n, (unsigned)y->n * sizeof **y->m);
+	y->m[row][row] += proximity * y->m[row][row];
 	y->step[row] = -u;
 }
 
@@ -384,11 +335,11 @@ static void put_sliding(newton_system *y, int row, const point_rows *r, const pr
 		for (int c = 0; c < 2; c++) {
 			const double across = k * ((i == c) - d[i] * d[c]);
 			for (int j = 0; j < y->n; j++)
-				m[j] += across * r->rate * y->a[row + c][j];
+				m[j] += across * r->rate * y->a[(row + c) * y->n + j];
 			m[row + c] += (i == c) - across;
 		}
 		for (int j = 0; j < y->n; j++) // the bound is that of the normal impulse after the step
-			m[j] += r->mu * d[i] * r->rate * y->a[row - 1][j];
+			m[j] += r->mu * d[i] * r->rate * y->a[(row - 1) * y->n + j];
 		m[row - 1] -= r->mu * d[i];
 		y->step[row + i] = p->x[1 + i] - x[1 + i];
 	}
@@ -483,7 +434,8 @@ static void solve_cycles(const impact_set *s, double *x, double *u)
 	newton_system *y = ob_allocate(sizeof *y); // larger than the stack of one of many threads
 	double start[MAX_DENSE_ROWS];
 	bool solved = false;
-	fill_matrix(s, y);
+	y->n = (int)s->points * s->dims;
+	y->a = s->response;
 	for (int cycle = 0; cycle < MAX_CYCLES && !solved; cycle++) {
 		iterate(s, cycle == 0 ? 0 : cycle == 1 ? CYCLE_ITERATIONS : 3 * CYCLE_ITERATIONS, x, u);
 		memcpy(start, x, (unsigned)y->n * sizeof *x);
@@ -497,90 +449,6 @@ static void solve_cycles(const impact_set *s, double *x, double *u)
 	free(y);
 }
 
-// ---- one point
-
-// Solution for one point, the most frequent set by far. If friction cannot stop it, it slides afterwards in some
-// direction d, with friction against d: one unknown angle.
-typedef struct one_point {
-	point_matrix a;
-	double n, t[2]; // m/s, without an impulse: normal velocity in excess of the law; sliding
-	double mu;
-} one_point;
-
-static double dot2(const double *a, const double *b)
-{
-	return a[0] * b[0] + a[1] * b[1];
-}
-
-static one_point one_point_of(const impact_set *s)
-{
-	const point_rows *r = s->point;
-	return (one_point){
-		.a = s->one, .n = (1 + s->share * r->e) * r->before[0], .t = { r->before[1], r->before[2] }, .mu = r->mu
-	};
-}
-
-// Computes the impulses that stop the point's sliding. Returns false if they are beyond its cone.
-static bool stop_point(const one_point *p, double *x)
-{
-	const double f[2] = { p->a.nt[0] / p->a.nn, p->a.nt[1] / p->a.nn }; // eliminates the normal row
-	const double a = p->a.tt[0] - f[0] * p->a.nt[0], b = p->a.tt[1] - f[0] * p->a.nt[1],
-		     c = p->a.tt[2] - f[1] * p->a.nt[1];
-	const double t0 = p->t[0] - f[0] * p->n, t1 = p->t[1] - f[1] * p->n, inverse = 1 / (a * c - b * b);
-	x[1] = (b * t1 - c * t0) * inverse;
-	x[2] = (b * t0 - a * t1) * inverse;
-	x[0] = -(p->n + p->a.nt[0] * x[1] + p->a.nt[1] * x[2]) / p->a.nn;
-	return x[0] > 0 && x[1] * x[1] + x[2] * x[2] <= p->mu * p->mu * x[0] * x[0];
-}
-
-// Angle (rad) by which d (unit) must turn to be the direction of sliding under friction along d: a step of Newton's
-// method. free: sliding without friction, times nn.
-static double turn_of_sliding(const one_point *p, const double *free, const double *d)
-{
-	const double across[2] = { -d[1], d[0] };
-	const double td[2] = { p->a.tt[0] * d[0] + p->a.tt[1] * d[1], p->a.tt[1] * d[0] + p->a.tt[2] * d[1] };
-	const double along = dot2(d, td), aside = dot2(across, td), other = p->a.tt[0] + p->a.tt[2] - along;
-	const double push = dot2(d, p->a.nt), push_aside = dot2(across, p->a.nt);
-	const double slide = dot2(d, p->t), slide_aside = dot2(across, p->t);
-	const double miss = dot2(across, free) + p->mu * (p->n * aside - push * slide_aside);
-	const double slope = p->mu * (p->n * (other - along) - push_aside * slide_aside + push * slide) - dot2(d, free);
-	return -miss / slope;
-}
-
-// Computes the impulses of a sliding point. Starts with the direction that it would take without friction.
-static void let_point_slide(const one_point *p, double *x)
-{
-	enum { MOST = 12, FIRST = 4 }; // steps of Newton's method; so many of them may diverge
-	const double rounding = 1e-16; // rad
-	const double free[2] = { p->t[0] * p->a.nn - p->n * p->a.nt[0], p->t[1] * p->a.nn - p->n * p->a.nt[1] };
-	const double size = sqrt(dot2(free, free));
-	double d[2] = { free[0] / size, free[1] / size }, last = INFINITY;
-	for (int k = 0; k < MOST; k++) {
-		const double turn = turn_of_sliding(p, free, d);
-		if (!(fabs(turn) > rounding) || (k >= FIRST && fabs(turn) >= last))
-			break;
-		const double turned[2] = { d[0] - turn * d[1], d[1] + turn * d[0] };
-		const double inverse = 1 / sqrt(dot2(turned, turned));
-		d[0] = inverse * turned[0], d[1] = inverse * turned[1];
-		last = fabs(turn);
-	}
-	x[0] = -p->n / (p->a.nn - p->mu * dot2(d, p->a.nt));
-	x[1] = -p->mu * x[0] * d[0];
-	x[2] = -p->mu * x[0] * d[1];
-}
-
-// Returns false if x does not obey the law, and may be NaN: there is no solution, or none was found.
-static bool solve_one_point(const impact_set *s, double *x, double *u)
-{
-	const one_point p = one_point_of(s);
-	if (!(p.n < 0))
-		return true;
-	if (!stop_point(&p, x))
-		let_point_slide(&p, x);
-	find_velocities(s, x, u);
-	return residual(s, x, u) <= stalled * s->largest;
-}
-
 // Computes the impulses x of the law. share: factor of e.
 static void solve_law(const impact_set *s, double share, double *x, double *u)
 {
@@ -588,12 +456,9 @@ static void solve_law(const impact_set *s, double share, double *x, double *u)
 	set.share = share;
 	if (s->points == 1 && s->dims == 1) { // a quotient
 		const point_rows *r = s->point;
-		x[0] = ob_max(0, -(1 + share * r->e) * r->before[0] / s->one.nn);
+		x[0] = ob_max(0, -(1 + share * r->e) * r->before[0] / s->response[0]);
 		return;
 	}
-	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
-	if (s->points == 1 && solve_one_point(&set, x, u))
-		return;
 	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
 	if (s->points > OB_IMPACT_MOST_POINTS)
 		iterate(&set, MAX_ITERATIONS, x, u);
@@ -688,28 +553,28 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 	struct {
 		point_rows point[FEW];
 		ob_impact_change change[2 * FEW];
-		double row[6 * 3 * FEW];
+		double row[6 * 3 * FEW], response[9 * FEW * FEW];
 		uint32_t count[2 * FEW];
 	} few;
 	const bool many = points > FEW || bodies > 2 * FEW;
 	impact_set s = { .bodies = bodies, .point = few.point, .change = few.change, .links = links, .payer = payer };
 	double *row = few.row;
+	s.response = few.response;
 	uint32_t *count = few.count;
 	if (many) {
 		s.point = ob_allocate(points * sizeof *s.point);
 		s.change = ob_allocate(bodies * sizeof *s.change);
 		row = ob_allocate(6 * 3 * points * sizeof *row);
 		count = ob_allocate(bodies * sizeof *count);
+		s.response = points <= OB_IMPACT_MOST_POINTS || links ? ob_allocate(9 * points * points * sizeof *row)
+								      : NULL;
 	}
 	gather_points(&s, body, point, points);
 	if (s.points && !pay(&s, 1, 0)) {
 		double *x = row, *u = x + 3 * points;
-		if (links)
+		if (s.response)
 			find_response(&s, x);
-		if (s.points == 1)
-			set_matrix(&s);
-		else
-			set_rates(&s, count);
+		set_rates(&s, count);
 		solve_law(&s, 1, x, u);
 		limit_energy(&s, x, u);
 		add_changes(&s, x);
@@ -717,9 +582,9 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 			body[i].v = ob_add(body[i].v, s.change[i].v);
 			body[i].w = ob_add(body[i].w, s.change[i].w);
 		}
-		free(s.response);
 	}
 	if (many) {
+		free(s.response);
 		free(s.point);
 		free(s.change);
 		free(row);
