@@ -4,8 +4,8 @@
 //      |twist| <= mu radius x     about the normal, at that centroid
 //      (f, twist) in C(x)         of an area between two bodies that touch nothing else: contact/patch.h
 //
-// The law stands here and in contact/patch.h alone, as a text compiled for one number and for four in lanes. Sweeps and
-// Newton steps of the contact solver call it for four pairs side by side (contact/kernel.c) and for one (contact/lone.c).
+// The law stands here and in contact/patch.h alone, as a text compiled for one number and for four in lanes. Sweeps of the
+// contact solver call it for four pairs side by side (contact/kernel.c), sweeps and Newton steps for one (contact/lone.c).
 // Two callers have other equations, of which the bound alone is the same:
 //
 // - An impact (contact/impact.c) finds load and friction of all points together, as velocities jump. So the bound moves

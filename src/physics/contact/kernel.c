@@ -12,7 +12,6 @@
 #include "contact/points.h"
 
 static const int max_block_sweeps = 64;
-static const int sweeps_of_a_round = 2; // sweeps per step of Newton's method, in a block that is solved to the end
 static const int coarse_block_sweeps = 2; // sweeps of a block that the next iteration will solve again
 static const double min_projection = .01; // relative to the slop: shallower penetrations stay, else it never ends
 
@@ -328,129 +327,6 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 	return lanes_max(largest, spin * spin);
 }
 
-// Replaces d by m^-1 d, by elimination without pivots. lone_eliminate (contact/lone.c) does the same for one pair, with
-// four columns side by side and in another order; a single text would change bits (docs/notebook/tried.md).
-PER_KIND void eliminate(ob_batch_kind kind, int rows, lanes (*m)[OB_ROWS], lanes *d)
-{
-#pragma GCC unroll 7
-	for (int k = 0; k < rows; k++) {
-		if (!in_use(kind, k))
-			continue;
-		m[k][k] = 1 / m[k][k];
-#pragma GCC unroll 7
-		for (int i = k + 1; i < rows; i++) {
-			if (!in_use(kind, i))
-				continue;
-			const lanes f = m[i][k] * m[k][k];
-#pragma GCC unroll 7
-			for (int j = k + 1; j < rows; j++)
-				if (in_use(kind, j))
-					m[i][j] -= f * m[k][j];
-			d[i] -= f * d[k];
-		}
-	}
-#pragma GCC unroll 7
-	for (int i = rows - 1; i >= 0; i--) {
-		if (!in_use(kind, i))
-			continue;
-#pragma GCC unroll 7
-		for (int j = i + 1; j < rows; j++)
-			if (in_use(kind, j))
-				d[i] -= m[i][j] * d[j];
-		d[i] *= m[i][i];
-	}
-}
-
-// Step of Newton's method, from impulses that sweeps have brought near the solution. Points under load reach their
-// velocity. Friction that holds stops the slip; friction that slides keeps its direction and its share of the load. The
-// step ends where the first point lets go; the next sweep restores the law. Rows of a face depend on each other: the
-// step is nearly the shortest of all that solve them.
-PER_KIND void leap(const ob_batch *b, ob_batch_kind kind, bool holds, lane_mask to, lanes *x, lanes *step)
-{
-	const double proximity = 1e-9; // relative to a row's own coefficient
-	const lanes one = lanes_of(1), none = lanes_of(0);
-	const bool slides = !holds && in_use(kind, OB_ROW_FRICTION);
-	const int rows = holds && in_use(kind, OB_ROW_TWIST)      ? 7
-			 : holds && in_use(kind, OB_ROW_FRICTION) ? 6
-								  : points_of(kind);
-	lanes m[OB_ROWS][OB_ROWS], d[OB_ROWS], sum = x[0], more = none, share = one;
-	lane_mask open[OB_ROWS] = { 0 };
-	for (int i = 1; i < points_of(kind); i++)
-		sum += x[i];
-#pragma GCC unroll 7
-	for (int i = 0; i < rows; i++)
-		if (in_use(kind, i))
-			open[i] = (b->inv_diag[i] > 0) & (i < OB_POINTS ? x[i] > 0
-							  : i == 6      ? b->radius > 0
-									: is_load(sum));
-	const lanes brought = slides ? 1 / lanes_max(sum, lanes_of(1e-300)) : none;
-#pragma GCC unroll 7
-	for (int i = 0; i < rows; i++) {
-		if (!in_use(kind, i))
-			continue;
-		lanes with = none; // effect on this row of the friction, which follows the load
-		if (slides)
-			for (int j = OB_POINTS; j < OB_ROWS; j++)
-				if (in_use(kind, j))
-					with += b->coupling[j][i] * x[j];
-		d[i] = lanes_where(open[i], step[i]);
-#pragma GCC unroll 7
-		for (int j = 0; j < rows; j++)
-			if (in_use(kind, j) && i != j)
-				m[i][j] = lanes_where(open[i] & open[j], b->coupling[j][i] + with * brought);
-		m[i][i] = lanes_select(open[i], 1 + proximity + with * brought, one);
-	}
-	eliminate(kind, rows, m, d);
-	for (int i = 0; i < points_of(kind); i++) {
-		share = lanes_select(x[i] + d[i] < 0, lanes_min(share, -x[i] / d[i]), share);
-		more += d[i];
-	}
-	// Rows may contradict each other.
-	to &= is_load(sum) & (share > 0) & (share <= 1) & (lanes_abs(more) < INFINITY);
-	share = lanes_where(to, share);
-	for (int i = 0; i < OB_ROWS; i++) {
-		if (!in_use(kind, i) || (!slides && i >= rows))
-			continue;
-		const lanes change = share * (i < rows ? d[i] : x[i] * (more * brought));
-		x[i] += change;
-		if (i < OB_POINTS)
-			x[i] = lanes_max(x[i], none);
-		couple(b, kind, i, change, step);
-	}
-}
-
-static __attribute__((noinline)) void leap_holding(const ob_batch *b, ob_batch_kind kind, lane_mask to, lanes *x,
-						   lanes *step)
-{
-	if (kind == OB_KIND_FULL)
-		leap(b, OB_KIND_FULL, true, to, x, step);
-	else
-		leap(b, kind, true, to, x, step);
-}
-
-static __attribute__((noinline)) void leap_sliding(const ob_batch *b, ob_batch_kind kind, lane_mask to, lanes *x,
-						   lanes *step)
-{
-	if (kind == OB_KIND_FULL)
-		leap(b, OB_KIND_FULL, false, to, x, step);
-	else
-		leap(b, kind, false, to, x, step);
-}
-
-// Lanes whose friction is at its limit.
-PER_KIND lane_mask sliding_lanes(const ob_batch *b, ob_batch_kind kind, const patch_search *f, const lanes *x)
-{
-	lane_mask none = { 0 };
-	if (!in_use(kind, OB_ROW_FRICTION))
-		return none;
-	lanes bound = b->mu * (x[0] + (points_of(kind) > 1 ? x[1] + x[2] + x[3] : lanes_of(0)));
-	lane_mask disc = disc_slides(bound, x[4] * x[4] + x[5] * x[5]);
-	if (!in_use(kind, OB_ROW_TWIST))
-		return disc;
-	lane_mask patch = b->radius > 0;
-	return (patch & lanes_mask(f->slides)) | (~patch & disc);
-}
-
 // Sweeps a block until it is solved, up to the iteration's number of sweeps. Ends sooner if the block changes so much
 // that another iteration will follow. An isolated lane has no later iteration to correct a residual, so it is solved to
 // the end. alone: there is such a lane. Sets the number of sweeps, and the isolated lanes that are solved.
@@ -474,13 +350,6 @@ PER_KIND void solve_block(ob_batch *b, ob_batch_kind kind, bool alone, const ob_
 			open &= isolated;
 		else if (s >= coarse_block_sweeps)
 			open &= isolated | (moving <= coarse);
-		if (alone && s % sweeps_of_a_round == 0 && lanes_bits(open & isolated)) {
-			const lane_mask slides = sliding_lanes(b, kind, f, x);
-			if (lanes_bits(open & isolated & ~slides))
-				leap_holding(b, kind, open & isolated & ~slides, x, step);
-			if (lanes_bits(open & isolated & slides))
-				leap_sliding(b, kind, open & isolated & slides, x, step);
-		}
 	}
 	b->sweeps = (unsigned)s - 1;
 	b->solved = lanes_bits(isolated & ~open);

@@ -218,7 +218,7 @@ static inline double lone_sweep(lone *p)
 	return larger_of(largest * largest, lone_slip_change(p, d));
 }
 
-// Replaces r by m^-1 r, by elimination without pivots, as eliminate (contact/kernel.c) does in another order. Includes the
+// Replaces r by m^-1 r, by elimination without pivots. Includes the
 // rows of points under load ("push"). If friction holds, it includes the rows of friction, with the columns mf.
 static inline __attribute__((always_inline)) void lone_eliminate(unsigned push, lanes *m, lanes *mf, double *r,
 								 int rows)
