@@ -182,6 +182,23 @@ void ob_batch_limit_prediction(ob_batch *b, const double *cap_impulse, double ca
 
 // Finds a row of J for lane l: the parts of both bodies, m and rad.
 void ob_batch_row_of_lane(const ob_batch *b, int l, int row, double *of_a, double *of_b);
+// Velocity of normal row j of lane l (m/s) by the motions of its bodies; of displacements: the way by which it opens (m).
+static inline double ob_batch_opening(const ob_batch *b, uint32_t l, uint32_t j, const double *xa, const double *xb)
+{
+	double sum = 0;
+	for (int c = 0; c < 3; c++)
+		sum += b->n[c][l] * (xa[c] - xb[c]) + b->ja[j][c][l] * xa[3 + c] - b->jb[j][c][l] * xb[3 + c];
+	return sum;
+}
+// Load of lane l: the sum of its normal impulses (N s).
+static inline double ob_batch_load(const ob_batch *b, uint32_t l)
+{
+	return b->impulse[0][l] + b->impulse[1][l] + b->impulse[2][l] + b->impulse[3][l];
+}
+static inline ob_vec3 ob_batch_vector(const lanes *x, uint32_t l)
+{
+	return ob_v3(x[0][l], x[1][l], x[2][l]);
+}
 // J v: opening, sliding and spinning rates (m/s, rad/s) of the seven rows at these velocities.
 void ob_batch_row_velocities(const ob_batch *b, const ob_body_row *rows, lanes *r);
 // Adds M^-1 J^T x to the rows: velocity changes by the impulses x of all lanes.

@@ -206,12 +206,13 @@ static void find_response(impact_set *s, double *x)
 static void find_velocities(const impact_set *s, const double *x, double *u)
 {
 	const uint32_t dims = (uint32_t)s->dims;
-	if (!s->links) // a sum of responses to impulses that share a load cancels
+	const bool by_response = s->links || s->points == 1; // impulses that share a load cancel each other in its sums
+	if (!by_response)
 		add_changes(s, x);
 	for (uint32_t i = 0; i < s->points * dims; i++) {
 		const point_rows *r = &s->point[i / dims];
 		const double before = r->before[i % dims];
-		u[i] = s->links ? answer_of(s, i, before, x) : velocity_of(s, i, before);
+		u[i] = by_response ? answer_of(s, i, before, x) : velocity_of(s, i, before);
 		if (i % dims == 0)
 			u[i] += s->share * r->e * before;
 	}
@@ -607,14 +608,6 @@ bool ob_impact_part(ob_impact_body *body, uint32_t bodies, const ob_impact_point
 
 // ---- a lane of a batch
 
-static double opening_of(const ob_batch *b, int i, int l, const double *xa, const double *xb)
-{
-	double sum = 0;
-	for (int c = 0; c < 3; c++)
-		sum += b->n[c][l] * (xa[c] - xb[c]) + b->ja[i][c][l] * xa[3 + c] - b->jb[i][c][l] * xb[3 + c];
-	return sum;
-}
-
 double ob_impact_time(const ob_batch *b, int l, const ob_impact *in, const ob_impact_rows *at)
 {
 	const uint32_t ia = b->body_a[l], ib = b->body_b[l];
@@ -622,15 +615,16 @@ double ob_impact_time(const ob_batch *b, int l, const ob_impact *in, const ob_im
 	for (int i = 0; i < OB_POINTS; i++) {
 		if (!ob_batch_has_point(b, l, i) || !(in->points >> i & 1))
 			continue;
-		double rate = opening_of(b, i, l, at->v[ia], at->v[ib]);
+		double rate = ob_batch_opening(b, (uint32_t)l, (uint32_t)i, at->v[ia], at->v[ib]);
 		if (rate > in->gain - in->threshold ||
-		    b->gap[i][l] + opening_of(b, i, l, at->d[ia], at->d[ib]) - in->slack > (in->gain - rate) * in->h)
+		    b->gap[i][l] + ob_batch_opening(b, (uint32_t)l, (uint32_t)i, at->d[ia], at->d[ib]) - in->slack >
+			    (in->gain - rate) * in->h)
 			continue;
-		double a = opening_of(b, i, l, at->dv[ia], at->dv[ib]) / in->h;
+		double a = ob_batch_opening(b, (uint32_t)l, (uint32_t)i, at->dv[ia], at->dv[ib]) / in->h;
 		const double threshold = in->threshold + in->settling * ob_max(0, -a);
 		if (!(rate + ob_min(0, a) * in->h < -threshold))
 			continue;
-		double gap = b->gap[i][l] + opening_of(b, i, l, at->d[ia], at->d[ib]);
+		double gap = b->gap[i][l] + ob_batch_opening(b, (uint32_t)l, (uint32_t)i, at->d[ia], at->d[ib]);
 		double t = ob_time_of_closing(gap - in->slack, rate, a, in->h);
 		if (t < first && rate + a * t < -threshold)
 			first = t;

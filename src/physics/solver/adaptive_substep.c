@@ -52,7 +52,7 @@ static double rate_round_rim(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES, row[2] = { contact->a, contact->b };
-	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]),
+	const ob_vec3 n = ob_batch_vector(b->n, l),
 		      turn = ob_sub(ob_row_angular(w->v[row[0]]), ob_row_angular(w->v[row[1]]));
 	double least = 1, rate = 0;
 	for (int side = 0; side < 2; side++) {

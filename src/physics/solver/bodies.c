@@ -359,7 +359,7 @@ static bool spins_upright(const ob_island_work *w, uint32_t row, ob_vec3 spin)
 			continue;
 		const ob_batch *b = &w->batch[lane / OB_LANES];
 		const uint32_t l = lane % OB_LANES;
-		const ob_vec3 across = ob_cross(spin, ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]));
+		const ob_vec3 across = ob_cross(spin, ob_batch_vector(b->n, l));
 		return ob_norm2(across) <= leaning * leaning * ob_norm2(spin);
 	}
 	return false;

@@ -1,5 +1,6 @@
 #include "solver/contact_order.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "shape/shape.h"
@@ -23,31 +24,10 @@ static float distance_of_region(const ob_body *body, const ob_body *terrain, con
 	return (float)(ob_norm(ob_sub(body->p, centre)) / (body->radius + region->radius));
 }
 
-// Sorts by the upper half of the keys, stably. Bits of non-negative floats sort as their values do. other: memory for n
-// keys.
-static void sort_keys(uint64_t *key, uint64_t *other, uint32_t n)
+static int by_key(const void *a, const void *b)
 {
-	enum { FEW = 24, BITS = 8, DIGITS = 1 << BITS };
-	if (n <= FEW) {
-		for (uint32_t i = 1; i < n; i++) {
-			const uint64_t k = key[i];
-			uint32_t at = i;
-			for (; at > 0 && key[at - 1] > k; at--)
-				key[at] = key[at - 1];
-			key[at] = k;
-		}
-		return;
-	}
-	for (int shift = 32; shift < 64; shift += BITS) {
-		uint32_t first[DIGITS] = { 0 };
-		for (uint32_t i = 0; i < n; i++)
-			first[key[i] >> shift & (DIGITS - 1)]++;
-		for (uint32_t d = 0, sum = 0, there; d < DIGITS; d++, sum += there)
-			there = first[d], first[d] = sum;
-		for (uint32_t i = 0; i < n; i++)
-			other[first[key[i] >> shift & (DIGITS - 1)]++] = key[i];
-		memcpy(key, other, n * sizeof *key);
-	}
+	const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+	return (x > y) - (x < y);
 }
 
 void ob_contact_order(ob_solver *s, const ob_island_input *in, uint32_t *order)
@@ -65,7 +45,7 @@ void ob_contact_order(ob_solver *s, const ob_island_input *in, uint32_t *order)
 		memcpy(&bits, &x, sizeof bits);
 		key[i] = (uint64_t)bits << 32 | i;
 	}
-	sort_keys(key, key + in->pairs, in->pairs);
+	qsort(key, in->pairs, sizeof *key, by_key); // bits of non-negative floats sort as their values do
 	for (uint32_t i = 0; i < in->pairs; i++)
 		order[i] = (uint32_t)key[i];
 }

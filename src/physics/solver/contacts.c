@@ -176,8 +176,8 @@ static void save_impulses(ob_island_work *w, const ob_contact *contact, saved_im
 	old->points = contact->points;
 	memcpy(old->arm, contact->arm_a, sizeof old->arm);
 	memcpy(old->arm_b, contact->arm_b, sizeof old->arm_b);
-	old->normal = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
-	ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]), t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
+	old->normal = ob_batch_vector(b->n, l);
+	ob_vec3 t1 = ob_batch_vector(b->t1, l), t2 = ob_batch_vector(b->t2, l);
 	old->friction = ob_add(ob_scale(t1, old->impulse[4]), ob_scale(t2, old->impulse[5]));
 }
 
@@ -278,8 +278,7 @@ static void warm_start_lane(ob_island_work *w, const ob_contact *contact, const 
 	const bool same = old->points > 0;
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	int l = contact->lane % OB_LANES;
-	const ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
-		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
+	const ob_vec3 t1 = ob_batch_vector(b->t1, l), t2 = ob_batch_vector(b->t2, l);
 	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++)
 		lanes_put(&b->impulse[j], l, contact->was[j] >= 0 ? old->impulse[contact->was[j]] : 0);
 	lanes_put(&b->impulse[4], l, same ? ob_dot(old->friction, t1) : 0);
@@ -636,7 +635,7 @@ void ob_contacts_load(ob_solver *s, const ob_island_input *in)
 		w->contact = ob_reallocate(w->contact, w->contacts_max * sizeof *w->contact);
 		w->contact_lane = ob_reallocate(w->contact_lane, w->contacts_max * sizeof *w->contact_lane);
 		w->adjacency = ob_reallocate(w->adjacency, 2 * w->contacts_max * sizeof *w->adjacency);
-		w->contact_key = ob_reallocate(w->contact_key, 2 * w->contacts_max * sizeof *w->contact_key);
+		w->contact_key = ob_reallocate(w->contact_key, w->contacts_max * sizeof *w->contact_key);
 		w->contact_order = ob_reallocate(w->contact_order, w->contacts_max * sizeof *w->contact_order);
 	}
 	w->contacts = 0;
@@ -690,7 +689,7 @@ static void store_contact(const ob_island_work *w, const ob_contact *contact, ob
 	int l = contact->lane % OB_LANES;
 	for (uint32_t j = 0; j < OB_PAIR_POINTS; j++)
 		p->gap[j] = b->gap[j][l];
-	p->normal = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
+	p->normal = ob_batch_vector(b->n, l);
 }
 
 void ob_contacts_report(ob_solver *s)

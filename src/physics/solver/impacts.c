@@ -42,14 +42,6 @@ static const uint32_t in_group = UINT32_C(1) << 31, is_chosen = UINT32_C(1) << 3
 
 // ---- the instant of a contact
 
-static double row_velocity(const ob_batch *b, uint32_t l, uint32_t j, const double *xa, const double *xb)
-{
-	double sum = 0;
-	for (int c = 0; c < 3; c++)
-		sum += b->n[c][l] * (xa[c] - xb[c]) + b->ja[j][c][l] * xa[3 + c] - b->jb[j][c][l] * xb[3 + c];
-	return sum;
-}
-
 static double slow_of(const ob_island_work *w)
 {
 	return slow_share * w->max_acceleration * w->substep + least_approach * w->unit.speed;
@@ -230,8 +222,8 @@ static void keep_open(const ob_island_work *w, const ob_contact *contact)
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES, ia = contact->a, ib = contact->b;
 	for (uint32_t j = 0; j < contact->points; j++)
-		b->gap[j][l] = ob_max(b->gap[j][l], -w->h * row_velocity(b, l, j, w->v[ia], w->v[ib]) -
-							    row_velocity(b, l, j, w->d[ia], w->d[ib]));
+		b->gap[j][l] = ob_max(b->gap[j][l], -w->h * ob_batch_opening(b, l, j, w->v[ia], w->v[ib]) -
+							    ob_batch_opening(b, l, j, w->d[ia], w->d[ib]));
 }
 
 // Extrapolates the contact's geometry at an instant back to the partial substep's start, along its bodies' flights.
@@ -372,9 +364,9 @@ static uint32_t touching_points(const ob_island_work *w, const ob_contact *conta
 	const double near = touching * w->unit.length + curvature(w, contact);
 	uint32_t n = 0;
 	for (uint32_t j = 0; j < contact->points; j++)
-		n += b->gap[j][l] + row_velocity(b, l, j, w->d[ia], w->d[ib]) +
-			     t * row_velocity(b, l, j, w->v[ia], w->v[ib]) +
-			     .5 * t * t / w->h * row_velocity(b, l, j, w->drift[ia], w->drift[ib]) <=
+		n += b->gap[j][l] + ob_batch_opening(b, l, j, w->d[ia], w->d[ib]) +
+			     t * ob_batch_opening(b, l, j, w->v[ia], w->v[ib]) +
+			     .5 * t * t / w->h * ob_batch_opening(b, l, j, w->drift[ia], w->drift[ib]) <=
 		     near;
 	return n;
 }
@@ -672,7 +664,7 @@ static void end_load(ob_island_work *w, const ob_contact *c, double t)
 	for (uint32_t j = 0; j < c->points; j++) {
 		const double pressed = b->impulse[j][l];
 		sum += pressed;
-		if (!(pressed > 0) || !(row_velocity(b, l, j, rows[0], rows[1]) > slow_of(w)))
+		if (!(pressed > 0) || !(ob_batch_opening(b, l, j, rows[0], rows[1]) > slow_of(w)))
 			continue;
 		ends += pressed;
 		load[j][l] = pressed;
@@ -924,8 +916,8 @@ double ob_impacts_slack(const ob_solver *s, const ob_contact *contact, uint32_t 
 	const uint32_t l = contact->lane % OB_LANES, ia = contact->a, ib = contact->b;
 	if (!contact->misses || b->impulse[point][l] > 0)
 		return 0;
-	const double gain = row_velocity(b, l, point, w->drift[ia], w->drift[ib]);
-	const double rate = row_velocity(b, l, point, w->v[ia], w->v[ib]) + gain;
+	const double gain = ob_batch_opening(b, l, point, w->drift[ia], w->drift[ib]);
+	const double rate = ob_batch_opening(b, l, point, w->v[ia], w->v[ib]) + gain;
 	if (!(rate < -(threshold_of(w, contact) + settling * w->substep / w->h * ob_max(0, -gain))))
 		return 0;
 	const double off = curvature(w, contact) + .5 * w->h * ob_max(0, -gain);

@@ -394,6 +394,12 @@ static inline ob_vec3 ob_body_turned_by(const ob_body *body, ob_vec3 torque)
 		     i[2] * torque.x + i[4] * torque.y + i[5] * torque.z);
 }
 
+// Returns the load (N s) of a contact: 0 without a lane.
+static inline double ob_contact_load_of(const ob_island_work *w, const ob_contact *c)
+{
+	return c->lane == OB_NO_LANE ? 0 : ob_batch_load(&w->batch[c->lane / OB_LANES], c->lane % OB_LANES);
+}
+
 // True if one of the two leans on its rim: it touches with its first point alone.
 static inline bool ob_contact_leans(const ob_contact *c)
 {

@@ -52,16 +52,6 @@ static double change_bound(const ob_island_work *w, const ob_contact *contact)
 	return .5 * w->h * turn * speed;
 }
 
-static double load_of(const ob_island_work *w, const ob_contact *contact)
-{
-	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
-	const uint32_t l = contact->lane % OB_LANES;
-	double sum = 0;
-	for (uint32_t j = 0; j < contact->points; j++)
-		sum += b->impulse[j][l];
-	return sum;
-}
-
 static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 {
 	const ob_body *a = &w->body[contact->a], *b = &w->body[contact->b];
@@ -72,7 +62,7 @@ static bool turns_noticeably(const ob_island_work *w, const ob_contact *contact)
 		return false;
 	const double change = change_bound(w, contact);
 	return change > least_change(w, 0) &&
-	       (load_of(w, contact) > 0 ||
+	       (ob_contact_load_of(w, contact) > 0 ||
 		ob_contact_gap(w, contact) < loose_gap * w->unit.length + 2 * w->h * change) &&
 	       (ob_shape_is(a->shape, OB_UNBOUNDED) || ob_shape_is(b->shape, OB_UNBOUNDED) ||
 		ob_contact_speed(w, contact) * w->h < longest_way * ob_min(a->thickness, b->thickness));
@@ -110,19 +100,6 @@ void ob_midpoint_mark(ob_solver *s)
 
 // ---- rows
 
-static double row_velocity(const ob_batch *b, uint32_t l, uint32_t j, const double *xa, const double *xb)
-{
-	double sum = 0;
-	for (int c = 0; c < 3; c++)
-		sum += b->n[c][l] * (xa[c] - xb[c]) + b->ja[j][c][l] * xa[3 + c] - b->jb[j][c][l] * xb[3 + c];
-	return sum;
-}
-
-static ob_vec3 normal_of(const ob_batch *b, uint32_t l)
-{
-	return ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]);
-}
-
 // True if a point without load will hit within the partial substep, faster than by gravity's change of velocity in it.
 static bool is_hit(const ob_solver *s, const ob_contact *contact)
 {
@@ -130,9 +107,9 @@ static bool is_hit(const ob_solver *s, const ob_contact *contact)
 	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES;
 	for (uint32_t j = 0; j < contact->points; j++) {
-		double rate = row_velocity(b, l, j, w->v[contact->a], w->v[contact->b]) +
-			      row_velocity(b, l, j, w->dv[contact->a], w->dv[contact->b]);
-		double gap = b->gap[j][l] + row_velocity(b, l, j, w->d[contact->a], w->d[contact->b]);
+		double rate = ob_batch_opening(b, l, j, w->v[contact->a], w->v[contact->b]) +
+			      ob_batch_opening(b, l, j, w->dv[contact->a], w->dv[contact->b]);
+		double gap = b->gap[j][l] + ob_batch_opening(b, l, j, w->d[contact->a], w->d[contact->b]);
 		if (b->impulse[j][l] == 0 && rate < -2 * w->max_acceleration * w->h &&
 		    gap + ob_impacts_slack(s, contact, j) + w->h * rate < 0)
 			return true;
@@ -209,7 +186,7 @@ static unsigned set_turn(ob_island_work *w, const ob_contact *contact, const old
 	ob_batch *b = &w->batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES, ia = contact->a, ib = contact->b;
 	const double share = old->since / (old->since + .5 * w->h);
-	const ob_vec3 n = normal_of(b, l), start_n = between(old->normal, n, share);
+	const ob_vec3 n = ob_batch_vector(b->n, l), start_n = between(old->normal, n, share);
 	const ob_vec3 va = ob_row_linear(w->v[ia]), vb = ob_row_linear(w->v[ib]), wa = ob_row_angular(w->v[ia]),
 		      wb = ob_row_angular(w->v[ib]), wa0 = start_rate(w, ia), wb0 = start_rate(w, ib);
 	const int points = (int)contact->points;
@@ -235,8 +212,7 @@ static unsigned set_turn(ob_island_work *w, const ob_contact *contact, const old
 	ob_vec3 slide = ob_sub(velocity_at(va, wa, contact->friction_a), velocity_at(vb, wb, contact->friction_b));
 	ob_friction_arms(arm_a0, arm_b0, gap, ob_contact_leans(contact) ? 1 : points, start_n, &at_a, &at_b);
 	const ob_vec3 slide_start = ob_sub(velocity_at(va, wa0, at_a), velocity_at(vb, wb0, at_b));
-	const ob_vec3 t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
-		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
+	const ob_vec3 t1 = ob_batch_vector(b->t1, l), t2 = ob_batch_vector(b->t2, l);
 	const ob_vec3 friction = ob_add(ob_scale(t1, b->impulse[4][l]), ob_scale(t2, b->impulse[5][l]));
 	const ob_vec3 added = ob_sub(slide, slide_start);
 	most = ob_max(most, ob_max(fabs(ob_dot(t1, added)), fabs(ob_dot(t2, added))));
@@ -255,7 +231,7 @@ static void find_at_midpoint(ob_solver *s, ob_contact *contact)
 {
 	ob_island_work *w = &s->island;
 	const ob_batch *before = &w->batch[contact->lane / OB_LANES];
-	old_geometry old = { .normal = normal_of(before, contact->lane % OB_LANES), .since = contact->since };
+	old_geometry old = { .normal = ob_batch_vector(before->n, contact->lane % OB_LANES), .since = contact->since };
 	memcpy(old.arm_a, contact->arm_a, sizeof old.arm_a);
 	memcpy(old.arm_b, contact->arm_b, sizeof old.arm_b);
 	contact->held = 0;
@@ -269,7 +245,7 @@ static void find_at_midpoint(ob_solver *s, ob_contact *contact)
 	double gap[OB_PAIR_POINTS];
 	for (uint32_t j = 0; j < contact->points; j++)
 		gap[j] = b->gap[j][l] + ob_impacts_slack(s, contact, j) -
-			 row_velocity(b, l, j, w->body[contact->a].first_half, w->body[contact->b].first_half);
+			 ob_batch_opening(b, l, j, w->body[contact->a].first_half, w->body[contact->b].first_half);
 	contact->held = set_turn(w, contact, &old, gap);
 	for (uint32_t j = 0; j < contact->points; j++)
 		b->gap[j][l] = contact->held >> j & 1 ? ob_min(gap[j], 0) : gap[j];

@@ -129,8 +129,7 @@ bool ob_narrowphase_area(const ob_solver *s, const ob_contact *contact, ob_conta
 {
 	const ob_batch *b = &s->island.batch[contact->lane / OB_LANES];
 	const uint32_t l = contact->lane % OB_LANES;
-	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), t1 = ob_v3(b->t1[0][l], b->t1[1][l], b->t1[2][l]),
-		      t2 = ob_v3(b->t2[0][l], b->t2[1][l], b->t2[2][l]);
+	const ob_vec3 n = ob_batch_vector(b->n, l), t1 = ob_batch_vector(b->t1, l), t2 = ob_batch_vector(b->t2, l);
 	ob_placed pa, pb;
 	place(s, contact->a, contact->part[0], &pa);
 	place(s, contact->b, contact->part[1], &pb);

@@ -194,15 +194,6 @@ static void add_push_to_paths(ob_island_work *w)
 	}
 }
 
-static bool carries_load(const ob_island_work *w, const ob_contact *contact)
-{
-	const ob_batch *b = &w->batch[contact->lane / OB_LANES];
-	double sum = 0;
-	for (uint32_t j = 0; j < contact->points; j++)
-		sum += b->impulse[j][contact->lane % OB_LANES];
-	return sum > 0;
-}
-
 // True if rows of the body's contacts, which are straight lines, do not describe its turn in the partial substep.
 static bool turns_fast(const ob_island_work *w, const ob_body *body)
 {
@@ -219,7 +210,7 @@ static void renew_passing(ob_solver *s, double left)
 		ob_contact *contact = &w->contact[i];
 		if (contact->lane == OB_NO_LANE ||
 		    !(turns_fast(w, &w->body[contact->a]) || turns_fast(w, &w->body[contact->b])) ||
-		    carries_load(w, contact) || !(ob_contact_gap(w, contact) < -left))
+		    ob_contact_load_of(w, contact) > 0 || !(ob_contact_gap(w, contact) < -left))
 			continue;
 		s->counters.narrowphase_tests++;
 		ob_contact_find(s, contact);

@@ -133,16 +133,6 @@ static bool touches(const ob_island_work *w, const ob_surface *x)
 	return contact_of(w, x)->lane != OB_NO_LANE;
 }
 
-// Returns the load, N s, of the contact's points.
-static double load_of(const ob_island_work *w, const ob_surface *x)
-{
-	const ob_contact *c = contact_of(w, x);
-	double sum = 0;
-	for (uint32_t j = 0; c->lane != OB_NO_LANE && j < c->points; j++)
-		sum += w->batch[c->lane / OB_LANES].impulse[j][c->lane % OB_LANES];
-	return sum;
-}
-
 // Returns the gravity, m/s^2, that a carried body feels. The surface's rotation counts as far as it presses the two
 // together: its acceleration along the contact, and away from it, acts by friction alone.
 static double pressing(const ob_island_work *w, const ob_surface *x)
@@ -151,8 +141,8 @@ static double pressing(const ob_island_work *w, const ob_surface *x)
 	const uint32_t row = carried_row(w, x), l = c->lane % OB_LANES;
 	const ob_body *own = &w->body[x->row], *body = &w->body[row];
 	const ob_batch *b = &w->batch[c->lane / OB_LANES];
-	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), turn = turn_of(w, x),
-		      arm = ob_sub(body->p, own->p), inward = ob_cross(turn, ob_cross(turn, arm));
+	const ob_vec3 n = ob_batch_vector(b->n, l), turn = turn_of(w, x), arm = ob_sub(body->p, own->p),
+		      inward = ob_cross(turn, ob_cross(turn, arm));
 	return ob_norm(ob_sub(body->acceleration, own->acceleration)) +
 	       ob_max(0, (c->a == row ? 1 : -1) * ob_dot(n, inward));
 }
@@ -181,11 +171,11 @@ static double reversal(const ob_island_work *w, const ob_surface *x)
 	const ob_contact *c = contact_of(w, x);
 	const uint32_t row = carried_row(w, x), l = c->lane % OB_LANES;
 	const ob_body *own = &w->body[x->row], *body = &w->body[row];
-	if (c->lane == OB_NO_LANE || !(c->mu * load_of(w, x) > 0))
+	if (c->lane == OB_NO_LANE || !(c->mu * ob_contact_load_of(w, contact_of(w, x)) > 0))
 		return INFINITY;
 	const ob_batch *b = &w->batch[c->lane / OB_LANES];
-	const double bound = sliding_share * c->mu * load_of(w, x), f[2] = { b->impulse[4][l], b->impulse[5][l] },
-		     sign = c->a == row ? 1 : -1;
+	const double bound = sliding_share * c->mu * ob_contact_load_of(w, contact_of(w, x)),
+		     f[2] = { b->impulse[4][l], b->impulse[5][l] }, sign = c->a == row ? 1 : -1;
 	const ob_vec3 t[2] = { { b->t1[0][l], b->t1[1][l], b->t1[2][l] }, { b->t2[0][l], b->t2[1][l], b->t2[2][l] } };
 	if (f[0] * f[0] + f[1] * f[1] < bound * bound)
 		return INFINITY;
@@ -275,7 +265,7 @@ static ob_vec3 running_velocity(const ob_island_work *w, const ob_surface *x)
 		return ob_v3(0, 0, 0);
 	const ob_batch *b = &w->batch[c->lane / OB_LANES];
 	const uint32_t l = c->lane % OB_LANES;
-	const ob_vec3 n = ob_v3(b->n[0][l], b->n[1][l], b->n[2][l]), v = ob_rotate(&w->body[x->row].r, x->running);
+	const ob_vec3 n = ob_batch_vector(b->n, l), v = ob_rotate(&w->body[x->row].r, x->running);
 	return ob_madd(v, -ob_dot(v, n), n);
 }
 
@@ -343,12 +333,13 @@ void ob_surfaces_carry(ob_solver *s)
 	for (uint32_t i = 0; i < w->surfaces.count; i++)
 		w->body[carried_row(w, &w->surfaces.surface[i])].carried = 0;
 	for (uint32_t i = 0; i < w->surfaces.count; i++)
-		w->body[carried_row(w, &w->surfaces.surface[i])].carried += load_of(w, &w->surfaces.surface[i]);
+		w->body[carried_row(w, &w->surfaces.surface[i])].carried +=
+			ob_contact_load_of(w, contact_of(w, &w->surfaces.surface[i]));
 	for (uint32_t i = 0; i < w->surfaces.count; i++) {
 		const ob_surface *x = &w->surfaces.surface[i];
 		const uint32_t row = carried_row(w, x);
 		const ob_body *body = &w->body[row];
-		const double load = load_of(w, x);
+		const double load = ob_contact_load_of(w, contact_of(w, x));
 		if (!(load > 0) || body->halved || !(turns(w, x) || x->motion.flags & OB_MOTION_SWINGS))
 			continue;
 		const ob_state begin = without_roll(w, x, &x->begin), end = without_roll(w, x, &x->end);
