@@ -344,4 +344,5 @@ def main():
     sys.exit(1 if wrong or found else 0)
 
 
-main()
+if __name__ == '__main__':
+    main()
