@@ -290,17 +290,16 @@ static const char *cause_of(const ob_report *r)
 						      : " of a bounce";
 }
 
-// States the share of body-time in which the errors of motion are bounded, too.
-static void print_motion(const ob_report *r, FILE *f)
+// States for how much of the time of objects motion is bounded, too, and what the rest is worth; after "begin".
+static void print_motion(const ob_report *r, const char *begin, FILE *f)
 {
 	ob_quantity a, b;
 	if (!(r->tolerance > 0) || isnan(r->bounded_share))
 		return;
-	fprintf(f, "  motion       errors of a second within %s in %.3g %% of body-time",
-		ob_quantity_text(&a, r->tolerance, "m"), 100 * r->bounded_share);
-	if (r->deviation_reached > 0)
-		fprintf(f, "; the largest by estimate %s", ob_quantity_text(&b, r->deviation_reached, "m"));
-	fputc('\n', f);
+	fprintf(f, "%swithin %s a second", begin, ob_quantity_text(&a, r->tolerance, "m"));
+	if (r->unbounded_steps > 0)
+		fprintf(f, " for %.3g %% of the time of objects, else one of many that may come, up to %s apart",
+			100 * r->bounded_share, ob_quantity_text(&b, r->deviation_reached, "m"));
 }
 
 // The verdict, which the short and the full report begin with.
@@ -482,8 +481,7 @@ static void print_short(const ob_report *r, FILE *f)
 	else
 		fprintf(f, "no tolerance; the worst penetration was %s",
 			ob_quantity_text(&a, r->worst_penetration_m, "m"));
-	if (r->tolerance > 0 && !isnan(r->bounded_share))
-		fprintf(f, "; that of motion is within it in %.3g %% of body-time", 100 * r->bounded_share);
+	print_motion(r, "; motion is ", f);
 	if (own_time(r) > 0 && r->wall_s > 0)
 		fprintf(f, "\n  speed        %.3g x real time", own_time(r) / r->wall_s);
 	if (own_time(r) > 0 && isfinite(r->body_step_cpu_us))
@@ -499,7 +497,9 @@ static void print_full(const ob_report *r, FILE *f)
 {
 	ob_quantity bytes, held;
 	print_tolerance(r, f);
-	print_motion(r, f);
+	print_motion(r, "  motion       ", f);
+	if (r->tolerance > 0 && !isnan(r->bounded_share))
+		fputc('\n', f);
 	print_setup(r, f);
 	if (is_free(r))
 		print_free(r, f);

@@ -456,10 +456,10 @@ static void warn_of_unbounded_motion(const ob_report *p)
 	ob_quantity allowed, error;
 	ob_quantity_text(&allowed, p->tolerance, "m");
 	if (p->unbounded_steps > 0)
-		ob_log_warn("errors of motion may exceed %s a second in %" PRIu64
-			    " step%s of objects; the largest estimate was %s",
-			    allowed.text, p->unbounded_steps, p->unbounded_steps == 1 ? "" : "s",
-			    ob_quantity_text(&error, p->deviation_reached, "m"));
+		ob_log_warn(
+			"motion may be off by more than %s a second for %.3g %% of the time of objects, by up to %s",
+			allowed.text, 100 * (1 - p->bounded_share),
+			ob_quantity_text(&error, p->deviation_reached, "m"));
 	else
 		ob_log_warn("verifying found errors of motion above %s a second in %.3g %% of the steps that it solved "
 			    "again; the largest was %s",
