@@ -524,7 +524,7 @@ void ob_bodies_report(ob_solver *s, uint32_t rest)
 		if (!body->contacts && !body->joints)
 			mo.a = body->acceleration;
 		if (rest)
-			mo.v = mo.w = ob_v3(0, 0, 0);
+			mo.v = mo.w = ob_v3(0, 0, 0), body->deviation.rate = 0;
 		ob_deviation_put(&mo, body->deviation);
 		s->calls.motion(s->calls.with, &s->in->object[i - 1], &mo, body->moved_freely);
 	}

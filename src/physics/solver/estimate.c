@@ -45,14 +45,22 @@ static bool hit_each_other(const ob_island_work *w)
 	return false;
 }
 
-// True if few bodies touch of which one was in flight before.
+// Returns the deviation (m) at the end of the running second.
+static double of_second(const ob_solver *s, ob_deviation d)
+{
+	return ob_deviation_of_second(d, s->in->step + 1, s->settings->step_length);
+}
+
+// True if a body lands that was in flight: on few others, or where none is off so far.
 static bool lands(const ob_solver *s)
 {
 	const ob_island_work *w = &s->island;
-	for (uint32_t row = 1; w->bodies <= FEW_BODIES && row <= w->bodies; row++)
-		if (!w->body[row].moved_freely && s->in->object[row - 1].motion->flags & OB_MOTION_FREE)
-			return true;
-	return false;
+	bool landed = false, clean = true;
+	for (uint32_t row = 1; row <= w->bodies; row++) {
+		landed |= !w->body[row].moved_freely && s->in->object[row - 1].motion->flags & OB_MOTION_FREE;
+		clean &= of_second(s, w->body[row].deviation) <= s->settings->tolerance;
+	}
+	return landed && (w->bodies <= FEW_BODIES || clean);
 }
 
 // True if the forces on one of few bodies change within the step, as where a block comes over an edge: a substep of the change
@@ -61,12 +69,6 @@ static bool is_jolted(const ob_solver *s)
 {
 	const ob_island_work *w = &s->island;
 	return !ob_flies_with_joints(s->in) && w->jolt * ob_coarse_time(w) > .5 * w->substeps * s->settings->tolerance;
-}
-
-// Returns the deviation (m) at the end of the running second.
-static double of_second(const ob_solver *s, ob_deviation d)
-{
-	return ob_deviation_of_second(d, s->in->step + 1, s->settings->step_length);
 }
 
 // True for a lone body that rolls, or is driven by a surface that swings, turns or runs: a step in which something happens is
@@ -107,14 +109,17 @@ static uint32_t weight_of(const ob_solver *s)
 	return (phase % SOON == 0 && ob_refinement_is_doubted(s)) || (changed && lands(s));
 }
 
-void ob_estimate_count(ob_solver *s, uint64_t step, ob_deviant before, ob_deviant now)
+ob_deviation ob_estimate_count(ob_solver *s, uint64_t step, ob_deviant before, ob_deviant now, bool flies)
 {
-	const double h = s->settings->step_length, tolerance = s->settings->tolerance,
-		     was = ob_deviation_of_second(before.deviation, step, h),
-		     is = ob_deviation_of_second(now.deviation, step, h);
-	if (was <= tolerance && is > tolerance)
+	const double h = s->settings->step_length, tolerance = s->settings->tolerance;
+	const double second = ob_deviation_of_second(now.deviation, step, h);
+	if (flies && second > tolerance)
+		now.deviation = (ob_deviation){ second, 0 };
+	if (before.deviation.place <= tolerance && now.deviation.place > tolerance)
 		s->counters.unbounded += (uint64_t)llround(1 / h);
-	s->counters.deviation = ob_max(s->counters.deviation, ob_min(is, ob_max(before.speed, now.speed)));
+	s->counters.deviation =
+		ob_max(s->counters.deviation, ob_min(now.deviation.place, ob_max(before.speed, now.speed)));
+	return now.deviation;
 }
 
 // Returns the row's deviation at the end of the running step, if it adds none.
@@ -140,6 +145,30 @@ static void leave_hit(ob_solver *s, const ob_contact *c, uint32_t row, ob_deviat
 	body->deviation = ob_deviation_larger(body->deviation, ob_deviation_after_hit(most, change, radius));
 }
 
+// True if a face of the contact lies on the other body and sticks to it.
+static bool lies_on_face(const ob_island_work *w, const ob_contact *c)
+{
+	const ob_batch *b = &w->batch[c->lane / OB_LANES];
+	int loaded = 0;
+	for (uint32_t j = 0; c->lane != OB_NO_LANE && j < c->points; j++)
+		loaded += b->impulse[j][c->lane % OB_LANES] > 0;
+	return loaded >= 3 && !(b->slides >> c->lane % OB_LANES & 1);
+}
+
+// Takes errors of velocity from what lies on others, from the lowest to the highest: it moves as they do.
+static void carry_along(ob_island_work *w)
+{
+	for (uint32_t i = 0; i < w->bodies; i++) {
+		ob_body *body = &w->body[w->by_height[i].row];
+		for (uint32_t k = 0; k < body->adjacent; k++) {
+			const ob_contact *c = &w->contact[w->adjacency[body->first_adjacent + k]];
+			const ob_body *other = &w->body[&w->body[c->a] == body ? c->b : c->a];
+			if (lies_on_face(w, c))
+				body->deviation.rate = ob_min(body->deviation.rate, other->deviation.rate);
+		}
+	}
+}
+
 // Sets the deviations of bodies to those before the step, and of those that hit each other to what follows.
 static void hand_over(ob_solver *s)
 {
@@ -156,6 +185,8 @@ static void hand_over(ob_solver *s)
 		leave_hit(s, c, c->a, most);
 		leave_hit(s, c, c->b, most);
 	}
+	if (s->estimate.probe) // bodies are in their order
+		carry_along(w);
 }
 
 // Returns the number of substeps of a coarser solution. No instant within the step is the end of a substep in both, or a
@@ -245,9 +276,11 @@ static void update_deviation(ob_solver *s, const rulers *r, uint32_t row, uint32
 	body->deviation.place += body->sinking;
 	const ob_motion *last = s->in->object[row - 1].motion;
 	const double *v = s->island.v[row];
-	const ob_deviant before = { deviation_before(s, row), ob_surface_speed(last->v, last->w, body->radius) },
+	const uint64_t step = s->in->step + 1;
+	const ob_deviant before = { ob_deviation_published(last, step, s->settings->step_length),
+				    ob_surface_speed(last->v, last->w, body->radius) },
 			 now = { body->deviation, ob_surface_speed(ob_row_linear(v), ob_row_angular(v), body->radius) };
-	ob_estimate_count(s, s->in->step + 1, before, now);
+	body->deviation = ob_estimate_count(s, step, before, now, false);
 }
 
 // Returns a row's error (m) of a second; among contacts in the units of the run.

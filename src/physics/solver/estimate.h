@@ -12,6 +12,10 @@
 // four times as many substeps, while its error is large and falls at least as their number grows. The last solution stands.
 // Errors of one step decide it, by the first of two solutions beside: neither a second nor a unit has a part in it.
 //
+// Errors of velocity count as far as they last. Among more bodies, what contacts and joints would take back in the next step does not
+// (solver/probe.h). A body that lies on a face of another moves as that one does. A body in contact counts by where it is, not by where
+// it would get to: it may come to rest before the second ends.
+//
 // Ids and steps decide, so it is the same for any worker, rank, kill and resume.
 #ifndef OB_SOLVER_ESTIMATE_H
 #define OB_SOLVER_ESTIMATE_H
@@ -31,8 +35,9 @@ typedef struct ob_deviant {
 	double speed;
 } ob_deviant;
 
-// Counts a body's second as unbounded when its deviation at the end of a step takes it beyond the tolerance first. The largest
-// deviation is no more than the body moves in a second.
-void ob_estimate_count(ob_solver *s, uint64_t step, ob_deviant before, ob_deviant now);
+// Counts a body's second as unbounded when its deviation takes it beyond the tolerance first, and returns it. before: as published.
+// flies: alone, so that its error of velocity lasts, and counts up to the second's end at once. The largest deviation is no more than the
+// body moves in a second.
+ob_deviation ob_estimate_count(ob_solver *s, uint64_t step, ob_deviant before, ob_deviant now, bool flies);
 
 #endif

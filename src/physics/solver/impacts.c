@@ -504,6 +504,19 @@ static double level_of(const ob_manifold *m, double near, ob_vec3 centre)
 	return points ? sum / points : 0;
 }
 
+// Notes how far the next corner that comes down is from a hit, before its impulses: a body that is off by more may hit with that one
+// first. Points of round shapes follow each other smoothly; a pivot does not approach.
+static void note_next_point(ob_island_work *w, const ob_impact_instant *i, const ob_body_at *a, const ob_body_at *b)
+{
+	ob_contact *c = &w->contact[i->contact];
+	for (int side = 0; side < 2; side++)
+		if (!ob_shape_is(w->body[side ? c->b : c->a].shape, OB_CORNERED | OB_UNBOUNDED))
+			return;
+	for (int j = 0; j < i->m.points; j++)
+		if (i->m.gap[j] > OB_IMPACT_SIMULTANEOUS * w->unit.length && rate_of(a, b, &i->m, j) < -slow_of(w))
+			c->next_point = ob_min(c->next_point, i->m.gap[j]);
+}
+
 static void add_points(ob_solver *s, ob_impact_instant *i, double t)
 {
 	ob_island_work *w = &s->island;
@@ -513,6 +526,7 @@ static void add_points(ob_solver *s, ob_impact_instant *i, double t)
 	const ob_vec3 pa = x->at[a].p, pb = x->at[b].p;
 	const double near = (is_plastic(c) ? touching : OB_IMPACT_SIMULTANEOUS) * w->unit.length;
 	const double level = level_of(&i->m, near, pa);
+	note_next_point(w, i, &x->at[a], &x->at[b]);
 	i->first_point = x->points;
 	for (int j = 0; j < i->m.points; j++) {
 		const ob_vec3 arm = ob_sub(i->m.at[j], pa);
@@ -764,19 +778,6 @@ static bool join_violated(ob_solver *s, uint32_t chain, double t)
 	return any;
 }
 
-// Notes how far the next corner is from a hit: a body that is off by more may hit with that one first. Points of round
-// shapes follow each other smoothly.
-static void note_next_point(ob_island_work *w, const ob_impact_instant *i)
-{
-	ob_contact *c = &w->contact[i->contact];
-	for (int side = 0; side < 2; side++)
-		if (!ob_shape_is(w->body[side ? c->b : c->a].shape, OB_CORNERED | OB_UNBOUNDED))
-			return;
-	for (int j = 0; j < i->m.points; j++)
-		if (i->m.gap[j] > OB_IMPACT_SIMULTANEOUS * w->unit.length)
-			c->next_point = ob_min(c->next_point, i->m.gap[j]);
-}
-
 // Solves one impact of all contacts from "chain" on, which hit at the same instant.
 static void solve_set(ob_solver *s, uint32_t chain)
 {
@@ -808,7 +809,6 @@ static void solve_set(ob_solver *s, uint32_t chain)
 			continue;
 		w->contact[i->contact].rebounds++;
 		w->contact[i->contact].hit = true;
-		note_next_point(w, i);
 		i->time = t;
 		ob_touches_note_impact(s, i);
 		take_geometry(s, i, &x->at[x->slot[w->contact[i->contact].a]],

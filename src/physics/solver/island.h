@@ -106,7 +106,7 @@ typedef struct ob_contact {
 	bool as_of_instant; // its geometry is that of an instant in the running partial substep
 	bool began; // its bodies did not touch at the step's start
 	bool hit; // its bodies rebounded within the step
-	double next_point; // m: least gap, at such an instant, of a point that had not hit; infinity: none
+	double next_point; // m: least gap, at such an instant, of a point that was about to hit; infinity: none
 	bool mirror; // second contact of a pair that is solved for each side apart: its own body is b
 } ob_contact;
 

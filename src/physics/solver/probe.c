@@ -3,9 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "motion/deviation.h"
 #include "shape/shape.h"
 #include "solver/budget.h"
 #include "solver/island_solver.h"
+#include "solver/joint_rows.h"
 
 struct ob_probe {
 	ob_run_settings settings; // of the run, with other substeps
@@ -88,12 +90,51 @@ static double turned_by(const ob_body *body, ob_quat a, ob_quat b)
 	return 2 * body->radius * sqrt(ob_min(square[0], square[1]));
 }
 
+// Takes from velocities what the rows of a batch that hold do not let last: loaded points, and friction that sticks.
+static void hold(ob_batch *b, ob_body_row *rows)
+{
+	const lane_mask live = lanes_mask(b->live);
+	lanes rate[OB_ROWS], impulse[OB_ROWS];
+	ob_batch_prepare(b);
+	ob_batch_row_velocities(b, rows, rate);
+	const lane_mask loaded = b->impulse[0] + b->impulse[1] + b->impulse[2] + b->impulse[3] > lanes_of(0),
+			sticks = live & ~lanes_mask(b->slides) & loaded;
+	for (int i = 0; i < OB_ROWS; i++) {
+		const lane_mask holds = i < OB_POINTS ? live & (b->impulse[i] > lanes_of(0)) : sticks;
+		impulse[i] = lanes_where(holds, -rate[i] * b->inv_diag[i]);
+		for (int j = i + 1; j < OB_ROWS; j++)
+			rate[j] += b->coupling[i][j] * b->diag[j] * impulse[i];
+	}
+	ob_batch_apply_impulses(b, impulse, rows);
+}
+
+void ob_probe_compare(ob_probe *p, ob_island_work *w)
+{
+	enum { SWEEPS = 16 };
+	const ob_island_work *other = &p->solver.island;
+	memset(other->u, 0,
+	       w->rows * sizeof *other->u); // free as scratch memory here: it has room for all that the input may need
+	for (uint32_t row = 1; row <= w->bodies; row++)
+		for (int k = 0; k < 6; k++)
+			other->u[row][k] = w->v[row][k] - other->v[row][k];
+	if (w->bodies <= OB_WATCHED_BODIES || ob_flies_with_joints(p->solver.in))
+		return;
+	for (int sweep = 0; sweep < SWEEPS; sweep++) {
+		for (uint32_t i = 0; i < w->batches; i++)
+			if (w->batch[i].live)
+				hold(&w->batch[i], other->u);
+		if (w->joints.count)
+			ob_joints_follow(w, other->u);
+	}
+}
+
 void ob_probe_solve(ob_probe *p, ob_solver *s, uint32_t substeps, uint32_t beside)
 {
 	(void)solve(p, s->in, substeps, (double)beside / substeps, UINT64_MAX, s);
+	ob_probe_compare(p, &s->island);
 }
 
-const ob_island_work *ob_probe_island(const ob_probe *p)
+ob_island_work *ob_probe_island(ob_probe *p)
 {
 	return &p->solver.island;
 }
@@ -102,15 +143,8 @@ double ob_probe_distance(const ob_probe *p, const ob_island_work *w, uint32_t ro
 {
 	const ob_island_work *other = &p->solver.island;
 	const ob_body *a = &w->body[row], *b = &other->body[row];
-	double linear = 0, angular = 0;
-	*speed = 0;
 	if (a->moved_freely && b->moved_freely)
-		return 0;
-	for (int k = 0; k < 3; k++) {
-		const double v = w->v[row][k] - other->v[row][k], turn = w->v[row][3 + k] - other->v[row][3 + k];
-		linear += v * v;
-		angular += turn * turn;
-	}
-	*speed = sqrt(linear) + a->radius * sqrt(angular);
+		return *speed = 0;
+	*speed = ob_surface_speed(ob_row_linear(other->u[row]), ob_row_angular(other->u[row]), a->radius);
 	return ob_norm(ob_sub(a->p, b->p)) + turned_by(a, a->q, b->q);
 }

@@ -9,9 +9,10 @@ bool ob_refinement_is_doubted(const ob_solver *s)
 }
 
 // Error (m) of a second of the coarse one of two solutions, at most: their distance is half of it at first order.
-static double error_of(const ob_solver *s, const ob_probe *coarse, const ob_probe *fine)
+static double error_of(const ob_solver *s, ob_probe *coarse, ob_probe *fine)
 {
 	double speed;
+	ob_probe_compare(coarse, ob_probe_island(fine));
 	const double error = ob_probe_distance(coarse, ob_probe_island(fine), 1, &speed);
 	return 2 * ob_error_of_run(s, error, speed);
 }

@@ -258,7 +258,10 @@ static void publish_flight(ob_sim *s, uint32_t id, ob_motion *m, const ob_spin *
 	const ob_state now = { { ob_centre_at(m, end), m->q }, ob_velocity_at(m, end), m->w };
 	double box[6];
 	ob_motion_swept_bounds(&rest, body->shape, body->size, last - from, box);
-	ob_deviation_put(m, ob_deviation_at(m, step, h));
+	const double speed = ob_surface_speed(now.v, now.w, ob_shape_radius(body->shape, body->size));
+	const ob_deviant before = { ob_deviation_published(m, step, h), speed },
+			 after = { ob_deviation_at(m, step, h), speed };
+	ob_deviation_put(m, ob_estimate_count(&s->solver, step, before, after, true));
 	m->step = (uint32_t)step;
 	m->reach = (float)reach;
 	m->island = id;
@@ -435,13 +438,13 @@ static void deviate(ob_sim *s, ob_course *c, const ob_state *at, ob_deviation mo
 	const ob_vec3 v = ob_velocity_at(&c->m, c->since);
 	const double radius = ob_shape_radius(body->shape, body->size),
 		     change = ob_norm(ob_sub(at->v, v)) + radius * ob_norm(ob_sub(at->w, c->m.w));
-	const ob_deviant before = { ob_course_deviation(s, c), ob_surface_speed(v, c->m.w, radius) },
+	const uint64_t step = ob_step_count(s->u) + 1;
+	const ob_deviant before = { ob_deviation_published(&c->m, step, s->settings->step_length),
+				    ob_surface_speed(v, c->m.w, radius) },
 			 after = { ob_deviation_after_hit(most, change, radius),
 				   ob_surface_speed(at->v, at->w, radius) };
-	const uint64_t step = ob_step_count(s->u) + 1;
-	ob_deviation_put(&c->m, after.deviation);
+	ob_deviation_put(&c->m, ob_estimate_count(&s->solver, step, before, after, true));
 	c->m.step = (uint32_t)step;
-	ob_estimate_count(&s->solver, step, before, after);
 }
 
 bool ob_course_set_off(ob_sim *s, ob_course *c, const ob_state *at, ob_deviation most)

@@ -46,6 +46,7 @@ void ob_verify(ob_sim *s, const ob_island_input *in)
 		s->solver.counters.unverified += in->members;
 		return;
 	}
+	ob_probe_compare(s->verifier, &s->solver.island);
 	for (uint32_t row = 1; row <= in->members; row++)
 		count(s, in->object[row - 1].motion, row);
 }

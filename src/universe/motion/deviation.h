@@ -45,13 +45,19 @@ static inline double ob_left_of_second(uint64_t n, double h)
 	return fmax(1 - ob_steps_of_second(n, h) * h, 0);
 }
 
-// Returns the part of a motion's deviation that counts at the end of step n, if no step adds to it: nothing in a new second.
-static inline ob_deviation ob_deviation_at(const ob_motion *m, uint64_t n, double h)
+// Returns a motion's deviation as it was published, if its second still runs at the end of step n: nothing in a new one.
+static inline ob_deviation ob_deviation_published(const ob_motion *m, uint64_t n, double h)
 {
-	const double rate = ob_deviation_of_code(m->deviation_rate);
 	if (n - m->step >= ob_steps_of_second(n, h))
 		return (ob_deviation){ 0, 0 };
-	return (ob_deviation){ ob_deviation_of_code(m->deviation) + rate * (double)(n - m->step) * h, rate };
+	return (ob_deviation){ ob_deviation_of_code(m->deviation), ob_deviation_of_code(m->deviation_rate) };
+}
+
+// Returns the part of it that counts at the end of step n, if no step adds to it.
+static inline ob_deviation ob_deviation_at(const ob_motion *m, uint64_t n, double h)
+{
+	const ob_deviation d = ob_deviation_published(m, n, h);
+	return (ob_deviation){ d.place + d.rate * (double)(n - m->step) * h, d.rate };
 }
 
 // Returns its place (m) at the end of the second in which step n ends.
