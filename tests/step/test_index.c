@@ -1,5 +1,5 @@
-// The hash grid against a check of all pairs: sizes over six decades, objects that move, grow, are removed and added,
-// planes.
+// The hash grid against a check of all pairs: sizes over six decades and beyond the largest cells, objects that move, grow,
+// are removed and added, planes.
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,11 +15,13 @@ static bool there[ALL]; // in the index
 
 static void random_bounds(uint64_t *seed, float *b)
 {
-	double scale = pow(10, within(seed, -3, 3)), spread = uniform(seed) < .5 ? 2 : 2000;
+	const bool vast = uniform(seed) < .02; // around all the others, its middle far away
+	double scale = pow(10, vast ? within(seed, 8, 15) : within(seed, -3, 3));
+	double spread = vast ? .4 * scale : uniform(seed) < .5 ? 2 : 2000;
 	ob_vec3 p = random_vector(seed, spread);
 	double at[3] = { p.x, p.y, p.z };
 	for (int c = 0; c < 3; c++) {
-		double half = scale * within(seed, .05, 1);
+		double half = scale * within(seed, vast ? .5 : .05, 1);
 		b[c] = (float)(at[c] - half);
 		b[3 + c] = (float)(at[c] + half);
 	}

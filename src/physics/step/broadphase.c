@@ -16,7 +16,7 @@
 
 // ---- spatial index
 
-// Size classes 1 .. 63: cells of 2^-32 m .. 2^30 m.
+// Size classes 1 .. 63: cells of 2^-32 m .. 2^30 m. The last has all that is larger, too, so it is searched as a whole.
 enum { LEVEL_ZERO = 33, LEVELS = 64 };
 enum { CELLS_AT_ONCE = 32 }; // cells whose buckets, and then objects, are prefetched together
 
@@ -431,6 +431,10 @@ uint32_t ob_index_query(const ob_universe *u, uint32_t id, uint32_t *out, uint32
 		const int level = __builtin_ctzll(levels);
 		cell lo, hi;
 		uint32_t there = data->count->levels[level];
+		if (level == LEVELS - 1) {
+			scan_level(data, id, level, &a);
+			continue;
+		}
 		if (!cells_around(data, b, level, &lo, &hi))
 			continue;
 		double cells = (hi.x - lo.x + 1.) * (hi.y - lo.y + 1.) * (hi.z - lo.z + 1.);
