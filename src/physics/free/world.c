@@ -10,7 +10,7 @@
 bool ob_group_world_begin(ob_group_world *w, ob_universe *shared, uint32_t worker, ob_error *e)
 {
 	const uint32_t capacity = ob_universe_capacity(shared);
-	ob_universe_setup setup = { .name = "",
+	ob_universe_setup setup = { .unshared = true,
 				    .capacity = capacity,
 				    .workers = 1,
 				    .hulls = ob_universe_hulls(shared),

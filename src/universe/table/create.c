@@ -97,7 +97,7 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 	char own[OB_NAME_MAX];
 	snprintf(own, sizeof own, "obsim-%d", (int)getpid());
 	const char *name = setup->name ? setup->name : own;
-	const bool shared = *name;
+	const bool shared = !setup->unshared;
 	if (shared)
 		ob_segment_remove_stale();
 	ob_universe *u = calloc(1, sizeof *u);

@@ -42,8 +42,8 @@ typedef enum ob_phase {
 } ob_phase;
 
 typedef struct ob_universe_setup {
-	const char *
-		name; // unique on this machine; NULL = "obsim-<pid>"; "": in this process's own memory, seen by no other
+	const char *name; // unique on this machine; NULL = "obsim-<pid>"
+	bool unshared; // in this process's own memory, seen by no other; it needs no name
 	uint32_t capacity; // object slots
 	uint32_t workers; // >= 1
 	uint32_t hulls; // maximum of hulls, of the scene and created
