@@ -285,14 +285,6 @@ static bool was_solved(const pair_check *c, uint32_t id)
 	return c->data->schedule[id].since > ob_step_count(c->u);
 }
 
-// True for two bodies that were not solved in the step: the forecast said that they would not touch, and for equal
-// accelerations that is exact.
-static bool went_as_forecast(const pair_check *c, const ob_pair_key *k)
-{
-	return !was_solved(c, k->a) && !was_solved(c, k->b) &&
-	       fall_alike(ob_newest_motion(c->u, k->a), ob_newest_motion(c->u, k->b));
-}
-
 // True if a check without a solved step, as after a resume, would not test the shapes. They may be tested now only
 // because the spheres might have met in the step. So a second check finds the same as the first.
 static bool is_excluded(const pair_check *c, ob_pair_key *k, const moving_pair *p)
@@ -307,7 +299,7 @@ static bool is_excluded(const pair_check *c, ob_pair_key *k, const moving_pair *
 static void check_shapes(const pair_check *c, ob_pair_key *k, double left, bool solved)
 {
 	moving_pair p = moving_pair_of(c, k);
-	k->late = solved && !k->in_island && left <= 0 && !went_as_forecast(c, k) && touched_in_step(c, k, &p);
+	k->late = solved && !k->in_island && left <= 0 && touched_in_step(c, k, &p);
 	if (!k->late && solved && is_excluded(c, k, &p))
 		return;
 	bool on_plane = c->data->schedule[k->a].state == OB_SCHEDULE_PLANE ||
@@ -340,8 +332,9 @@ static bool check_by_schedule(const pair_check *c, ob_pair_key *k)
 static bool check_by_motions(const pair_check *c, ob_pair_key *k, double *left, bool *solved)
 {
 	const ob_schedule *a = &c->data->schedule[k->a], *b = &c->data->schedule[k->b];
-	// A clear pair cannot have touched in it.
-	*solved = c->solved && (c->steps == 0 || !is_clear(c->data, k, c->steps - 1));
+	// A clear pair cannot have touched in it, nor one of which neither was solved: it went as was forecast.
+	*solved = c->solved && (was_solved(c, k->a) || was_solved(c, k->b)) &&
+		  (c->steps == 0 || !is_clear(c->data, k, c->steps - 1));
 	const double paths = ob_schedule_path(a, c->steps) + ob_schedule_path(b, c->steps),
 		     reach = (double)a->reach + (double)b->reach;
 	*left = k->limit - paths;
