@@ -1,5 +1,6 @@
 // The hash grid against a check of all pairs: sizes over six decades and beyond the largest cells, objects that move, grow,
 // are removed and added, planes.
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,9 +22,9 @@ static void random_bounds(uint64_t *seed, float *b)
 	ob_vec3 p = random_vector(seed, spread);
 	double at[3] = { p.x, p.y, p.z };
 	for (int c = 0; c < 3; c++) {
-		double half = scale * within(seed, vast ? .5 : .05, 1);
-		b[c] = (float)(at[c] - half);
-		b[3 + c] = (float)(at[c] + half);
+		double half = vast && scale > 1e14 ? INFINITY : scale * within(seed, vast ? .5 : .05, 1);
+		b[c] = fmaxf((float)(at[c] - half), -FLT_MAX);
+		b[3 + c] = fminf((float)(at[c] + half), FLT_MAX);
 	}
 }
 

@@ -89,7 +89,7 @@ static cell cell_of(const float *b)
 {
 	float e = fmaxf(b[3] - b[0], fmaxf(b[4] - b[1], b[5] - b[2]));
 	int level;
-	frexpf(e, &level); // e = f 2^level, f in [.5, 1): the cell's side 2^level is at least e
+	frexpf(fminf(e, FLT_MAX), &level); // e = f 2^level, f in [.5, 1): the cell's side 2^level is at least e
 	level += LEVEL_ZERO;
 	level = level < 1 ? 1 : level >= LEVELS ? LEVELS - 1 : level;
 	const double per_metre = power_of_two(LEVEL_ZERO - level);
