@@ -2,6 +2,7 @@
 
 #include "motion/deviation.h"
 #include "shape/shape.h"
+#include "solver/budget.h"
 #include "solver/island_solver.h"
 #include "solver/joints.h"
 #include "solver/probe.h"
@@ -148,9 +149,11 @@ static void leave_hit(ob_solver *s, const ob_contact *c, uint32_t row, ob_deviat
 // True if a face of the contact lies on the other body and sticks to it.
 static bool lies_on_face(const ob_island_work *w, const ob_contact *c)
 {
+	if (c->lane == OB_NO_LANE)
+		return false;
 	const ob_batch *b = &w->batch[c->lane / OB_LANES];
 	int loaded = 0;
-	for (uint32_t j = 0; c->lane != OB_NO_LANE && j < c->points; j++)
+	for (uint32_t j = 0; j < c->points; j++)
 		loaded += b->impulse[j][c->lane % OB_LANES] > 0;
 	return loaded >= 3 && !(b->slides >> c->lane % OB_LANES & 1);
 }
@@ -309,6 +312,8 @@ static bool is_doubtful(const ob_solver *s, const rulers *r, uint32_t weight)
 void ob_estimate_update(ob_solver *s)
 {
 	ob_island_work *w = &s->island;
+	if (ob_budget_spent(s)) // there is no solution, so bodies are in no order, and nothing of them is used
+		return;
 	hand_over(s);
 	const uint32_t weight = weight_of(s);
 	const bool jolted = is_jolted(s);
