@@ -45,7 +45,8 @@ void ob_contact_order(ob_solver *s, const ob_island_input *in, uint32_t *order)
 		memcpy(&bits, &x, sizeof bits);
 		key[i] = (uint64_t)bits << 32 | i;
 	}
-	qsort(key, in->pairs, sizeof *key, by_key); // bits of non-negative floats sort as their values do
+	if (in->pairs)
+		qsort(key, in->pairs, sizeof *key, by_key); // bits of non-negative floats sort as their values do
 	for (uint32_t i = 0; i < in->pairs; i++)
 		order[i] = (uint32_t)key[i];
 }

@@ -400,6 +400,10 @@ static void list_pairs_of_island(const ob_involved *p, uint32_t island, listing 
 	ob_step_data *data = p->data;
 	ob_island *is = &data->island[island];
 	to->n = 0;
+	if (is->first_member > data->objects_max || is->members > data->objects_max - is->first_member) {
+		data->count->failure = OB_STEP_DAMAGED;
+		is->members = 0;
+	}
 	for (uint32_t k = 0; k < is->members; k++) {
 		ob_prefetch_pairs_of(p->u, is->first_member + k);
 		list_pairs_of(p, data->member[is->first_member + k], island, to);
