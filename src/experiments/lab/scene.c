@@ -90,6 +90,7 @@ ob_scene *ob_lab_scene_load(const ob_case *c, uint32_t run, ob_world *w, ob_erro
 {
 	const ob_case_text *t = c->text;
 	ob_scene *s = load(t->path, t->text, t->size, t->variant, run, e);
+	*w = (ob_world){ 0 };
 	if (s && make_world(s, w, e))
 		return s;
 	ob_world_finish(w);

@@ -10,7 +10,7 @@
 // ball, and balls of two groups are apart. An own time behind has a longer way to the horizon. Bodies ahead were groups of
 // their own when they went there, with balls that held what is known now: they are left out.
 //
-// Where something may raise the energy, moving surfaces for one, all bodies are one group.
+// All bodies are one group where something may raise the energy, as moving surfaces do.
 //
 // Thread-safety: each worker has its own.
 #ifndef OB_FREE_GROUPS_H
@@ -28,7 +28,7 @@ typedef struct ob_group_body {
 	double radius, mass, norm2, pull2; // m, kg, J twice, N^2 / kg
 	double reach; // m
 	uint32_t parent; // index; its own: it stands for its group
-	// Of the group, where it stands for it:
+	// Properties of the group for which it stands:
 	double group_norm2, group_pull2;
 	uint32_t least; // own time of all, steps
 	bool mine; // some are this worker's

@@ -40,18 +40,6 @@ static ob_ledger *ledger_place(const ob_universe *u, uint32_t id, uint64_t versi
 	return &u->free.ledger[(uint64_t)id * depth + version % depth];
 }
 
-static void put_words(void *to, const void *from, size_t bytes)
-{
-	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
-		__atomic_store_n((ob_word *)to + i, ((const ob_word *)from)[i], __ATOMIC_RELEASE);
-}
-
-static void get_words(void *to, const void *from, size_t bytes)
-{
-	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
-		((ob_word *)to)[i] = __atomic_load_n((const ob_word *)from + i, __ATOMIC_ACQUIRE);
-}
-
 uint64_t ob_free_version(const ob_universe *u, uint32_t id)
 {
 	return __atomic_load_n(&cell_of(u, id)->version, __ATOMIC_SEQ_CST);
@@ -66,7 +54,7 @@ static bool is_whole(const ob_universe *u, uint32_t id, uint64_t version, uint32
 static double time_at(const ob_universe *u, uint32_t id, uint64_t version)
 {
 	double t;
-	get_words(&t, &place(u, id, version)->t0, sizeof t);
+	ob_words_get(&t, &place(u, id, version)->t0, sizeof t);
 	return t;
 }
 
@@ -93,9 +81,9 @@ uint64_t ob_free_read(const ob_universe *u, uint32_t id, double t, ob_motion *ou
 		if (newest == 0)
 			return 0;
 		const uint64_t v = find_version(u, id, newest - kept + 1, newest, t);
-		get_words(out, place(u, id, v), sizeof *out);
+		ob_words_get(out, place(u, id, v), sizeof *out);
 		if (next && v < newest)
-			get_words(next, place(u, id, v + 1), sizeof *next);
+			ob_words_get(next, place(u, id, v + 1), sizeof *next);
 		else if (next)
 			next->t0 = NAN;
 		if (is_whole(u, id, v, depth))
@@ -141,10 +129,10 @@ void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_l
 {
 	ob_free_cell *c = cell_of(u, id);
 	const uint64_t next = __atomic_load_n(&c->version, __ATOMIC_ACQUIRE) + 1;
-	put_words(place(u, id, next), m, sizeof *m);
+	ob_words_put(place(u, id, next), m, sizeof *m);
 	if (ledger)
-		put_words(ledger_place(u, id, next), ledger,
-			  offsetof(ob_ledger, account) + ledger->head.accounts * sizeof *ledger->account);
+		ob_words_put(ledger_place(u, id, next), ledger,
+			     offsetof(ob_ledger, account) + ledger->head.accounts * sizeof *ledger->account);
 	__atomic_store_n(&c->version, next, __ATOMIC_SEQ_CST);
 	advance(u, id, m->t0);
 }
@@ -204,10 +192,10 @@ static bool find_account(const ob_ledger *at, uint32_t accounts, uint32_t partne
 {
 	accounts = accounts < OB_LEDGER_ACCOUNTS ? accounts : OB_LEDGER_ACCOUNTS;
 	for (uint32_t i = 0; i < accounts; i++) {
-		get_words(out, &at->account[i], sizeof(ob_word));
+		ob_words_get(out, &at->account[i], sizeof(ob_word));
 		if (out->partner != partner)
 			continue;
-		get_words(out, &at->account[i], sizeof *out);
+		ob_words_get(out, &at->account[i], sizeof *out);
 		return true;
 	}
 	return false;
@@ -223,8 +211,8 @@ uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint3
 			return 0;
 		const uint64_t v = find_version(u, id, newest - kept + 1, newest, t);
 		const ob_ledger *at = ledger_place(u, id, v);
-		get_words(m, place(u, id, v), sizeof *m);
-		get_words(head, &at->head, sizeof *head);
+		ob_words_get(m, place(u, id, v), sizeof *m);
+		ob_words_get(head, &at->head, sizeof *head);
 		*found = find_account(at, head->accounts, partner, out);
 		if (is_whole(u, id, v, depth))
 			return v;
@@ -238,8 +226,8 @@ bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_led
 		const uint64_t v = ob_free_version(u, id);
 		if (v == 0)
 			return false;
-		get_words(m, place(u, id, v), sizeof *m);
-		get_words(out, ledger_place(u, id, v), sizeof *out);
+		ob_words_get(m, place(u, id, v), sizeof *m);
+		ob_words_get(out, ledger_place(u, id, v), sizeof *out);
 		if (is_whole(u, id, v, u->header.sizes.ledgers) && is_whole(u, id, v, u->header.sizes.history))
 			return true;
 	}
@@ -259,7 +247,7 @@ void ob_free_publish_bounds(ob_universe *u, uint32_t id, const float box[6])
 {
 	ob_word words[3];
 	memcpy(words, box, sizeof words);
-	put_words(u->step_data.bounds[id], words, sizeof words);
+	ob_words_put(u->step_data.bounds[id], words, sizeof words);
 	note_change(u, id);
 }
 
@@ -278,7 +266,7 @@ uint32_t ob_free_changed(const ob_universe *u, uint32_t group, uint32_t number)
 void ob_free_get_bounds(const ob_universe *u, uint32_t id, float box[6])
 {
 	ob_word words[3];
-	get_words(words, u->step_data.bounds[id], sizeof words);
+	ob_words_get(words, u->step_data.bounds[id], sizeof words);
 	memcpy(box, words, sizeof words);
 }
 

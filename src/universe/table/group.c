@@ -87,29 +87,17 @@ static uint64_t version_of(const ob_universe *u, uint32_t id)
 	return __atomic_load_n(&u->free.cell[id].version, __ATOMIC_SEQ_CST);
 }
 
-static void put_words(void *to, const void *from, size_t bytes)
-{
-	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
-		__atomic_store_n((ob_word *)to + i, ((const ob_word *)from)[i], __ATOMIC_RELEASE);
-}
-
-static void get_words(void *to, const void *from, size_t bytes)
-{
-	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
-		((ob_word *)to)[i] = __atomic_load_n((const ob_word *)from + i, __ATOMIC_ACQUIRE);
-}
-
 uint64_t ob_group_read(const ob_universe *u, uint32_t id, uint32_t step, ob_motion *m, float bounds[6])
 {
 	const uint32_t depth = bounds ? OB_GROUP_VERSIONS : u->header.sizes.history;
 	for (int i = 0; i < OB_RING_TRIES; i++) {
 		const uint64_t newest = version_of(u, id), kept = newest < depth - 1 ? newest : depth - 1;
 		for (uint64_t v = newest; v > newest - kept; v--) {
-			get_words(m, motion_at(u, id, v), sizeof *m);
+			ob_words_get(m, motion_at(u, id, v), sizeof *m);
 			if (m->step > step)
 				continue;
 			if (bounds)
-				get_words(bounds, state_at(u, id, v)->bounds, 6 * sizeof *bounds);
+				ob_words_get(bounds, state_at(u, id, v)->bounds, 6 * sizeof *bounds);
 			if (version_of(u, id) + 2 <= v + depth)
 				return v;
 			break;
@@ -128,10 +116,10 @@ void ob_group_take_back(ob_universe *u, uint32_t id, uint32_t step)
 void ob_group_get(const ob_universe *u, uint32_t id, ob_motion *m, ob_group_state *s, ob_group_contact *contact)
 {
 	const uint64_t v = version_of(u, id);
-	get_words(m, motion_at(u, id, v), sizeof *m);
-	get_words(s, state_at(u, id, v), sizeof *s);
+	ob_words_get(m, motion_at(u, id, v), sizeof *m);
+	ob_words_get(s, state_at(u, id, v), sizeof *s);
 	s->contacts = s->contacts < OB_GROUP_CONTACTS ? s->contacts : OB_GROUP_CONTACTS;
-	get_words(contact, &u->free.contact[first_contact(id, v)], s->contacts * sizeof *contact);
+	ob_words_get(contact, &u->free.contact[first_contact(id, v)], s->contacts * sizeof *contact);
 }
 
 bool ob_group_put(ob_universe *u, uint32_t id, const ob_motion *m, const ob_group_state *s,
@@ -143,9 +131,9 @@ bool ob_group_put(ob_universe *u, uint32_t id, const ob_motion *m, const ob_grou
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, id);
 		return false;
 	}
-	put_words(motion_at(u, id, next), m, sizeof *m);
-	put_words(state_at(u, id, next), s, sizeof *s);
-	put_words(&u->free.contact[first], contact, s->contacts * sizeof *contact);
+	ob_words_put(motion_at(u, id, next), m, sizeof *m);
+	ob_words_put(state_at(u, id, next), s, sizeof *s);
+	ob_words_put(&u->free.contact[first], contact, s->contacts * sizeof *contact);
 	__atomic_store_n(&c->version, next, __ATOMIC_SEQ_CST);
 	return true;
 }

@@ -53,6 +53,19 @@ static_assert(sizeof(ob_passport_slot) == 192, "passport slot");
 
 typedef uint64_t __attribute__((may_alias)) ob_word;
 
+// Copies whole words, each by itself, that others may read or write meanwhile.
+static inline void ob_words_put(void *to, const void *from, size_t bytes)
+{
+	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
+		__atomic_store_n((ob_word *)to + i, ((const ob_word *)from)[i], __ATOMIC_RELEASE);
+}
+
+static inline void ob_words_get(void *to, const void *from, size_t bytes)
+{
+	for (size_t i = 0; i < bytes / sizeof(ob_word); i++)
+		((ob_word *)to)[i] = __atomic_load_n((const ob_word *)from + i, __ATOMIC_ACQUIRE);
+}
+
 // Place of a version. even: place of version 0; stride: bytes from there to the place of version 1.
 static inline ob_word *ob_ring_place(const void *even, ptrdiff_t stride, uint64_t version)
 {
