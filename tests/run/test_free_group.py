@@ -1,5 +1,6 @@
 """Free runs that are solved in groups end in the bits of lockstep: random scenes of boxes and balls, stacks, heaps, a gas, with
-births and deaths, in threads and processes, few and one for each object, and after kills.
+births and deaths, in threads and processes, few and one for each object, after kills, and with workers that sleep before what others
+see: so that they meet in orders that are rare otherwise.
 
 Arguments: the number of scenes, or the first seed and the number of scenes."""
 
@@ -14,6 +15,7 @@ FIRST, SCENES = [[1, 6], [1] + NUMBERS, NUMBERS][len(NUMBERS)]
 APART = 206 # heaps far apart, and two that fall unlike and were not solved
 WAYS = [["--workers", 1], ["--workers", 2], ["--workers", "objects"], ["--workers", 3, "--isolation", "process"],
 	["--workers", "objects", "--isolation", "process"]]
+SLOW = [["--workers", 3], ["--workers", 4, "--isolation", "process"]]
 
 
 def number(draw, low, high):
@@ -65,7 +67,8 @@ class Group(program.Case):
 			draw = random.Random(seed)
 			scene = self.scene(draw)
 			lockstep = program.report(scene, "--seed", seed)["state_hash"]
-			ways = [*program.ways(*WAYS), *([way + ["--fault", f"kill:p={p},seed={seed}"] for way in WAYS[3:]
+			ways = [*program.ways(*WAYS), *(way + ["--fault", f"slow:p=.03,ms=2,seed={seed + again}"] for way in SLOW
+				for again in range(4)), *([way + ["--fault", f"kill:p={p},seed={seed}"] for way in WAYS[3:]
 				for p in (.002, .005)] if seed % 2 else [])]
 			for way in ways:
 				with self.subTest(seed=seed, way=way):

@@ -79,7 +79,7 @@ static bool begin(group_worker *w, ob_universe *u, uint32_t number, ob_error *e)
 	for (uint32_t id = 0; id < ob_universe_ids(u); id++) {
 		const ob_group_place p = ob_group_place_of(u, id);
 		if (is_mine(w, &p) && p.held)
-			ob_group_park(u, id, number, made);
+			ob_group_park(u, id, p, number, made);
 	}
 	ob_group_make(u, number, OB_GROUP_EMPTY, 0);
 	return adopt(w, true);
@@ -152,7 +152,8 @@ static uint32_t list_linked(group_worker *w, uint32_t root)
 	return own;
 }
 
-// Gives the worker's bodies of a group to another worker, at this step, those of its own last: it takes them when it has all.
+// Gives the worker's bodies of a group to another worker, at this step, those of its own last: it takes them when it has all. They
+// are those that it had when it looked: since then others may have come to it, at steps of their own.
 static void give(group_worker *w, uint32_t root, uint32_t to, uint32_t step)
 {
 	list_linked(w, root);
@@ -163,10 +164,12 @@ static void give(group_worker *w, uint32_t root, uint32_t to, uint32_t step)
 	}
 	ob_group_world_park(&w->world, w->come, w->comes, to);
 	for (uint32_t k = 0; k < w->groups.considered; k++) {
-		const uint32_t i = w->groups.order[k], id = w->groups.body[i].id;
-		const ob_group_place p = ob_group_place_of(w->u, id);
-		if (ob_groups_root(&w->groups, i) == root && is_mine(w, &p))
-			ob_group_park(w->u, id, to, step);
+		const uint32_t i = w->groups.order[k];
+		const ob_group_body *b = &w->groups.body[i];
+		if (ob_groups_root(&w->groups, i) != root || !is_mine(w, &b->place) || b->place.held)
+			continue;
+		ob_group_world_chance(&w->world);
+		ob_group_park(w->u, b->id, b->place, to, step);
 	}
 	ob_group_notify(w->u, w->worker, to);
 }
@@ -194,6 +197,7 @@ static uint32_t look_at_groups(group_worker *w, uint32_t step)
 	uint32_t blocker = OB_NO_WORKER;
 	bool gave = false;
 	ob_groups_find(&w->groups, w->worker, step, step + 1);
+	ob_group_world_chance(&w->world);
 	for (uint32_t i = 0; i < w->groups.n; i++) {
 		const ob_group_body *b = &w->groups.body[i];
 		if (b->step > step || b->parent != i || !b->mine)

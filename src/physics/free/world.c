@@ -1,5 +1,6 @@
 #include "free/world.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,6 +50,11 @@ void ob_group_world_finish(ob_group_world *w)
 	free(w->changed);
 	free(w->told);
 	free(w->known);
+}
+
+void ob_group_world_chance(ob_group_world *w)
+{
+	ob_fault_chance_of(w->shared, w->worker, &w->fault_chances);
 }
 
 // ---- objects
@@ -169,8 +175,10 @@ void ob_group_world_take(ob_group_world *w, const uint32_t *id, uint32_t n)
 		take_pairs(w, id[i]);
 	for (uint32_t i = 0; i < n; i++)
 		ob_sim_meet(w->sim, id[i]);
-	for (uint32_t i = 0; i < n; i++)
-		ob_group_hold(w->shared, id[i], w->worker);
+	for (uint32_t i = 0; i < n; i++) {
+		ob_group_world_chance(w);
+		ob_group_hold(w->shared, id[i], (ob_group_place){ .worker = w->worker, .step = w->step });
+	}
 }
 
 void ob_group_world_park(ob_group_world *w, const uint32_t *id, uint32_t n, uint32_t worker)
@@ -179,8 +187,10 @@ void ob_group_world_park(ob_group_world *w, const uint32_t *id, uint32_t n, uint
 		ob_sim_hand_out(w->u, id[i]);
 		forget(w, id[i]);
 	}
-	for (uint32_t i = 0; i < n; i++)
-		ob_group_park(w->shared, id[i], worker, w->step);
+	for (uint32_t i = 0; i < n; i++) {
+		ob_group_world_chance(w);
+		ob_group_park(w->shared, id[i], (ob_group_place){ .worker = w->worker, .held = true }, worker, w->step);
+	}
 	if (!w->n)
 		ob_group_make(w->shared, w->worker, OB_GROUP_EMPTY, 0);
 }
@@ -243,7 +253,42 @@ static bool publish(ob_group_world *w, uint32_t id, uint32_t step)
 		ob_step_fail(w->shared, OB_STEP_PAIRS_FULL, id);
 		return false;
 	}
-	ob_fault_chance_of(w->shared, w->worker, &w->fault_chances);
+	ob_group_world_chance(w);
+	if (getenv("DBG")) {
+		static FILE *f[64];
+		if (!f[w->worker]) {
+			char n[200];
+			snprintf(n, 200, "%s.%u", getenv("DBG"), w->worker);
+			f[w->worker] = fopen(n, "a");
+		}
+		FILE *o = f[w->worker];
+		const ob_motion *m = ob_newest_motion(w->u, id);
+		uint64_t h = 14695981039346656037u;
+		const unsigned char *b = (const unsigned char *)m;
+		for (size_t i = 0; i < sizeof *m; i++)
+			h = (h ^ b[i]) * 1099511628211u;
+		uint64_t hs = 14695981039346656037u;
+		b = (const unsigned char *)&s.schedule;
+		for (size_t i = 0; i < sizeof s.schedule; i++)
+			hs = (hs ^ b[i]) * 1099511628211u;
+		uint64_t hb = 14695981039346656037u;
+		b = (const unsigned char *)s.bounds;
+		for (size_t i = 0; i < sizeof s.bounds; i++)
+			hb = (hb ^ b[i]) * 1099511628211u;
+		fprintf(o, "%u %u m%lx s%lx b%lx n%u w%u |", step, id, h, hs, hb, s.neighbours, w->worker);
+		for (uint32_t i = 0; i < s.contacts; i++) {
+			const ob_group_contact *c = &w->contact[i];
+			uint64_t hc = 14695981039346656037u;
+			b = (const unsigned char *)&c->state;
+			for (size_t k = 0; k < sizeof c->state; k++)
+				hc = (hc ^ b[k]) * 1099511628211u;
+			fprintf(o, " %u-%u(act%d rec%d isl%d late%d lim%g c%lx st%u chk%u)", c->key.a, c->key.b,
+				c->key.active, (int)c->key.record, c->key.in_island, c->key.late, 0.0,
+				c->key.record == OB_NO_RECORD ? 0 : hc, c->stamp, c->check);
+		}
+		fprintf(o, "\n");
+		fflush(o);
+	}
 	return ob_group_put(w->shared, id, ob_newest_motion(w->u, id), &s, w->contact);
 }
 
@@ -312,7 +357,7 @@ bool ob_group_world_step(ob_group_world *w)
 	for (uint32_t i = 0; i < n; i++)
 		if (!publish(w, w->changed[i], w->step + 1))
 			return false;
-	ob_fault_chance_of(w->shared, w->worker, &w->fault_chances);
+	ob_group_world_chance(w);
 	ob_group_make(w->shared, w->worker, ++w->step, n);
 	*ob_worker_counters(w->shared, w->worker) = *ob_worker_counters(w->u, 0);
 	return true;

@@ -37,6 +37,8 @@ static inline bool ob_group_world_has(const ob_group_world *w, uint32_t id)
 {
 	return w->place[id];
 }
+// A chance of the worker to fail, as --fault has it: before each change that others see.
+void ob_group_world_chance(ob_group_world *w);
 // Bodies that move with which one of the world has pairs; they hold until the next call.
 const uint32_t *ob_group_world_neighbours(ob_group_world *w, uint32_t id, uint32_t *n);
 // Takes over objects that were placed, changed or removed, while all wait.

@@ -25,9 +25,16 @@ static ob_group_place place_of(uint64_t word)
 	return (ob_group_place){ .worker = (uint32_t)word >> 1, .step = (uint32_t)(word >> 32), .held = word & 1 };
 }
 
-static void put_place(ob_universe *u, uint32_t id, uint32_t worker, uint32_t step, bool held)
+static uint64_t word_of(ob_group_place p)
 {
-	__atomic_store_n(&u->free.place[id], (uint64_t)step << 32 | worker << 1 | held, __ATOMIC_SEQ_CST);
+	return (uint64_t)p.step << 32 | p.worker << 1 | p.held;
+}
+
+static bool change_place(ob_universe *u, uint32_t id, ob_group_place known, ob_group_place to)
+{
+	uint64_t word = word_of(known);
+	return __atomic_compare_exchange_n(&u->free.place[id], &word, word_of(to), false, __ATOMIC_SEQ_CST,
+					   __ATOMIC_SEQ_CST);
 }
 
 ob_group_place ob_group_place_of(const ob_universe *u, uint32_t id)
@@ -54,14 +61,14 @@ uint32_t ob_group_step(const ob_universe *u, uint32_t id)
 	}
 }
 
-void ob_group_park(ob_universe *u, uint32_t id, uint32_t worker, uint32_t step)
+bool ob_group_park(ob_universe *u, uint32_t id, ob_group_place known, uint32_t worker, uint32_t step)
 {
-	put_place(u, id, worker, step, false);
+	return change_place(u, id, known, (ob_group_place){ .worker = worker, .step = step });
 }
 
-void ob_group_hold(ob_universe *u, uint32_t id, uint32_t worker)
+bool ob_group_hold(ob_universe *u, uint32_t id, ob_group_place known)
 {
-	put_place(u, id, worker, 0, true);
+	return change_place(u, id, known, (ob_group_place){ .worker = known.worker, .held = true });
 }
 
 // ---- versions
@@ -146,7 +153,8 @@ void ob_group_enter(ob_universe *u, uint32_t id, uint32_t worker, const ob_motio
 			     .step = (uint32_t)ob_step_count(u) };
 	memcpy(s.bounds, data->bounds[id], sizeof s.bounds);
 	ob_group_put(u, id, m, &s, NULL);
-	ob_group_park(u, id, worker, s.step);
+	__atomic_store_n(&u->free.place[id], word_of((ob_group_place){ .worker = worker, .step = s.step }),
+			 __ATOMIC_SEQ_CST);
 }
 
 // ---- waiting

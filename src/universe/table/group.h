@@ -12,7 +12,8 @@
 // killed leaves all its bodies at one step, and its successor goes on from their newest versions that are not after that step:
 // the bits are the same. A version that was published for a step that was not made is published again.
 //
-// Only the worker that has a body may publish it, hold it or park it. An own time never falls.
+// Only the worker that has a body may publish it, hold it or park it. A body may come to a worker at any moment, so a change names
+// the place from which it is made. An own time never falls.
 #ifndef OB_TABLE_GROUP_H
 #define OB_TABLE_GROUP_H
 
@@ -80,8 +81,10 @@ void ob_group_get(const ob_universe *u, uint32_t id, ob_motion *m, ob_group_stat
 // Publishes a version that holds once its worker has made s->step steps. false: no memory, and the run has failed.
 bool ob_group_put(ob_universe *u, uint32_t id, const ob_motion *m, const ob_group_state *s,
 		  const ob_group_contact *contact);
-void ob_group_park(ob_universe *u, uint32_t id, uint32_t worker, uint32_t step);
-void ob_group_hold(ob_universe *u, uint32_t id, uint32_t worker);
+// Parks a body for a worker at a step; or holds one that is parked for this worker. known: its place, as this worker has seen it.
+// false: it is elsewhere by now, and stays there.
+bool ob_group_park(ob_universe *u, uint32_t id, ob_group_place known, uint32_t worker, uint32_t step);
+bool ob_group_hold(ob_universe *u, uint32_t id, ob_group_place known);
 
 // ---- a worker
 
