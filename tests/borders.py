@@ -95,7 +95,7 @@ DUTIES = [
     # Simulators are started by host/spawn_*.c (processes through its fork_server); the rest are helpers of one module
     # each; control/batch.c's steps several universes for a program.
     ('start a thread', r'\b(pthread_create|thrd_create)\s*\(',
-     r'(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/progress|control/batch|paper/viewer|ranks/mpi|serve/server)\.c$', True),
+     r'(host/(spawn_\w+|supervisor|timeline)|checkpoint/writer|render/sink\w*|cli/run|control/batch|paper/paper|ranks/mpi|serve/server)\.c$', True),
     ('start a process', r'\b(v?fork|posix_spawnp?)\s*\(',
      r'(host/(spawn_\w+|fork_server|foreign)|render/sink_video|experiment/process|ranks/courier|lab/attempt|paper/attempt|record/recording|import/import|base/part)\.c$', True),
     ('hold a shader in a string', r'#\s*version\b', r'$^', False),

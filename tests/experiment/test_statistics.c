@@ -1,6 +1,6 @@
 // Means, medians and their intervals against tables and by drawing many samples; lines against a published example;
 // orders of convergence of quadrature rules with known order.
-#include "experiment/statistics.h"
+#include "experiment/analysis.h"
 
 #include "check.h"
 #include "motion/random.h"

@@ -10,7 +10,7 @@
 #include "host/restart.h"
 #include "host/stall.h"
 #include "little_scene.h"
-#include "step/now.h"
+#include "step/publish.h"
 #include "workers.h"
 
 // A fork takes .1 s under the thread sanitizer.

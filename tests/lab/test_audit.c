@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "printed.h"
-#include "lab/audit.h"
+#include "lab/analysis.h"
 
 static ob_results made;
 

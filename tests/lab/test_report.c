@@ -9,7 +9,7 @@
 #include "../check.h"
 #include "lab/analysis.h"
 #include "experiment/page.h"
-#include "experiment/words.h"
+#include "experiment/table.h"
 #include "lab/report.h"
 
 static const ob_engine_kind kinds[] = {

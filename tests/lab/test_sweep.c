@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "lab/list.h"
+#include "lab/case.h"
 #include "lab/sweep.h"
 
 static ob_run_settings settings[OB_SWEEP_SETTINGS];

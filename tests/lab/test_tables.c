@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "printed.h"
-#include "lab/tables.h"
+#include "lab/report.h"
 
 static void expect_in(FILE *f, const char *const *what)
 {

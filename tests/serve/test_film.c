@@ -9,7 +9,6 @@
 #include "record/record.h"
 #include "serve/feed.h"
 #include "serve/film.h"
-#include "serve/film_page.h"
 
 enum { OBJECTS = 30, STATES = 400, BREAKS = 100 };
 static const double step_length = .01;

@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "serve/peer.h"
+#include "serve/door.h"
 
 static ob_peer_end end_of(const char *address, unsigned port)
 {

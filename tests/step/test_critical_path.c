@@ -3,7 +3,7 @@
 
 #include "check.h"
 #include "little_universe.h"
-#include "step/critical_path.h"
+#include "step/profile.h"
 
 enum { OBJECTS = 400 };
 

@@ -5,9 +5,9 @@
 
 #include "compare/compare.h"
 #include "compare_texts.h"
-#include "experiment/chart.h"
 #include "experiment/folder.h"
 #include "experiment/page.h"
+#include "experiment/table.h"
 
 // ---- diagrams
 

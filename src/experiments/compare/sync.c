@@ -10,7 +10,7 @@
 #include "experiment/analysis.h"
 #include "experiment/json.h"
 #include "experiment/process.h"
-#include "experiment/words.h"
+#include "experiment/table.h"
 
 #define RATE(HZ) \
 	{ \

@@ -10,7 +10,6 @@
 
 #include "experiment/analysis.h"
 #include "experiment/experiment.h"
-#include "experiment/statistics.h"
 
 typedef enum ob_sync_coupling {
 	OB_SYNC_LOCKSTEP,

@@ -4,10 +4,8 @@
 #include <string.h>
 
 #include "compare/sync.h"
-#include "experiment/chart.h"
 #include "experiment/page.h"
 #include "experiment/table.h"
-#include "experiment/words.h"
 #include "sync_texts.h"
 
 static const char *const coupling_title[OB_SYNC_COUPLINGS] = { "lockstep", "ledger", "own", "own, heavy", "own, ODE" };

@@ -21,7 +21,7 @@
 #include <btBulletDynamicsCommon.h>
 
 extern "C" {
-#include "engine/drive.h"
+#include "engine/world.h"
 #include "engine/part.h"
 }
 

@@ -1,4 +1,4 @@
-// Engines listed in kinds.c. Each file that makes them has its own struct ob_engine. Internal to the module.
+// Engines listed in parts.c. Each file that makes them has its own struct ob_engine. Internal to the module.
 #ifndef OB_ENGINE_ENGINES_H
 #define OB_ENGINE_ENGINES_H
 

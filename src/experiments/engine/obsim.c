@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "engine/engines.h"
-#include "step/now.h"
+#include "step/publish.h"
 #include "step/sim.h"
 #include "table/table.h"
 

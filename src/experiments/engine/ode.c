@@ -18,7 +18,7 @@
 
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
-#include "engine/drive.h"
+#include "engine/world.h"
 #include "engine/engines.h"
 
 static _Thread_local unsigned users;

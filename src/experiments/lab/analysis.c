@@ -3,6 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "experiment/analysis.h"
+#include "experiment/table.h"
+
 bool ob_lab_analysis_is_obsim(const ob_engine_kind *k)
 {
 	return k->free || !strncmp(k->name, "obsim", 5);
@@ -204,4 +207,186 @@ ob_lab_analysis_lead ob_lab_analysis_measure_lead(const ob_lab_analysis *d)
 			l.worst = fmax(l.worst, q.own / best);
 	}
 	return l;
+}
+
+// ---- audit
+
+static const double tolerance[OB_AUDIT_TOLERANCES] = { 1e-2, 1e-3, 1e-4, 1e-5 }; // m
+static const char *const names[OB_AUDIT_SETTINGS] = { "10 mm", "1 mm", "0.1 mm", "0.01 mm", "4",  "8",
+						      "16",    "32",   "64",     "128",     "256" };
+static const double slack = 1.05, noticeable = 2, rounding = 1e-3; // ratios to the coarser error; share of the target
+
+static uint32_t substeps_of(int setting)
+{
+	return 4u << (setting - OB_AUDIT_TOLERANCES);
+}
+
+static bool is_setting(const ob_run_settings *s, int setting)
+{
+	if (setting < OB_AUDIT_TOLERANCES)
+		return s->substeps == 0 && fabs(s->tolerance / tolerance[setting] - 1) < 1e-9;
+	return s->tolerance == 0 && s->substeps == substeps_of(setting);
+}
+
+// Ignores results that ran out of time.
+static const ob_result *result_at(const ob_lab_analysis *d, const ob_case *c, int setting)
+{
+	for (const ob_result *r = NULL; d->own && (r = ob_lab_analysis_next(d, c, d->own, r));)
+		if (is_setting(&r->settings, setting) && !isnan(r->outcome.body_seconds))
+			return r;
+	return NULL;
+}
+
+static double times(double fine, double coarse)
+{
+	return coarse > 0 && isfinite(fine) ? fine / coarse : INFINITY;
+}
+
+static void keep(ob_audit_rise *worst, int figure, int setting, double by)
+{
+	if (worst->figure < 0 || by > worst->times)
+		*worst = (ob_audit_rise){ figure, setting, by };
+}
+
+// A run that fails at the finer setting counts as infinitely bad in its first figure.
+static void compare(ob_audit *a, const ob_case *c, int coarse, int fine)
+{
+	const ob_case_result *from = &a->result[coarse]->outcome, *to = &a->result[fine]->outcome;
+	if (*to->failed) {
+		if (!*from->failed)
+			keep(&a->above, 0, fine, INFINITY);
+		return;
+	}
+	for (uint32_t i = 0; i < c->figures && !*from->failed; i++) {
+		double target = c->figure[i].target, before = from->figure[i], after = to->figure[i];
+		if (!ob_lab_analysis_has_target(c, i))
+			continue;
+		if (after > target && !(after <= slack * before))
+			keep(&a->above, (int)i, fine, times(after, before));
+		else if (after <= target && after > rounding * target && after > noticeable * before)
+			keep(&a->below, (int)i, fine, times(after, before));
+	}
+}
+
+ob_audit ob_lab_audit(const ob_lab_analysis *d, const ob_case *c)
+{
+	ob_audit a = { .above = { .figure = -1 }, .below = { .figure = -1 } };
+	double h[OB_AUDIT_SUBSTEPS], error[OB_AUDIT_SUBSTEPS];
+	int coarser = -1; // index of the coarser value of the same setting
+	for (int i = 0; i < OB_AUDIT_SETTINGS; i++) {
+		a.result[i] = result_at(d, c, i);
+		a.ratio[i] = a.result[i] ? ob_lab_analysis_ratio(a.result[i]) : NAN;
+		a.measured += a.result[i] != NULL;
+		if (i == OB_AUDIT_TOLERANCES)
+			coarser = -1;
+		if (a.result[i] && coarser >= 0)
+			compare(&a, c, coarser, i);
+		if (a.result[i])
+			coarser = i;
+	}
+	double least = INFINITY, most = 0;
+	for (int i = 0; i < OB_AUDIT_SUBSTEPS; i++) {
+		h[i] = 1. / substeps_of(OB_AUDIT_TOLERANCES + i);
+		error[i] = a.ratio[OB_AUDIT_TOLERANCES + i];
+		least = fmin(least, error[i]);
+		most = fmax(most, error[i]);
+	}
+	bool flat = most <= 1 && most < noticeable * least; // good enough from the first value
+	a.order = flat ? NAN : ob_statistics_order(OB_AUDIT_SUBSTEPS, h, error, rounding);
+	return a;
+}
+
+// ---- tables
+
+static ob_table *new_table(void)
+{
+	ob_table *t = ob_table_new("rlrrrrrrrrrrrrl");
+	ob_table_row(t, "Row", "Case", NULL);
+	for (int i = 0; i < OB_AUDIT_SETTINGS; i++)
+		ob_table_add(t, "%s", names[i]);
+	ob_table_add(t, "order");
+	ob_table_add(t, "%s", "");
+	return t;
+}
+
+static void add_case(ob_table *t, const ob_case *c, const ob_audit *a)
+{
+	if (c->row > 0)
+		ob_table_add(t, "%d", c->row);
+	else
+		ob_table_add(t, "%s", "");
+	ob_table_add(t, "%s", c->title);
+	ob_table_link(t, c->name);
+	for (int i = 0; i < OB_AUDIT_SETTINGS; i++) {
+		if (isinf(a->ratio[i])) {
+			ob_table_add(t, "failed");
+			ob_table_class(t, "missed");
+			continue;
+		}
+		ob_table_add(t, "%s", ob_word_number(a->ratio[i]).text);
+		if (!isnan(a->ratio[i]))
+			ob_table_class(t, a->ratio[i] <= 1 ? "met" : "missed");
+	}
+	if (isnan(a->order))
+		ob_table_add(t, "\u2013");
+	else
+		ob_table_add(t, "%.1f", a->order);
+	ob_table_add(t, "%s", a->above.figure >= 0 ? "RISES" : "");
+	if (a->above.figure >= 0)
+		ob_table_class(t, "missed");
+}
+
+ob_table *ob_lab_table_audit(const ob_lab_analysis *d)
+{
+	ob_table *t = NULL;
+	for (const ob_case *const *c = ob_cases; *c; c++) {
+		ob_audit a = ob_lab_audit(d, *c);
+		if (a.measured < 2)
+			continue;
+		t = t ? t : new_table();
+		add_case(t, *c, &a);
+	}
+	return t;
+}
+
+static void print_rise(FILE *f, const ob_case *c, const ob_audit_rise *r)
+{
+	bool by_tolerance = r->setting < OB_AUDIT_TOLERANCES;
+	fprintf(f, "- `%s`: %s, at %s%s%s", c->name, c->figure[r->figure].name, by_tolerance ? "a tolerance of " : "",
+		names[r->setting], by_tolerance ? "" : " substeps");
+	if (isfinite(r->times))
+		fprintf(f, ", %.3g times that of the coarser setting\n", r->times);
+	else
+		fprintf(f, ", where the coarser setting has none\n");
+}
+
+static void print_rises(FILE *f, const ob_lab_analysis *d, bool above, const char *what)
+{
+	size_t audited = 0, rising = 0;
+	for (int pass = 0; pass < 2; pass++) { // counts, then names
+		for (const ob_case *const *c = ob_cases; *c; c++) {
+			ob_audit a = ob_lab_audit(d, *c);
+			const ob_audit_rise *rise = above ? &a.above : &a.below;
+			audited += !pass && a.measured > 1;
+			rising += !pass && rise->figure >= 0;
+			if (pass && rise->figure >= 0)
+				print_rise(f, *c, rise);
+		}
+		if (!pass)
+			fprintf(f, "\n%s in %zu of %zu cases%s\n\n", what, rising, audited, rising ? ":" : ".");
+	}
+}
+
+void ob_lab_print_audit(FILE *f, const ob_lab_analysis *d, bool markdown)
+{
+	ob_table *t = ob_lab_table_audit(d);
+	if (!t)
+		return;
+	fputs("Errors over their targets, the worst of a case, by tolerance and by substeps.\n\n", f);
+	if (markdown)
+		ob_table_markdown(t, f);
+	else
+		ob_table_print(t, f, 0);
+	print_rises(f, d, true, "A finer setting has a larger error, above its target,");
+	print_rises(f, d, false, "A finer setting has more than twice the error, below its target,");
 }

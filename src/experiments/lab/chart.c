@@ -1,12 +1,12 @@
-#include "lab/chart.h"
+#include "lab/report.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "experiment/statistics.h"
-#include "experiment/words.h"
+#include "experiment/analysis.h"
+#include "experiment/table.h"
 
 // True if the engine has results in a case, or, with none named, in the chart so far.
 static bool takes_part(const ob_chart *c, const ob_lab_analysis *d, const ob_case *of, const ob_engine_kind *k)

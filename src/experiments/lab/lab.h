@@ -4,7 +4,7 @@
 #define OB_LAB_LAB_H
 
 #include "experiment/experiment.h"
-#include "lab/list.h"
+#include "lab/case.h"
 #include "lab/result.h"
 #include "lab/sweep.h"
 

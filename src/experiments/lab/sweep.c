@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "settings/length.h"
+#include "settings/settings.h"
 
 #define SUBSTEPS OB_SETTING_SUBSTEPS
 #define ITERATIONS OB_SETTING_ITERATIONS

@@ -1,11 +1,10 @@
-#include "lab/tables.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/csv.h"
-#include "experiment/words.h"
-#include "lab/chart.h"
+#include "experiment/table.h"
+#include "lab/report.h"
 
 // ---- all promised figures
 

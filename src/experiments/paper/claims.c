@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "paper/trial.h"
+#include "paper/paper.h"
 
 // ---- words
 

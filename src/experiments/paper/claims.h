@@ -3,7 +3,7 @@
 #ifndef OB_PAPER_CLAIMS_H
 #define OB_PAPER_CLAIMS_H
 
-#include "experiment/words.h"
+#include "experiment/table.h"
 #include "paper/results.h"
 
 typedef enum ob_paper_verdict {

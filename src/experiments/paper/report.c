@@ -2,13 +2,11 @@
 
 #include <math.h>
 
-#include "experiment/chart.h"
+#include "experiment/page.h"
 #include "experiment/folder.h"
 #include "experiment/json.h"
 #include "experiment/table.h"
-#include "experiment/words.h"
 #include "paper/claims.h"
-#include "paper/trial.h"
 #include "paper_texts.h"
 
 enum { COLUMNS = 6 };

@@ -10,7 +10,6 @@
 #include "cli/quantity.h"
 #include "record/mcap.h"
 #include "serve/film.h"
-#include "serve/film_page.h"
 
 static bool check_operands(const ob_arguments *a, ob_error *e)
 {

@@ -10,11 +10,10 @@
 #include "cli/command.h"
 #include "cli/quantity.h"
 #include "cli/version.h"
-#include "lab/audit.h"
+#include "lab/analysis.h"
 #include "lab/lab.h"
 #include "lab/report.h"
 #include "lab/scene.h"
-#include "lab/tables.h"
 #include "ranks/ranks.h"
 
 // Request of the command line

@@ -1,13 +1,18 @@
 #include "cli/led_run.h"
 
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/interrupt.h"
 #include "base/log.h"
 #include "checkpoint/saved_run.h"
+#include "cli/command.h"
 #include "cli/observe.h"
+#include "cli/output.h"
 #include "cli/quantity.h"
-#include "cli/save.h"
+#include "cli/version.h"
 #include "host/host.h"
 #include "table/table.h"
 
@@ -220,4 +225,64 @@ void ob_led_run_finish(ob_led_run *r)
 	if (r->defines)
 		forget_defines(r->defines, r->q.scene_options.define_count - r->own, r->q.scene_options.define_count);
 	ob_saved_run_close(&r->saved, &r->saved_file);
+}
+
+// ---- control
+
+// obsim control: one scene that a program leads step by step (include/ob/control.h).
+
+static int carry_out(ob_led_run *r)
+{
+	ob_error e;
+	bool fine = ob_led_run_start(r, &e);
+	if (fine) {
+		printf("%s waits as universe \"%s\" for a program to control it.\n", r->scene->title,
+		       ob_universe_name(ob_host_universe(r->host)));
+		fflush(stdout);
+		fine = ob_led_run_go_on(r, &e);
+	}
+	if (fine)
+		return OB_EXIT_OK;
+	ob_control_end(r->control, e.text);
+	return ob_command_fail(r->host && ob_host_broke_invariant(r->host) ? OB_EXIT_BROKEN : OB_EXIT_FAILED, e.text);
+}
+
+int ob_command_control(const ob_arguments *a)
+{
+	ob_led_run r;
+	ob_error e;
+	if (!ob_led_run_load(&r, a, false, &e)) {
+		ob_led_run_finish(&r);
+		return ob_command_fail(OB_EXIT_USAGE, e.text);
+	}
+	signal(SIGPIPE, SIG_IGN);
+	ob_interrupt_watch(); // before there is anything to clean up after Ctrl-C
+	const int code = carry_out(&r);
+	ob_led_run_finish(&r);
+	ob_interrupt_release();
+	return code;
+}
+
+// ---- save
+
+bool ob_save_led_run(const ob_run_request *r, const ob_scene *s, ob_host *h, const char *path, ob_error *e)
+{
+	ob_checkpoint_file f = { 0 };
+	ob_saved_run now = { .scene = r->scene,
+			     .text = s->text,
+			     .text_size = s->text_size,
+			     .options = r->scene_options,
+			     .duration = r->duration,
+			     .settings = r->run };
+	now.settings.timed = now.settings.freezes = now.settings.budget = now.settings.verify = 0;
+	now.settings.fault = (ob_fault_plan){ 0 };
+	bool fine = !r->run.monolith || ob_fail(e, "the one ODE world cannot be saved: take object simulators");
+	fine = fine && ob_output_fits("save", path, 0, e);
+	fine = fine && ob_saved_run_make(&now, &f, h, ob_version_words, e);
+	if (fine) {
+		ob_checkpoint_seal(&f);
+		fine = ob_checkpoint_write(&f, path, e);
+	}
+	ob_checkpoint_finish(&f);
+	return fine;
 }

@@ -36,4 +36,11 @@ bool ob_led_run_start(ob_led_run *r, ob_error *e);
 bool ob_led_run_go_on(ob_led_run *r, ob_error *e);
 void ob_led_run_finish(ob_led_run *r);
 
+// ---- save
+
+// Saves a run that a program or visitors lead as a checkpoint file, from which obsim run --resume goes on.
+
+// Between a wait and the next go; the request is resolved, the scene its own. false and e: nothing is written.
+bool ob_save_led_run(const ob_run_request *r, const ob_scene *s, ob_host *h, const char *path, ob_error *e);
+
 #endif

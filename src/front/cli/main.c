@@ -24,12 +24,6 @@ static const struct {
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
-int ob_command_fail(int code, const char *text)
-{
-	fprintf(stderr, "obsim: %s\n", text);
-	return code;
-}
-
 static int find(const char *name)
 {
 	for (int i = 0; i < COMMANDS; i++) {

@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "base/spelling.h"
+#include "cli/command.h"
 #include "cli/output.h"
 #include "host/death.h"
 #include "measure/colouring.h"
@@ -463,4 +464,10 @@ void ob_options_overview(FILE *f)
 	      "  obsim --version                        Version, commit and libraries.\n\n"
 	      "Try: obsim run falling_boxes -D n=100\n",
 	      f);
+}
+
+int ob_command_fail(int code, const char *text)
+{
+	fprintf(stderr, "obsim: %s\n", text);
+	return code;
 }

@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "cli/quantity.h"
 #include "cli/version.h"
-#include "experiment/words.h"
+#include "experiment/table.h"
 #include "paper/claims.h"
 #include "paper/paper.h"
 #include "ranks/ranks.h"

@@ -86,7 +86,7 @@ bool ob_request_read_replay(ob_replay_request *r, const ob_arguments *a, ob_erro
 // false and e when no camera has the requested name, or a frame is due after the run's duration (s).
 bool ob_request_check_frames(const ob_frames_request *f, const ob_scene *s, double duration, ob_error *e);
 
-// The parts of reading and resolving that free running adds (free_request.c).
+// The parts of reading and resolving that free running adds.
 bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e);
 bool ob_free_request_resolve(ob_run_request *r, const ob_scene *s, ob_error *e);
 

@@ -1,6 +1,5 @@
 // obsim serve: one scene that runs while people view and change it in their browsers.
-#include "serve/serve.h"
-
+#include <inttypes.h>
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -14,13 +13,128 @@
 #include "cli/observe.h"
 #include "cli/quantity.h"
 #include "cli/request.h"
-#include "cli/rerun.h"
-#include "cli/save.h"
+#include "cli/led_run.h"
 #include "cli/version.h"
 #include "measure/measure.h"
 #include "record/record.h"
 #include "serve/facts.h"
 #include "serve/film.h"
+#include "serve/serve.h"
+
+// ---- rerun
+
+// Logs of requests (host/request_log.h): their heads, states, and the run that carries them out again.
+
+enum { STATE_EVERY = 10 }; // steps
+
+// Returns the head of a log of this run. spare: slots for objects added on request.
+static ob_request_log_head rerun_head(const ob_run_request *r, const ob_scene *s, uint32_t spare)
+{
+	ob_request_log_head head = {
+		.run = r->run, .seed = s->seed, .objects = s->objects, .spare = spare, .on_death = r->on_death
+	};
+	head.run.fault = (ob_fault_plan){ 0 };
+	head.run.timed = head.run.verify = 0;
+	return head;
+}
+
+static bool hash_of(const ob_host *h, uint64_t *hash, ob_error *e)
+{
+	ob_snapshot now = { 0 };
+	const bool fine = ob_snapshot_take(&now, ob_host_universe(h), 0, e);
+	if (fine)
+		*hash = ob_measure_hash(&now);
+	ob_snapshot_finish(&now);
+	return fine;
+}
+
+// Logs the state if step *next has come, and advances *next. The universe stands still at a step boundary. log NULL:
+// does nothing.
+static void rerun_log_state(ob_request_log *log, const ob_host *h, uint64_t *next)
+{
+	const uint64_t step = ob_step_count(ob_host_universe(h));
+	uint64_t hash;
+	ob_error e;
+	if (log && step >= *next && hash_of(h, &hash, &e)) {
+		*next = step + STATE_EVERY;
+		ob_request_log_state(log, step, hash);
+	}
+}
+
+// Runs from state to state of the log. false and e: the run failed, or reached a different state.
+static bool compare_states(ob_host *h, const ob_logged_requests *l, ob_error *e)
+{
+	uint64_t hash = 0;
+	ob_host_go(h, 0);
+	if (!ob_host_wait(h, e))
+		return false;
+	for (uint32_t i = 0; i < l->states; i++) {
+		ob_host_go(h, l->state[i].step);
+		if (!ob_host_wait(h, e) || !hash_of(h, &hash, e))
+			return false;
+		if (hash != l->state[i].hash)
+			return ob_fail(e, "step %" PRIu64 ": state %016" PRIx64 ", the log has %016" PRIx64,
+				       l->state[i].step, hash, l->state[i].hash);
+	}
+	printf("%u requests carried out again, %u objects frozen; %u states equal those of the log, the last "
+	       "%016" PRIx64 " after step %" PRIu64 "\n",
+	       l->requests, l->freezes, l->states, hash, l->states ? l->state[l->states - 1].step : 0);
+	return true;
+}
+
+// Refuses options without effect: a replay ends with the log, and writes no files.
+static bool check_options(const ob_arguments *a, ob_error *e)
+{
+	const uint64_t useless = OB_BIT(OB_OPTION_DURATION) | OB_BIT(OB_OPTION_PICTURES) | OB_BIT(OB_OPTION_RECORD) |
+				 OB_BIT(OB_OPTION_SERIES) | OB_BIT(OB_OPTION_JSON) | OB_BIT(OB_OPTION_REPORT) |
+				 OB_BIT(OB_OPTION_TRACE) | OB_BIT(OB_OPTION_EXPLAIN) | OB_BIT(OB_OPTION_RESUME) |
+				 OB_BIT(OB_OPTION_CHECKPOINT) | OB_BIT(OB_OPTION_ON_DEATH);
+	return ob_options_refuse(a, useless, 0,
+				 ": --replay-requests does as the log says, and writes nothing; leave it away", e);
+}
+
+static bool prepare(const ob_arguments *a, ob_run_request *q, ob_scene **scene, ob_logged_requests *l, ob_error *e)
+{
+	const char *path = a->value[OB_OPTION_REPLAY_REQUESTS];
+	if (!check_options(a, e) || !ob_request_read(q, a, e) || !ob_request_log_read(l, path, e))
+		return false;
+	*scene = ob_scene_load(q->scene, &q->scene_options, e);
+	if (!*scene || !ob_request_resolve(q, *scene, e))
+		return false;
+	q->on_death = l->head.on_death <= OB_ON_DEATH_KEEP ? (ob_on_death)l->head.on_death : q->on_death;
+	const ob_request_log_head own = rerun_head(q, *scene, l->head.spare);
+	return memcmp(&own, &l->head, sizeof own) == 0 ||
+	       ob_fail(e, "%s: it is of another scene, seed, -D or settings: give those of the run that was logged",
+		       path);
+}
+
+int ob_command_rerun(const ob_arguments *a)
+{
+	ob_run_request q = { 0 };
+	ob_logged_requests l = { 0 };
+	ob_scene *scene = NULL;
+	ob_error e;
+	int code = OB_EXIT_OK;
+	if (!prepare(a, &q, &scene, &l, &e)) {
+		code = ob_command_fail(OB_EXIT_USAGE, e.text);
+	} else {
+		ob_host_config config = ob_request_host(&q);
+		config.spare = l.head.spare;
+		config.replay = &l;
+		ob_interrupt_watch();
+		ob_host *h = ob_host_start(scene, &config, &e);
+		if (!h || !compare_states(h, &l, &e))
+			code = ob_command_fail(h && ob_host_broke_invariant(h) ? OB_EXIT_BROKEN : OB_EXIT_FAILED,
+					       e.text);
+		ob_host_stop(h);
+		ob_interrupt_release();
+	}
+	ob_logged_requests_finish(&l);
+	ob_scene_free(scene);
+	return code;
+}
+
+// ---- serve
 
 static const double patience = .05; // s, in which requests are taken while no step is due
 static const double go_time = .02; // s that the universe runs between checks if it cannot keep its pace
@@ -268,7 +382,7 @@ static bool live(serving *s, ob_error *e)
 	ob_host_go(s->host, 0);
 	while (ob_host_wait(s->host, e) && record(s, e)) {
 		double took = ob_clock_wall() - began;
-		ob_rerun_log_state(s->q.log, s->host, &next_state);
+		rerun_log_state(s->q.log, s->host, &next_state);
 		const bool wished = ob_host_take_wish(s->host, &wish);
 		if (wished && wish.kind == OB_REQUEST_SAVE) {
 			save(s, &wish);
@@ -377,7 +491,7 @@ int ob_command_serve(const ob_arguments *a)
 	signal(SIGPIPE, SIG_IGN);
 	ob_interrupt_watch(); // before there is anything to clean up after Ctrl-C
 	const char *path = a->value[OB_OPTION_LOG_REQUESTS];
-	const ob_request_log_head head = ob_rerun_head(&s.q.run, s.scene, s.q.room);
+	const ob_request_log_head head = rerun_head(&s.q.run, s.scene, s.q.room);
 	s.q.log = path ? ob_request_log_create(path, &head, &e) : NULL;
 	ob_pace_begin(&pace, s.q.run.pace, s.q.paused);
 	int code = (!path || s.q.log) && start(&s, &e) ? carry_out(&s) : ob_command_fail(OB_EXIT_FAILED, e.text);

@@ -8,7 +8,5 @@
 // Path of a scene: the file with this name, or the scene of this name, or of scenes/NAME.lua or scenes/lab/NAME.lua, that comes with obsim; NULL for
 // NULL. Valid until the next call of this thread.
 const char *ob_shipped_find(const char *name);
-// Finds their folder. false: it is not beside the program.
-bool ob_shipped_folder(char path[PATH_MAX]);
 
 #endif

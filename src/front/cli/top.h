@@ -1,4 +1,4 @@
-// Sample of a universe at one instant with the rates since the one before (top_sample.c), and its lines of text
+// Sample of a universe at one instant with the rates since the one before (top.c), and its lines of text
 // (top_view.c).
 #ifndef OB_CLI_TOP_H
 #define OB_CLI_TOP_H

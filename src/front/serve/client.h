@@ -4,7 +4,8 @@
 
 #include <libwebsockets.h>
 
-#include "host/role.h"
+#include "host/host.h"
+#include "host/request_table.h"
 #include "serve/command.h"
 #include "serve/message.h"
 
@@ -57,5 +58,16 @@ void ob_client_queue_clear(ob_client_queue *q);
 bool ob_client_write(ob_client *v);
 // Takes one of "rate" tokens a second; false: too many.
 bool ob_allowance_take(ob_allowance *a, double now, double rate);
+
+// ---- avatar
+
+// Avatars: objects that the scene's template (avatar = true) makes for viewers, one for each that may take part. The server's
+// thread.
+
+// Requests an avatar for a new viewer, at a free place near the template's. Scenes without avatars: nothing.
+void ob_avatar_ask(ob_host *h, const ob_scene *scene, const ob_client *c);
+// Finds each viewer's avatar, requests those that are missing, and removes those whose viewer has gone. Calls found for
+// viewers whose avatar is another than before.
+void ob_avatars_update(ob_host *h, const ob_scene *scene, ob_client *clients, void (*found)(ob_client *c));
 
 #endif

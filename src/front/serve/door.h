@@ -17,6 +17,7 @@
 #include <libwebsockets.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 enum { // s
 	OB_DOOR_REQUEST = 5,
@@ -47,5 +48,21 @@ void ob_door_move(struct lws *wsi, ob_door_state state, double now);
 void ob_door_leave(ob_door *d, struct lws *wsi);
 // Closes the connections whose deadline has passed.
 void ob_door_look(ob_door *d, double now);
+
+// ---- peer
+
+// User of the program at the other end of a connection on a loopback, by the kernel's tables of connections.
+
+// One end of a connection: an IPv6 address, or IPv4 as ::ffff:a.b.c.d, in words as they lie in memory; and its port.
+typedef struct ob_peer_end {
+	uint32_t word[4];
+	unsigned port;
+} ob_peer_end;
+
+// True if the peer of a TCP socket is a program of the same user, or of root. Not across machines. Any thread.
+bool ob_peer_is_ours(int fd);
+// Finds the user of a socket that is bound to `own` and connected to `other` in a table as /proc/net/tcp or tcp6. A socket
+// that its program has closed stands there with inode 0, and as root's: it is nobody's. false: there is none.
+bool ob_peer_find_user(FILE *table, const ob_peer_end *own, const ob_peer_end *other, unsigned *user);
 
 #endif

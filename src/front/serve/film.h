@@ -24,4 +24,14 @@
 // errors. NULL and e: unreadable, too long for that time or for a browser, or out of memory.
 ob_message *ob_film_make(ob_recording *r, const char *path, double seconds, ob_error *e);
 
+// ---- film page
+
+// The viewer's page for a film (film.h). Pure; any thread.
+
+// The page of a server, which serves scripts, style and shaders, too, and the film as "recording".
+ob_message *ob_film_page_served(void);
+// The page with all of these in it, without a server. film: NULL: a page into which a viewer puts its own record.
+// NULL: out of memory.
+ob_message *ob_film_page_whole(const ob_message *film);
+
 #endif

@@ -13,7 +13,7 @@
 // Access: on a loopback address, pages of this server alone, and programs of this machine; on any other address,
 // holders of a token. A page of another origin is refused, even with a name of its own for this address.
 //
-// Roles (host/role.h): on a loopback, programs of the same user operate, and others take part (peer.h); elsewhere each
+// Roles (host/request_table.h): on a loopback, programs of the same user operate, and others take part (peer.h); elsewhere each
 // role has a token. If look_only is set, all visitors watch.
 //
 // For a film there is no universe: the server serves only pages, and the film to holders of the token.
@@ -24,7 +24,7 @@
 
 #include "host/host.h"
 #include "host/pace.h"
-#include "host/role.h"
+#include "host/request_table.h"
 #include "serve/message.h"
 
 typedef struct ob_listen {

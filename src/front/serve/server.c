@@ -14,16 +14,14 @@
 #include "base/hash.h"
 #include "base/interrupt.h"
 #include "host/joining.h"
-#include "serve/avatar.h"
 #include "serve/client.h"
 #include "serve/door.h"
 #include "serve/facts.h"
 #include "serve/feed.h"
-#include "serve/film_page.h"
+#include "serve/film.h"
 #include "serve/foxglove.h"
 #include "serve/http.h"
 #include "serve/part.h"
-#include "serve/peer.h"
 #include "table/free.h"
 
 static const double interval = 1. / 60; // s, between two reads of the universe

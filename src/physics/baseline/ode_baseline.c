@@ -7,7 +7,6 @@
 #include <ob/motion.h>
 
 #include "base/allocate.h"
-#include "exchange/touches.h"
 #include "ode/ode_body.h"
 #include "ode/ode_world.h"
 #include "exchange/results.h"

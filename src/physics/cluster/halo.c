@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cluster/digest.h"
+#include "cluster/peers.h"
 #include "schedule/pair_checks.h"
 #include "table/home.h"
 

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cluster/digest.h"
 #include "elementary/elementary.h"
 #include "schedule/calendar.h"
 #include "table/home.h"

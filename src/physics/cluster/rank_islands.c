@@ -6,7 +6,6 @@
 #include "schedule/calendar.h"
 #include "schedule/involved.h"
 #include "schedule/pair_checks.h"
-#include "schedule/work.h"
 #include "table/forest.h"
 #include "table/home.h"
 

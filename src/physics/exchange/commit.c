@@ -7,7 +7,6 @@
 
 #include "schedule/calendar.h"
 #include "schedule/pair_checks.h"
-#include "schedule/work.h"
 #include "table/home.h"
 #include "table/layout.h"
 

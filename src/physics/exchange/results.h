@@ -5,6 +5,7 @@
 
 #include "solver/solver.h"
 #include "table/outbox.h"
+#include "table/table.h"
 
 // True if all values are numbers of plausible size: below 1e15 m, m/s, rad/s.
 bool ob_state_is_sane(const ob_state *s);
@@ -36,5 +37,17 @@ void ob_commit_neighbours(ob_universe *u, uint32_t id, uint32_t neighbours, cons
 // True if the island's leader leaves the object's motion in ob_step_data.result, not in its slot: with a worker per
 // object.
 bool ob_is_left_in_result(const ob_universe *u, uint32_t id);
+
+// ---- touches
+
+// Contacts that begin in a step, noted for the scripts of their bodies: on_contact is called before the next step
+// (step/scripts.h). The solver of a body's island notes them (results.h), or the one ODE world.
+
+// True if the script of a member receives its contacts.
+bool ob_touches_are_felt(const ob_universe *u, const ob_island *is);
+// Forgets the touches noted in an earlier attempt to solve the island.
+void ob_touches_begin(ob_universe *u, const ob_island *is);
+// Notes that two objects began to touch at a point (m), or adds to their normal impulse (N s).
+void ob_touches_note(ob_universe *u, uint32_t a, uint32_t b, double impulse, ob_vec3 point);
 
 #endif

@@ -3,6 +3,8 @@
 #ifndef OB_ODE_BODY_H
 #define OB_ODE_BODY_H
 
+#include <ode/ode.h>
+
 #include <ob/motion.h>
 
 // Initialises ODE; call before all other functions, once per process (after fork in a child). Idempotent, thread-safe.
@@ -36,5 +38,14 @@ void ob_ode_body_set(ob_ode_body *b, const ob_state *s);
 // m s, world frame, about the centre). Both impulses are spread evenly over h. Returns false if ODE gave up; the state
 // is then unchanged.
 bool ob_ode_body_step(ob_ode_body *b, ob_state *s, ob_vec3 j, ob_vec3 l, double h);
+
+// ---- ode geom
+
+// ODE geometries of our shapes. Internal to the module.
+
+// Creates a geometry. space may be 0; returns NULL for a shape that is none of ODE's.
+dGeomID ob_ode_geom_create(dSpaceID space, ob_shape shape, ob_vec3 size);
+// Places a geometry without a body (static objects, single tests).
+void ob_ode_geom_place(dGeomID g, ob_pose pose);
 
 #endif

@@ -5,7 +5,6 @@
 #include "base/allocate.h"
 #include "base/cpu.h"
 #include "ode/ode_body.h"
-#include "ode/ode_geom.h"
 #include "ode/ode_joint.h"
 
 // ---- contacts of axis-aligned boxes

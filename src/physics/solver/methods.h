@@ -3,7 +3,7 @@
 //
 //   neighbours as ghosts, or seen late    ghost.h
 //   boxes in place of shapes              boxes.h
-//   ODE's integrator                      ode_bodies.h; for bodies that touch nothing step/ode_flight.h
+//   ODE's integrator                      ode_bodies.h; for bodies that touch nothing step/worker.c
 #ifndef OB_SOLVER_METHODS_H
 #define OB_SOLVER_METHODS_H
 

@@ -2,7 +2,7 @@
 
 #include "contact/impact.h"
 #include "contact/manifold.h"
-#include "exchange/touches.h"
+#include "exchange/results.h"
 #include "motion/flight.h"
 #include "solver/narrowphase.h"
 #include "step/budget.h"

@@ -12,7 +12,7 @@
 #include "motion/drift.h"
 #include "shape/shape.h"
 #include "solver/relative_speed.h"
-#include "step/now.h"
+#include "step/publish.h"
 
 // ---- spatial index
 

@@ -1,6 +1,6 @@
 #include "step/budget.h"
 
-#include "schedule/work.h"
+#include "schedule/calendar.h"
 #include "table/outbox.h"
 
 void ob_budget_begin_share(ob_sim *s, uint32_t object)

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "base/allocate.h"
-#include "schedule/work.h"
+#include "schedule/calendar.h"
 #include "step/crowd.h"
 #include "step/islands.h"
 #include "step/sim.h"

@@ -4,7 +4,6 @@
 
 #include "schedule/calendar.h"
 #include "schedule/pair_checks.h"
-#include "schedule/work.h"
 #include "step/pairs.h"
 #include "step/prefetch.h"
 #include "step/sort_ids.h"

@@ -12,7 +12,7 @@
 #include "step/broadphase.h"
 #include "step/budget.h"
 #include "step/flight.h"
-#include "step/now.h"
+#include "step/publish.h"
 #include "step/pairs.h"
 #include "step/prefetch.h"
 #include "step/terrain.h"

@@ -10,7 +10,7 @@
 #include "schedule/pair_checks.h"
 #include "shape/shape.h"
 #include "step/broadphase.h"
-#include "step/now.h"
+#include "step/publish.h"
 #include "step/prefetch.h"
 #include "step/sort_ids.h"
 #include "step/terrain.h"

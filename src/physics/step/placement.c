@@ -9,7 +9,7 @@
 #include "solver/solver.h"
 #include "step/broadphase.h"
 #include "step/crowd.h"
-#include "step/now.h"
+#include "step/publish.h"
 #include "step/pairs.h"
 #include "step/sim.h"
 #include "table/home.h"

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "step/state.h"
+#include "table/table.h"
 
 // Counts the worker's time for this section from now on.
 void ob_profile_change(ob_sim *s, ob_profile_section section);
@@ -55,5 +56,31 @@ void ob_span_chunk_end(ob_sim *s, uint32_t chunk);
 // Begins an island's span. true: it is shown in detail, and ob_span_island_end ends it. first: it is its chunk's first.
 bool ob_span_island_begin(ob_sim *s, uint32_t i, bool first);
 void ob_span_island_end(ob_sim *s, uint32_t i);
+
+// ---- critical path
+
+// Critical path of more workers than there are: duration of steps with OB_SIMULATED_WORKERS workers, each on a core of
+// its own, with wake-ups that cost nothing. Timed runs report it, with any number of workers.
+//
+//   phase       tasks as they were measured (CPU of each)         serial part
+//   ISLANDS     [...............][....][...][..][.][.][.] ..       [index, pairs, islands]
+//                      |           |     |    claimed in turns: each by the first free worker
+//   worker 0    |---------------|                                  |
+//   worker 1    |----||---||--| ..                                 | adds up as it is
+//   ..                                                             |
+//
+// A task is the unit that a worker claims. In ISLANDS it is a chunk, whose size depends on the number of workers:
+// islands are measured, and grouped into chunks here as island_builder.c does. Work beside tasks is added: as much as
+// the busiest worker did of it in the phase.
+//
+// Not modelled: memory and caches shared by so many workers, and the time of a wake-up. The result is the bound set by
+// the division of the work.
+//
+// Contained simulators do not report their tasks, and runs with a worker per object have none: neither has a critical
+// path.
+
+// Closes a timed phase and adds its critical path. The scheduling worker calls it at the phase's end, before anything
+// else. per_worker: number of tasks per additional worker in such a phase; 0: all workers take part.
+void ob_critical_path_close(ob_universe *u, ob_phase phase, uint32_t per_worker);
 
 #endif

@@ -10,7 +10,7 @@
 #include "schedule/pair_checks.h"
 #include "step/broadphase.h"
 #include "step/budget.h"
-#include "step/now.h"
+#include "step/publish.h"
 #include "step/pairs.h"
 #include "step/profile.h"
 

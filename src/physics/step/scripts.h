@@ -1,7 +1,7 @@
 // The phase of the step in which objects' scripts run, before anything moves.
 //
 // Scripts read the state after the step before. Their requests are carried out when all of them have run, in the order
-// of their cells (table/script_data.h), so the assignment to workers does not matter. First come forces, pushes and
+// of their cells (table/step_data.h), so the assignment to workers does not matter. First come forces, pushes and
 // colours of their own objects, then messages, which are received before the next step. Last are creations and
 // removals, which the host carries out at once, at a pause.
 #ifndef OB_STEP_SCRIPTS_H

@@ -18,7 +18,7 @@ ob_sim *ob_sim_create(ob_universe *u, uint32_t worker, ob_error *e); // in the w
 void ob_sim_destroy(ob_sim *s);
 
 // Runs the scripts of n objects, for this module, which has no interpreter: of one, or of up to OB_SCRIPT_BATCH that have the
-// same foreign code. turn, cell: data of the scripts (table/script_data.h), in the universe or in a copy. Returns the number
+// same foreign code. turn, cell: data of the scripts (table/step_data.h), in the universe or in a copy. Returns the number
 // of instructions of each, the same on any worker.
 typedef uint64_t (*ob_script_run)(void *runner, ob_script_turn *const *turn, ob_script_cell *const *cell, uint32_t n);
 void ob_sim_set_scripts(ob_sim *s, ob_script_run run, void *runner);

@@ -33,7 +33,7 @@ struct ob_sim {
 	ob_island_scratch scratch;
 	ob_terrain_part checked; // by a check of a pair with a terrain
 	ob_rotation_cache rotations;
-	struct ob_probe *verifier; // step/verify.h; NULL: the run is not verified
+	struct ob_probe *verifier; // step/islands.c; NULL: the run is not verified
 	struct ob_committer *committer; // NULL unless this is the arranger (commit.h)
 	ob_cluster *cluster; // the arranger's, of several ranks; else NULL
 	struct ob_ode_baseline *baseline; // NULL unless one ODE world holds all objects

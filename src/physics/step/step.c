@@ -51,7 +51,6 @@
 #include "sensor/sensor.h"
 #include "step/broadphase.h"
 #include "step/budget.h"
-#include "step/critical_path.h"
 #include "step/crowd.h"
 #include "step/fault.h"
 #include "step/invariants.h"

@@ -1,7 +1,7 @@
 // An FMU that runs: its library, and an instance of it that takes the state of one object after the other. The state lies
 // outside between two steps, as bytes; so any process can run any object, and none is missed.
 //
-// The library is foreign code. It runs in a process of its own (script/foreign_process.c), which is ended by a kill alone:
+// The library is foreign code. It runs in a process of its own (script/foreign.c), which is ended by a kill alone:
 // nothing is freed.
 //
 // Thread-safety: one thread.

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +14,6 @@
 #include "base/utf8.h"
 #include "host/accounting.h"
 #include "host/confine.h"
-#include "host/words.h"
 #include "script/foreign.h"
 
 enum { WORDS_MOST = 8 << 10 }; // bytes of an FMU's text that are handed on
@@ -191,4 +191,21 @@ void ob_foreign_kill_all(const ob_foreign_owner *o)
 {
 	for (uint32_t i = 0; i < o->processes; i++)
 		kill(o->process[i].pid, SIGKILL);
+}
+
+// ---- words
+
+void ob_words_hand_on(const char *text, size_t n)
+{
+	enum { PAGE = 4096 }; // a pipe that is ready takes so much
+	while (n > 0) {
+		struct pollfd p = { .fd = STDERR_FILENO, .events = POLLOUT };
+		if (poll(&p, 1, 0) <= 0 || p.revents & (POLLERR | POLLNVAL))
+			return;
+		const ssize_t written = write(STDERR_FILENO, text, n < PAGE ? n : PAGE);
+		if (written <= 0)
+			return;
+		text += written;
+		n -= (size_t)written;
+	}
 }

@@ -51,4 +51,11 @@ bool ob_foreign_take_words(ob_foreign_owner *o, pid_t pid, const char *text, siz
 void ob_foreign_watch(ob_foreign_owner *o);
 void ob_foreign_kill_all(const ob_foreign_owner *o);
 
+// ---- words
+
+// Text that child processes write on standard error, on its way to the host's.
+
+// Writes to standard error as much as it takes now, without blocking.
+void ob_words_hand_on(const char *text, size_t n);
+
 #endif

@@ -21,7 +21,6 @@
 #include "host/accounting.h"
 #include "host/confine.h"
 #include "host/foreign.h"
-#include "host/words.h"
 
 struct ob_fork_server {
 	pid_t pid;

@@ -17,7 +17,7 @@
 
 #include "host/death.h"
 #include "host/population.h"
-#include "host/role.h"
+#include "host/request_table.h"
 #include "host/script_log.h"
 #include "host/timeline.h"
 #include "ranks/ranks.h"
@@ -83,7 +83,7 @@ typedef struct ob_host_times {
 	double step_p50_s, step_p90_s, step_p99_s, step_max_s; // wall per step, pauses left out, to 1 %
 	double critical_s; // if timed: critical path of all steps: the longest worker in each phase, and scheduling (CPU)
 	double alone_s; // of that, scheduling
-	double simulated_s; // likewise, of OB_SIMULATED_WORKERS workers (step/critical_path.h); NaN: unmeasured
+	double simulated_s; // likewise, of OB_SIMULATED_WORKERS workers (step/profile.h); NaN: unmeasured
 	double elapsed_s; // from the first go that stepped to the last pause, pauses included
 	uint32_t deaths; // times that simulators died, stalled, or failed
 	uint32_t frozen; // objects that stay in place because of that

@@ -1,5 +1,5 @@
 // State of the host, shared by its files: host.c starts and ends a run, run.c leads it, supervisor.c watches the workers,
-// restart.c starts them again, usage.c and halt.c serve them all.
+// restart.c starts them again, accounting.c and halt.c serve them all.
 #ifndef OB_HOST_HOST_STATE_H
 #define OB_HOST_HOST_STATE_H
 
@@ -12,7 +12,7 @@
 #include "host/control.h"
 #include "host/host.h"
 #include "host/population.h"
-#include "host/snapshots.h"
+#include "host/restart.h"
 #include "host/spawn.h"
 #include "table/checkpoint.h"
 

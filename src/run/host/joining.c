@@ -9,7 +9,7 @@
 #include "free/free.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"
-#include "step/now.h"
+#include "step/publish.h"
 #include "step/sim.h"
 
 // ---- requests

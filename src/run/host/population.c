@@ -8,13 +8,13 @@
 #include "base/log.h"
 #include "exchange/results.h"
 #include "free/free.h"
-#include "host/journal.h"
+#include "host/request_log.h"
 #include "host/joining.h"
-#include "host/script_request.h"
+#include "host/script_log.h"
 #include "scene/object_limits.h"
 #include "scene/random.h"
 #include "shape/shape.h"
-#include "step/now.h"
+#include "step/publish.h"
 #include "step/sim.h"
 
 // An entry of the timetable.

@@ -11,7 +11,6 @@
 #include "host/pull.h"
 #include "host/request.h"
 #include "host/request_log.h"
-#include "host/request_queue.h"
 #include "host/roster.h"
 #include "scene/scene.h"
 #include "table/table.h"
@@ -51,7 +50,7 @@ void ob_kept_population_free(ob_kept_population *k); // NULL is allowed
 // pulls stay as they are now: some may have let go since, or have left.
 void ob_population_restore(ob_population *p, const ob_kept_population *k);
 // For a checkpoint in memory (table/checkpoint.h): keeps the state that is not in the universe, and puts it back. Later
-// changes by timetable, scripts and requests are repeated by a run that restarts there (host/journal.h). reached: number of
+// changes by timetable, scripts and requests are repeated by a run that restarts there (host/request_log.h). reached: number of
 // steps that were complete before the restart, and one more if it failed; new requests wait until as many are complete.
 bool ob_population_keep(ob_population *p); // false: out of memory
 void ob_population_put_back(ob_population *p, uint64_t reached);

@@ -8,7 +8,7 @@
 #include "base/number.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"
-#include "step/now.h"
+#include "step/publish.h"
 #include "step/sim.h"
 
 static const double hand_speed = 100; // m/s: the most at which a drag moves a body

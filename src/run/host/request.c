@@ -2,11 +2,13 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <urcu/wfcqueue.h>
 
 #include "base/number.h"
 #include "free/free.h"
 #include "host/host_state.h"
 #include "host/pace.h"
+#include "host/rcu_tsan.h"
 #include "host/request_table.h"
 #include "scene/object_limits.h"
 #include "shape/shape.h"

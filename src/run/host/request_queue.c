@@ -1,4 +1,4 @@
-#include "host/request_queue.h"
+#include "host/request.h"
 
 #include <stdlib.h>
 #include <urcu/wfcqueue.h>

@@ -3,7 +3,7 @@
 //   obsim send       push OBJECT X Y Z [POINT-X POINT-Y POINT-Z]                            src/front/cli/send.c
 //   the page         {"do": "push", "id": 3, "generation": 1, "force": [0, 0, 9]}           src/front/serve/command.c
 //   obsim control    OB_CONTROL_PUSH, and the numbers of the fields in a row (ob_change)    src/run/host/control.c
-//   scripts          posts of their objects                                                 src/run/host/script_request.c
+//   scripts          posts of their objects                                                 src/run/host/script_log.c
 //
 // Help, completions and the tables of docs/control.md follow from it. A new request is a row here, and a function that
 // carries it out (population.c for objects, request.c for all else).
@@ -12,9 +12,37 @@
 #ifndef OB_HOST_REQUEST_TABLE_H
 #define OB_HOST_REQUEST_TABLE_H
 
+#include <stdbool.h>
+
+#include <ob/error.h>
+
 #include "control/packet.h"
 #include "host/request.h"
-#include "host/role.h"
+
+// ---- role
+
+// Roles: permissions of visitors of a universe, whichever way the request comes: the socket of `obsim send` and of programs
+// that control a run, the page, or a script that talks to the server.
+//
+//   watch       reads: objects, motions, contacts, figures
+//   take part   also creates objects, removes those of its own, sends messages, drags and pushes
+//   operate     also pauses, edits, removes, kills simulators, and puts the universe back
+//
+// Users of the same name as the run's operate. The server decides for others (serve/serve.h); the socket refuses them.
+// Pure; any thread.
+
+typedef enum ob_role {
+	OB_ROLE_WATCH,
+	OB_ROLE_TAKE_PART,
+	OB_ROLE_OPERATE,
+	OB_ROLES
+} ob_role; // each includes those before
+
+const char *ob_role_name(ob_role role); // "watch", "take part", "operate"
+// False and e, for the visitor, if its role does not include the one needed.
+bool ob_role_check(ob_role role, ob_role needed, ob_error *e);
+
+// ---- request table
 
 // Way in which a field fills in its member of ob_request.
 typedef enum ob_request_type {

@@ -39,6 +39,7 @@
 #define OB_HOST_RESTART_H
 
 #include "host/host.h"
+#include "host/population.h"
 #include "table/checkpoint.h"
 
 // Prepares restarts. Without it, or with no memory for it, a request is a failure.
@@ -68,8 +69,34 @@ bool ob_restart_freeze(ob_host *h);
 // After a request: restarts all workers; they then stand at the gate, the universe at a pause. false: the run has failed,
 // or another worker died in the meantime, which is a request again.
 bool ob_restart(ob_host *h);
-// At a pause, without damage: goes on from a snapshot (host/snapshots.h). false: the run has failed, or is interrupted.
+// At a pause, without damage: goes on from a snapshot (host/restart.h). false: the run has failed, or is interrupted.
 bool ob_restart_restore(ob_host *h, const ob_checkpoint *c, const ob_kept_population *k);
 void ob_restart_finish(ob_host *h);
+
+// ---- snapshots
+
+// Snapshots of a run, in memory: its whole state at step boundaries, to which it can be put back, again and again. A
+// snapshot is a checkpoint as restarts use it (restart.h), kept until it is forgotten.
+//
+// Thread-safety: the thread that goes and waits, between a wait and the next go.
+
+typedef struct ob_host ob_host;
+
+typedef struct ob_kept_snapshot {
+	ob_checkpoint *universe; // NULL: forgotten
+	ob_kept_population *population;
+} ob_kept_snapshot;
+
+typedef struct ob_snapshots {
+	ob_kept_snapshot *at; // [count]
+	size_t count;
+} ob_snapshots;
+
+// Takes a snapshot and returns its number, from 1; 0 and e: no memory, or a monolith, whose state ODE does not expose.
+uint64_t ob_host_keep_snapshot(ob_host *h, ob_error *e);
+// Puts the run back. All workers are started again. false and e: there is no such snapshot, or the run has failed.
+bool ob_host_restore_snapshot(ob_host *h, uint64_t number, ob_error *e);
+bool ob_host_forget_snapshot(ob_host *h, uint64_t number, ob_error *e);
+void ob_snapshots_finish(ob_snapshots *s);
 
 #endif

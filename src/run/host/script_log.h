@@ -4,6 +4,7 @@
 #ifndef OB_HOST_SCRIPT_LOG_H
 #define OB_HOST_SCRIPT_LOG_H
 
+#include "host/request.h"
 #include "table/table.h"
 
 // Error that has stopped the script of an object.
@@ -28,5 +29,14 @@ void ob_script_log_look(ob_script_log *l, const ob_universe *u);
 // Writes the first errors of the run, by step and object, "most" of them at most; returns their number.
 uint32_t ob_script_log_first(ob_script_log *l, ob_script_error *out, uint32_t most);
 void ob_script_log_finish(ob_script_log *l);
+
+// ---- script request
+
+// Requests of scripts to the host, as they lie in a universe, which is not trusted. Thread-safety: the host's thread, at a pause.
+
+// Makes a request from a script's post to steer its object. false: it makes no sense.
+bool ob_script_request_read(const ob_script_post *post, ob_request *r);
+// Stops the script of a cell after an invalid request at this line, with an error that explains it.
+void ob_script_request_refuse(ob_universe *u, uint32_t cell, uint32_t line, const char *why);
 
 #endif

@@ -210,7 +210,7 @@ static const ob_field mesh_fields[] = {
 	F(scale, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e6),
 	STANDING,
 };
-#define STATE_BYTES 1024 // the universe's size for an object's state (table/script_data.h)
+#define STATE_BYTES 1024 // the universe's size for an object's state (table/step_data.h)
 
 static const body nothing = {
 	.normal = { 0, 0, 1 },

@@ -6,7 +6,7 @@
 #include "base/log.h"
 #include "scene/builder.h"
 #include "scene/sandbox.h"
-#include "settings/length.h"
+#include "settings/settings.h"
 
 typedef struct scene_fields {
 	const char *title;

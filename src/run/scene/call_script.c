@@ -12,7 +12,7 @@
 #include "scene/sandbox.h"
 #include "scene/text.h"
 
-enum { SCRIPTS_MAX = 64 }; // limit of a universe (table/script_data.h)
+enum { SCRIPTS_MAX = 64 }; // limit of a universe (table/step_data.h)
 
 static bool is_file(const char *text)
 {

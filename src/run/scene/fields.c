@@ -18,7 +18,6 @@
 #include "scene/scene.h"
 #include "scene/text.h"
 #include "scene/vector.h"
-#include "settings/length.h"
 #include "settings/settings.h"
 
 // Reader of one field, whose value is at the top of the stack.

@@ -31,7 +31,7 @@ typedef enum ob_field_kind {
 	OB_FIELD_TABLE, // bool: it is present; the caller reads its contents
 	OB_FIELD_FUNCTION, // bool: it is present; the caller calls it
 	OB_FIELD_POINTS, // ob_points from {{x, y, z}, ..}, each within low..high
-	OB_FIELD_LENGTH, // ob_length: a number within low..high (m), or text (settings/length.h)
+	OB_FIELD_LENGTH, // ob_length: a number within low..high (m), or text (settings/settings.h)
 	OB_FIELD_COLOUR, // float[4], linear and opaque, from {r, g, b [, 1]} or "#rrggbb[ff]" (sRGB)
 } ob_field_kind;
 

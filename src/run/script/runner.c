@@ -1,13 +1,13 @@
+#include "script/runner.h"
+
+#include <lauxlib.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <lauxlib.h>
-
 #include "base/spelling.h"
-#include "script/runner.h"
 
 static const char *const handler_names[OB_HANDLERS] = {
 	[OB_HANDLER_START] = "on_start",     [OB_HANDLER_STEP] = "on_step",   [OB_HANDLER_CONTACT] = "on_contact",

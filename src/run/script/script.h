@@ -2,7 +2,7 @@
 // has run, in the sandbox of scenes (scene/sandbox.h), with its own limits.
 //
 // An interpreter keeps no state between calls: values outside of functions are frozen once the text has been read, and
-// the state of an object lies in its cell of the universe (table/script_data.h). So any worker, also a new one, can run
+// the state of an object lies in its cell of the universe (table/step_data.h). So any worker, also a new one, can run
 // any object. A hundred thousand objects with one script need one interpreter per worker.
 //
 // A script that fails (an error, an endless loop, too much memory) is stopped, and its requests of this step are

@@ -5,6 +5,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include <ob/error.h>
+
 #include "base/utf8.h"
 
 static int notes = 1;
@@ -51,4 +53,18 @@ void ob_log_note(const char *format, ...)
 void ob_log_set_notes(int on)
 {
 	notes = on;
+}
+
+// ---- error
+
+int ob_fail(ob_error *e, const char *format, ...)
+{
+	if (e) {
+		va_list args;
+		va_start(args, format);
+		vsnprintf(e->text, sizeof e->text, format, args);
+		va_end(args);
+		ob_utf8_make_plain(e->text);
+	}
+	return 0;
 }

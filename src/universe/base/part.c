@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/own_file.h"
+#include "base/file.h"
 
 #ifdef __SANITIZE_ADDRESS__ // a sanitizer takes no such module
 #define OWN_FIRST RTLD_LOCAL

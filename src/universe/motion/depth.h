@@ -20,7 +20,7 @@ ob_solid ob_solid_of(ob_shape shape, ob_vec3 size, ob_pose pose, const ob_hull *
 // Depth (m); <= 0: no overlap, and its negative is a lower bound of the distance. Closed forms, exact to rounding, for
 // spheres, capsules, planes and boxes in any pair but two planes (-infinity), and for cylinders with spheres and
 // planes. Boxes use separating axes (Gottschalk, Lin and Manocha 1996). Hulls with all but cylinders have closed forms,
-// too (hull_depth.h). Cylinders with boxes, capsules, hulls and cylinders: ob_depth_search.
+// too (depth.c). Cylinders with boxes, capsules, hulls and cylinders: ob_depth_search.
 double ob_depth(const ob_solid *a, const ob_solid *b);
 
 // True if the depth of two such solids has no closed form, or one that costs as much as a search.

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include <ob/joint.h>
+
 #include "elementary/elementary.h"
 
 double ob_joint_turn(const ob_joint_axis *axis, ob_vec3 x, ob_vec3 first, ob_vec3 second)
@@ -62,4 +64,16 @@ bool ob_joint_value(const ob_joint_passport *j, const ob_state states[2], double
 	default:
 		return false;
 	}
+}
+
+// ---- joint kind
+
+const char *ob_joint_kind_name(uint32_t kind)
+{
+	static const char *const name[OB_JOINT_KINDS] = {
+		[OB_JOINT_BALL] = "ball",   [OB_JOINT_HINGE] = "hinge",         [OB_JOINT_SLIDER] = "slider",
+		[OB_JOINT_FIXED] = "fixed", [OB_JOINT_UNIVERSAL] = "universal", [OB_JOINT_DISTANCE] = "distance",
+		[OB_JOINT_APART] = "apart",
+	};
+	return kind < OB_JOINT_KINDS ? name[kind] : NULL;
 }

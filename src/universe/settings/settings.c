@@ -1,7 +1,9 @@
 #include "settings/settings.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/number.h"
@@ -271,4 +273,31 @@ const char *ob_setting_former(const char *name)
 		if (strcmp(renamed[i].now, name) == 0)
 			return renamed[i].former;
 	return NULL;
+}
+
+// ---- length
+
+bool ob_length_read(const char *text, ob_length *out)
+{
+	static const struct {
+		const char *name;
+		double metres;
+	} units[] = { { "", 1 }, { "m", 1 }, { "cm", 1e-2 }, { "mm", 1e-3 }, { "um", 1e-6 }, { "nm", 1e-9 } };
+	char *unit;
+	const bool hexadecimal = text[0] == '0' && tolower((unsigned char)text[1]) == 'x';
+	if (hexadecimal || (!isdigit((unsigned char)text[0]) && text[0] != '.'))
+		return false; // nor a sign, a blank, nan or inf
+	const double x = strtod(text, &unit);
+	if (unit == text || !isfinite(x))
+		return false;
+	unit += strspn(unit, " ");
+	*out = (ob_length){ .share = x / 100 };
+	if (strcmp(unit, "%") == 0)
+		return out->share > 0 && out->share <= 1;
+	for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+		if (strcmp(unit, units[i].name) == 0) {
+			*out = (ob_length){ .m = x * units[i].metres };
+			return true;
+		}
+	return false;
 }

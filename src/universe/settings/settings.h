@@ -107,7 +107,8 @@ typedef struct ob_run_settings {
 	uint32_t load; // > 0: each test of two axis-aligned boxes adds up 1 + 2 + .. + load
 	uint32_t freezes; // 1 = unsolvable bodies are frozen: budgets are per island; set by the host
 	uint32_t verify; // 1 = a sample of islands is solved finely besides, to know their errors
-	uint32_t budget; // > 0: most work of a step, or an island, in units of 2^15 (schedule/work.h); set by the host
+	uint32_t
+		budget; // > 0: most work of a step, or an island, in units of 2^15 (schedule/calendar.h); set by the host
 	ob_fault_plan fault;
 } ob_run_settings;
 
@@ -325,5 +326,18 @@ ob_setting_word ob_setting_option(ob_setting_id id);
 // for a former one. NULL: unchanged.
 const char *ob_setting_renamed(const char *former);
 const char *ob_setting_former(const char *name);
+
+// ---- length
+
+// Lengths as people write them, in scenes and on the command line alike. Pure; any thread.
+
+// One of the two is above 0: a length (m), or a share of another length. Neither: not set.
+typedef struct ob_length {
+	double m, share;
+} ob_length;
+
+// Reads a length with its unit, or in metres, or a share up to 100%. The range of a length is the caller's.
+bool ob_length_read(const char *text, ob_length *out);
+#define OB_LENGTH_FORMS "a length, as .5mm or .0005 (m), or a share above 0%, up to 100%, as .1%"
 
 #endif

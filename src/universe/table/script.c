@@ -1,4 +1,4 @@
-// Cells of scripted objects (script_data.h): allocated and freed by the host while the universe is paused.
+// Cells of scripted objects (step_data.h): allocated and freed by the host while the universe is paused.
 #include <string.h>
 
 #include "table/layout.h"

@@ -54,7 +54,7 @@ typedef struct ob_universe_setup {
 	bool traced; // with rings for a trace (trace.h)
 	bool checked; // shared data is checked after each step (step/invariants.h)
 	uint32_t harden; // bits, 1 << ob_harden_measure; with OUTBOX the last of the workers is the arranger (outbox.h)
-	uint32_t script_cells; // objects that can have a script at the same time (script_data.h); 0: none
+	uint32_t script_cells; // objects that can have a script at the same time (step_data.h); 0: none
 	uint32_t script_bytes; // size of the scripts' texts: an ob_script_directory, and the data that it refers to
 	const void *script_text;
 	uint32_t history; // versions of each motion that a free run keeps, at least 2; 0: the run is in lockstep
@@ -237,7 +237,7 @@ const ob_latency *ob_step_latency(const ob_universe *u);
 //
 // The same for OB_SIMULATED_WORKERS, with any actual number. Each worker records the time of each task (any worker; in
 // a phase with more tasks than objects some are combined), and its time outside of tasks. The scheduling code
-// distributes the tasks (step/critical_path.h): it takes the phase's tasks and the time beside them.
+// distributes the tasks (step/profile.h): it takes the phase's tasks and the time beside them.
 enum { OB_SIMULATED_WORKERS = 16 };
 void ob_task_took(ob_universe *u, uint32_t task, uint32_t ns);
 uint32_t ob_task_take_time(ob_universe *u, uint32_t task); // ns; resets it to 0
