@@ -3,7 +3,7 @@
 
 #include "little_world.h"
 
-#include "engine/joint_tree.h"
+#include "engine/world.h"
 
 #include "../check.h"
 

@@ -3,7 +3,7 @@
 
 #include "check.h"
 #include "lab/case.h"
-#include "lab/sweep.h"
+#include "lab/lab.h"
 
 static ob_run_settings settings[OB_SWEEP_SETTINGS];
 

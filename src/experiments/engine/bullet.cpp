@@ -22,7 +22,7 @@
 
 extern "C" {
 #include "engine/world.h"
-#include "engine/part.h"
+#include "engine/engines.h"
 }
 
 // Members are declared in the order of creation, and destroyed in reverse; bodies are deleted by hand before their

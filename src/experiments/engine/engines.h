@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "base/part.h"
 #include "engine/engine.h"
 
 extern const ob_engine_kind ob_engine_obsim; // obsim.c: one engine for each contact solver, and one with ODE's stepper
@@ -33,5 +34,19 @@ static inline bool ob_engine_joint_lasts(const ob_joint_passport *j, ob_error *e
 // ODE's data of a thread lives as long as any engine of that thread needs it.
 void ob_engine_ode_enter(void);
 void ob_engine_ode_leave(void);
+
+// ---- part
+
+// A part of obsim that calls another engine's library (base/part.h): obsim-bullet.so, obsim-mujoco.so. The functions are
+// those of ob_engine_kind; parts.c describes the engines to the program.
+
+typedef struct ob_engine_part {
+	ob_part_head head;
+	// variant: 0: the usual one
+	ob_engine *(*create)(const ob_world *w, const ob_run_settings *s, uint32_t variant, ob_error *e);
+	bool (*step)(ob_engine *p, ob_error *e);
+	void (*get)(const ob_engine *p, ob_state *state);
+	void (*destroy)(ob_engine *p);
+} ob_engine_part;
 
 #endif

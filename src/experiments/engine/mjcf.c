@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-#include "engine/joint_tree.h"
+#include "engine/world.h"
 #include "shape/shape.h"
 
 enum {

@@ -22,9 +22,9 @@
 
 #include <mujoco/mujoco.h>
 
-#include "engine/joint_tree.h"
+#include "engine/world.h"
 #include "engine/mjcf.h"
-#include "engine/part.h"
+#include "engine/engines.h"
 
 struct ob_engine {
 	mjModel *model;

@@ -3,8 +3,7 @@
 #include <string.h>
 
 #include "engine/engines.h"
-#include "engine/joint_tree.h"
-#include "engine/part.h"
+#include "engine/world.h"
 
 #define BULLET "libbullet3.24"
 #define MUJOCO "libmujoco2.2.2"

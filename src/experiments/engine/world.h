@@ -63,4 +63,17 @@ void ob_drive_finish(ob_drive *d);
 // State of body i at time t (s), with constant velocities that bring it within h (s) to its place at that time.
 ob_state ob_drive_step(const ob_drive *d, uint32_t i, double t, double h);
 
+// ---- joint tree
+
+// Spanning tree of a world's joints, for engines whose coordinates are the values of joints. Pure; any thread.
+
+// joint: [objects], the joint that holds each object to its parent; OB_JOINT_WORLD: it is static, or free. Distances, and joints
+// that would close a loop, are left out, balls before all others. false: no memory.
+bool ob_joint_tree(const ob_world *w, uint32_t *joint);
+// Object that holds this one by that joint: static, or the world (OB_JOINT_WORLD), or one that moves.
+static inline uint32_t ob_joint_other(const ob_joint_passport *j, uint32_t object)
+{
+	return j->object[j->object[0] == object];
+}
+
 #endif

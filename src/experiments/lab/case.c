@@ -109,7 +109,8 @@ static bool matches(const ob_case *c, const char *word)
 
 bool ob_list_add_cases(ob_case_list *l, const char *word)
 {
-	return add_chosen(l, is_of_file, word) || add_chosen(l, is_named, word) || add_chosen(l, is_row, word) || add_chosen(l, matches, word);
+	return add_chosen(l, is_of_file, word) || add_chosen(l, is_named, word) || add_chosen(l, is_row, word) ||
+	       add_chosen(l, matches, word);
 }
 
 static bool is_wanted(const ob_case *c, const char *quick)

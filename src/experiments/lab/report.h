@@ -7,7 +7,6 @@
 #include "experiment/page.h"
 #include "experiment/table.h"
 #include "lab/analysis.h"
-#include "lab/result.h"
 
 // Makes DIR, and writes report.html and the tables rows.md, conserved.md, audit.md, equal.md and equal.csv there. The same
 // results give the same files. One thread at a time per directory.

@@ -7,7 +7,7 @@
 #include "base/spelling.h"
 #include "cli/command.h"
 #include "cli/output.h"
-#include "host/death.h"
+#include "host/worker.h"
 #include "measure/colouring.h"
 
 enum {

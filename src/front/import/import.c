@@ -15,7 +15,6 @@
 #include "base/budget.h"
 #include "base/file.h"
 #include "base/utf8.h"
-#include "import/part.h"
 
 #define MUJOCO "libmujoco2.2.2"
 

@@ -7,8 +7,11 @@
 #define OB_IMPORT_IMPORT_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include <ob/error.h>
+
+#include "base/part.h"
 
 typedef struct ob_imported {
 	char *scene; // Lua
@@ -19,5 +22,15 @@ typedef struct ob_imported {
 // the file cannot be read, is no model, or needs more than the limits.
 bool ob_import(const char *path, const char *folder, ob_imported *out, ob_error *e);
 void ob_imported_finish(ob_imported *i);
+
+// ---- part
+
+// The part of obsim that calls MuJoCo's parser: obsim-import.so (base/part.h).
+
+typedef struct ob_import_part {
+	ob_part_head head;
+	// Writes the scene, and a line for each thing that is left out. A fault of the parser's ends the process.
+	bool (*convert)(const char *path, const char *folder, FILE *scene, FILE *omitted, ob_error *e);
+} ob_import_part;
 
 #endif

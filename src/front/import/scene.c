@@ -8,7 +8,7 @@
 #include "hull/hull.h"
 #include "import/load.h"
 #include "import/look.h"
-#include "import/part.h"
+#include "import/import.h"
 #include "import/solid.h"
 #include "motion/depth.h"
 #include "shape/shape.h"

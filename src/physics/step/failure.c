@@ -4,7 +4,7 @@
 
 #include "base/allocate.h"
 #include "schedule/calendar.h"
-#include "step/crowd.h"
+#include "step/budget.h"
 #include "step/islands.h"
 #include "step/sim.h"
 #include "table/free.h"

@@ -8,7 +8,7 @@
 #include "shape/shape.h"
 #include "solver/solver.h"
 #include "step/broadphase.h"
-#include "step/crowd.h"
+#include "step/budget.h"
 #include "step/publish.h"
 #include "step/pairs.h"
 #include "step/sim.h"

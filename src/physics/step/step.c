@@ -51,7 +51,6 @@
 #include "sensor/sensor.h"
 #include "step/broadphase.h"
 #include "step/budget.h"
-#include "step/crowd.h"
 #include "step/fault.h"
 #include "step/invariants.h"
 #include "step/island_builder.h"

@@ -15,7 +15,7 @@
 #ifndef OB_HOST_HOST_H
 #define OB_HOST_HOST_H
 
-#include "host/death.h"
+#include "host/worker.h"
 #include "host/population.h"
 #include "host/request_table.h"
 #include "host/script_log.h"

@@ -5,7 +5,7 @@
 #ifndef OB_HOST_TIMELINE_H
 #define OB_HOST_TIMELINE_H
 
-#include "host/death.h"
+#include "host/worker.h"
 #include "table/trace.h"
 
 typedef struct ob_timeline ob_timeline;

@@ -32,4 +32,54 @@ typedef struct ob_worker_end {
 	char words[OB_LAST_WORDS]; // "" = none; a thread has none of its own
 } ob_worker_end;
 
+// ---- death
+
+// Death of a simulator, or a failure that counts as one: worker, cause, step and last words. Plain data; any thread.
+
+// Policy for simulators that die, stall, or fail to solve their objects.
+typedef enum ob_on_death {
+	OB_ON_DEATH_RESTART, // all workers restart from the last checkpoint, and end in the same bits
+	OB_ON_DEATH_FREEZE, // same, and the dead simulator's objects stay in place; so does an island that fails
+	OB_ON_DEATH_ABORT, // the run ends
+	OB_ON_DEATH_KEEP, // as RESTART, but an island that fails is frozen: no object ends the run
+} ob_on_death;
+#define OB_ON_DEATH_NAMES "restart|freeze|abort|keep"
+
+// True if an object that cannot be solved (OB_DEATH_FAILURE) is frozen with its island; else it ends the universe.
+static inline bool ob_on_death_freezes_failed(ob_on_death policy)
+{
+	return policy == OB_ON_DEATH_FREEZE || policy == OB_ON_DEATH_KEEP;
+}
+
+typedef enum ob_death_cause {
+	OB_DEATH_SIGNAL,
+	OB_DEATH_EXIT,
+	OB_DEATH_STALL, // no step was completed for longer than the run's patience
+	OB_DEATH_DAMAGE, // it wrote invalid data
+	OB_DEATH_FAILURE, // no process has died: its objects cannot be solved (overworked, diverged, rejected by ODE)
+	OB_DEATH_CAUSES
+} ob_death_cause;
+#define OB_DEATH_CAUSE_NAMES "signal|exit|stall|damage|failure"
+
+#define OB_NO_WORKER UINT32_MAX
+
+typedef struct ob_death {
+	ob_death_cause cause;
+	uint32_t worker; // OB_NO_WORKER: unknown
+	int32_t pid; // 0: unknown
+	int32_t signal, code; // if the process has ended
+	uint64_t step; // step in which it died, from 1
+	uint64_t when; // ns, ob_clock_ns
+	uint32_t object; // object that it simulated or solved at the time; OB_NO_OBJECT
+	uint32_t frozen; // objects that stay in place because of it
+	char name[OB_NAME_MAX]; // name of the object
+	char text[400]; // all of this as a sentence, without a full stop
+	char words[OB_LAST_WORDS]; // its last words; "" = none
+} ob_death;
+
+// Fills in object and name: the object that its worker ran or solved in this universe.
+void ob_death_find_object(ob_death *d, const ob_universe *u);
+// Writes one line: the text, the object if known, and the last words.
+void ob_death_print(const ob_death *d, char *line, size_t size);
+
 #endif

@@ -9,7 +9,6 @@
 
 #include "motion/flight.h"
 #include "scene/object_limits.h"
-#include "script/foreign_data.h"
 #include "script/runner.h"
 
 _Static_assert(OB_FMU_MARK == OB_SCRIPT_FOREIGN, "the host knows FMUs by it");

@@ -10,6 +10,8 @@
 #ifndef OB_SCRIPT_FOREIGN_H
 #define OB_SCRIPT_FOREIGN_H
 
+#include "fmu/instance.h"
+#include "script/script.h"
 #include "table/desk.h"
 
 // The process at a desk, for good. model: its FMU in the universe's form, of "size" bytes. confine: called once the library is
@@ -17,5 +19,19 @@
 typedef bool ob_foreign_confine(void *with, ob_error *e);
 _Noreturn void ob_script_serve_foreign(const ob_desk *d, uint32_t number, const void *model, size_t size,
 				       ob_foreign_confine *confine, void *with);
+
+// ---- foreign data
+
+// Data at a desk of an FMU: one question of the worker, and its answer.
+
+typedef struct ob_foreign_data {
+	uint32_t turns; // by the worker
+	uint32_t loaded; // by the process: its number, once it has loaded the library
+	char why[OB_SCRIPT_ERROR_BYTES]; // by the process: failure of the turn after those that are done
+	ob_fmu_turn turn[OB_SCRIPT_BATCH];
+} ob_foreign_data;
+
+_Static_assert(sizeof(ob_foreign_data) <= OB_DESK_BYTES, "it lies at a desk");
+_Static_assert(OB_FMU_STATE_BYTES == (int)OB_SCRIPT_STATE_BYTES, "an object's state is its FMU's");
 
 #endif
