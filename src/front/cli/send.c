@@ -141,8 +141,7 @@ static bool print_contacts(sending *s, ob_error *e)
 	if (s->word[0] && !find_object(s, s->word[0], e))
 		return false;
 	while ((n = ob_universe_get_contacts(s->u, c, room)) > room) {
-		room = n + n / 4;
-		if (!OB_GROW(c, room)) {
+		if (!OB_RESERVE(c, n, room)) {
 			free(c);
 			return ob_fail(e, "contacts: out of memory");
 		}

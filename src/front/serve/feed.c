@@ -307,9 +307,8 @@ static bool read_roster(ob_feed *f, size_t *entries)
 		*entries = f->source.list(f->source.of, f->entry, f->entry_room);
 		if (*entries <= f->entry_room)
 			return true;
-		if (!OB_GROW(f->entry, 2 * *entries))
+		if (!OB_RESERVE(f->entry, *entries, f->entry_room))
 			return false;
-		f->entry_room = 2 * *entries;
 	}
 }
 
@@ -522,11 +521,9 @@ static ob_message *begin_aside(const ob_feed *f, unsigned first_byte, unsigned f
 ob_message *ob_feed_contacts(ob_feed *f)
 {
 	size_t n = 0;
-	while (f->u && (n = ob_universe_get_contacts(f->u, f->contact, f->contact_room)) > f->contact_room) {
-		if (!OB_GROW(f->contact, 2 * n))
+	while (f->u && (n = ob_universe_get_contacts(f->u, f->contact, f->contact_room)) > f->contact_room)
+		if (!OB_RESERVE(f->contact, n, f->contact_room))
 			return NULL;
-		f->contact_room = 2 * n;
-	}
 	ob_message *out = begin_aside(f, OB_FEED_CONTACTS, 0);
 	if (!out)
 		return NULL;

@@ -33,15 +33,9 @@ void ob_message_release(ob_message *m)
 
 static bool reserve(ob_message *m, size_t more)
 {
-	if (m->size + more <= m->room)
-		return true;
-	size_t room = 2 * (m->size + more) + 256;
-	if (!OB_GROW(m->bytes, room)) {
-		m->failed = true;
-		return false;
-	}
-	m->room = room;
-	return true;
+	const bool fine = OB_RESERVE(m->bytes, m->size + more, m->room);
+	m->failed |= !fine;
+	return fine;
 }
 
 void ob_message_put(ob_message *m, const void *bytes, size_t size)

@@ -334,13 +334,8 @@ static int by_pair(const void *x, const void *y)
 static void add_touching(struct touching_list *l, uint32_t a, uint32_t b)
 {
 	if (l->count == l->max) {
-		const size_t max = l->max ? 2 * l->max : 64;
-		struct touching *more = ob_allocate(max * sizeof *more);
-		if (l->count)
-			memcpy(more, l->pair, l->count * sizeof *more);
-		free(l->pair);
-		l->pair = more;
-		l->max = max;
+		l->max = l->max ? 2 * l->max : 64;
+		l->pair = ob_reallocate(l->pair, l->max * sizeof *l->pair);
 	}
 	l->pair[l->count++] = (struct touching){ a, b };
 }

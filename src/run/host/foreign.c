@@ -63,10 +63,8 @@ static void start(ob_foreign_owner *o, const ob_desk *d)
 {
 	int error = ENOMEM;
 	ob_foreign_process p = { .desk = *d, .foreign = ob_desk_foreign(o->u, d) };
-	if (o->processes == o->room && OB_GROW(o->process, 2 * o->room + 8))
-		o->room = 2 * o->room + 8;
 	p.number = ob_desk_open(d);
-	if (o->processes < o->room) {
+	if (OB_MAKE_ROOM(o->process, o->processes, o->room)) {
 		const pid_t self = getpid();
 		p.pid = fork();
 		if (p.pid == 0)

@@ -29,11 +29,8 @@ static bool reserve(ob_given_paths *p, uint32_t count, uint32_t points)
 {
 	if (count > OB_GIVEN_PATHS_MAX || points > OB_GIVEN_POINTS_MAX)
 		return false;
-	if (count > p->room) {
-		if (!OB_GROW(p->at, 2 * (size_t)count))
-			return false;
-		p->room = 2 * count;
-	}
+	if (!OB_RESERVE(p->at, count, p->room))
+		return false;
 	if (points > p->point_room) {
 		if (!OB_GROW(p->point, 2 * (size_t)points))
 			return false;

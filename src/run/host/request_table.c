@@ -10,6 +10,7 @@
 
 #include "base/number.h"
 #include "host/pull.h"
+#include "scene/object_limits.h"
 #include "shape/shape.h"
 
 #define FIELDS(...) \
@@ -42,9 +43,9 @@ const ob_request_row ob_request_rows[] = {
 		 { "velocity", NULL, "m/s", FIELD(REALS, 3, def.state.v), OPTIONAL = 0 },
 		 { "spin", NULL, "rad/s", FIELD(REALS, 3, def.state.w), OPTIONAL = 0 },
 		 { "colour", NULL, "linear RGB", FIELD(COLOUR, 4, def.passport.colour), OPTIONAL = .6 },
-		 { "friction", NULL, "", FIELD(REALS, 1, def.passport.friction), OPTIONAL = .5 },
+		 { "friction", NULL, "", FIELD(REALS, 1, def.passport.friction), OPTIONAL = OB_FRICTION_USUAL },
 		 { "restitution", NULL, "", FIELD(REALS, 1, def.passport.restitution), OPTIONAL = 0 },
-		 { "roughness", NULL, "", FIELD(FLOATS, 1, def.passport.roughness), OPTIONAL = .45 },
+		 { "roughness", NULL, "", FIELD(FLOATS, 1, def.passport.roughness), OPTIONAL = OB_ROUGHNESS_USUAL },
 		 { "metal", NULL, "", FIELD(FLOATS, 1, def.passport.metal), OPTIONAL = 0 },
 		 { "name", NULL, "", FIELD(TEXT, OB_NAME_MAX, def.passport.name), OPTIONAL = 0 }),
 	  OB_REQUEST_ADD, OB_TO_RUN, TAKE_PART, NONE },

@@ -460,15 +460,10 @@ static void write_waiting(ob_timeline *t, uint32_t ring)
 static void keep_waiting(ob_timeline *t, uint32_t ring, const ob_trace_event *e)
 {
 	ring_state *r = &t->ring[ring];
-	if (r->count == r->room) {
-		uint32_t room = r->room ? 2 * r->room : 16;
-		if (!OB_GROW(r->waiting, room)) {
-			t->lost++;
-			return;
-		}
-		r->room = room;
-	}
-	r->waiting[r->count++] = *e;
+	if (OB_MAKE_ROOM(r->waiting, r->count, r->room))
+		r->waiting[r->count++] = *e;
+	else
+		t->lost++;
 }
 
 static void put(ob_timeline *t, uint32_t ring, const ob_trace_event *e)

@@ -137,17 +137,6 @@ ob_wire *ob_wire_open(const ob_ranks *ranks, ob_error *e)
 	return NULL;
 }
 
-// Makes room for n bytes. Returns false if memory runs out.
-static bool make_room(char **room, size_t *max, size_t n)
-{
-	if (n <= *max)
-		return true;
-	if (!OB_GROW(*room, 2 * n))
-		return false;
-	*max = 2 * n;
-	return true;
-}
-
 static size_t in_first(size_t bytes)
 {
 	return bytes < OB_WIRE_FIRST ? bytes : OB_WIRE_FIRST;
@@ -170,7 +159,7 @@ static bool place_all(ob_wire *w)
 		w->rest_at[r] = w->at[r] + first;
 		w->rest[r] = bytes - first;
 	}
-	if (!make_room(&w->all, &w->max, w->at[w->ranks]))
+	if (!OB_RESERVE(w->all, w->at[w->ranks], w->max))
 		return false;
 	for (uint32_t r = 0; r < w->ranks; r++)
 		if (w->first[r].bytes)
@@ -201,7 +190,7 @@ static bool place_mine(ob_wire *w, const void *const *mine, const size_t *bytes)
 		w->mine_at[r] = n;
 		w->mine_rest[r] = bytes[r] - in_first(bytes[r]);
 	}
-	if (!make_room(&w->dealt, &w->dealt_max, n))
+	if (!OB_RESERVE(w->dealt, n, w->dealt_max))
 		return false;
 	for (uint32_t r = 0; r < w->ranks; r++)
 		if (w->mine_rest[r])
@@ -237,7 +226,7 @@ void ob_wire_send(ob_wire *w, uint32_t to, const void *bytes, size_t n)
 
 const void *ob_wire_receive(ob_wire *w, uint32_t *from, size_t *n)
 {
-	if (!w->module->probe(from, n) || !make_room(&w->all, &w->max, *n))
+	if (!w->module->probe(from, n) || !OB_RESERVE(w->all, *n, w->max))
 		return NULL;
 	w->module->receive(*from, w->all, *n);
 	return w->all;

@@ -14,13 +14,9 @@ static const double plane_size = 200; // m, of a plane as it is shown
 
 void ob_bytes_put(ob_bytes *b, const void *bytes, size_t n)
 {
-	if (b->size + n > b->room) {
-		const size_t room = 2 * (b->size + n);
-		if (!OB_GROW(b->bytes, room)) {
-			b->failed = true;
-			return;
-		}
-		b->room = room;
+	if (!OB_RESERVE(b->bytes, b->size + n, b->room)) {
+		b->failed = true;
+		return;
 	}
 	memcpy(b->bytes + b->size, bytes, n);
 	b->size += n;

@@ -201,18 +201,8 @@ static bool take_values(ob_recording *r, const ob_recorded_sample *s, double *to
 
 static bool make_room(ob_recording *r, uint32_t width)
 {
-	if (r->recents == r->recents_max) {
-		if (!OB_GROW(r->recent, 2 * r->recents_max + 16))
-			return false;
-		r->recents_max = 2 * r->recents_max + 16;
-	}
-	if (r->values + width > r->values_max) {
-		const size_t room = 2 * (r->values + width);
-		if (r->values + width > OB_SENSOR_NUMBERS_MAX || !OB_GROW(r->value, room))
-			return false;
-		r->values_max = room;
-	}
-	return true;
+	return OB_MAKE_ROOM(r->recent, r->recents, r->recents_max) && r->values + width <= OB_SENSOR_NUMBERS_MAX &&
+	       OB_RESERVE(r->value, r->values + width, r->values_max);
 }
 
 static bool take_sample(ob_recording *r, const ob_record_sample *row, ob_error *e)

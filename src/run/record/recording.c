@@ -710,12 +710,8 @@ static bool take_event(ob_recording *r, const ob_record_event *event, ob_error *
 
 static bool make_room_for_joints(ob_snapshot *s, uint32_t joints)
 {
-	if (joints > s->joints_max) {
-		const uint32_t room = joints > 2 * s->joints_max ? joints : 2 * s->joints_max;
-		if (!OB_GROW(s->joint, room))
-			return false;
-		s->joints_max = room;
-	}
+	if (!OB_RESERVE(s->joint, joints, s->joints_max))
+		return false;
 	for (; s->joints < joints; s->joints++)
 		memset(&s->joint[s->joints], 0, sizeof *s->joint);
 	return true;

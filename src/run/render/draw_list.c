@@ -542,23 +542,7 @@ static const double normal_length_px = 26;
 static bool reserve_segments(ob_overlay *o, size_t count)
 {
 	o->count = 0;
-	if (count <= o->capacity)
-		return true;
-	if (!OB_GROW(o->segment, count))
-		return false;
-	o->capacity = count;
-	return true;
-}
-
-// Makes room for one more.
-static bool extend_segments(ob_overlay *o)
-{
-	if (o->count < o->capacity)
-		return true;
-	if (!OB_GROW(o->segment, 2 * o->capacity + 64))
-		return false;
-	o->capacity = 2 * o->capacity + 64;
-	return true;
+	return OB_RESERVE(o->segment, count, o->capacity);
 }
 
 static void add_segment(ob_overlay *o, ob_vec3 from, ob_vec3 to, const float colour[4], float width)
@@ -677,7 +661,7 @@ bool ob_overlay_reads(ob_overlay *o, const ob_draw_list *b, const ob_view *v, co
 			const uint32_t x = s[i].body, y = s[k].body;
 			if ((!names(b, x, reader) && !names(b, y, reader)) || !reads(b, x, y))
 				continue;
-			fine = extend_segments(o);
+			fine = OB_MAKE_ROOM(o->segment, o->count, o->capacity);
 			if (fine)
 				add_segment(o, ob_sub(b->body[x].pose.p, v->eye), ob_sub(b->body[y].pose.p, v->eye),
 					    reading_colour, reading_px);

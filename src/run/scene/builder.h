@@ -91,6 +91,10 @@ uint8_t ob_builder_mesh(lua_State *L, ob_builder *b, const char *where, const ch
 void ob_builder_check_looks(lua_State *L, const ob_scene *s, const char *where);
 // Raises an error if so much more memory is beyond the budget (base/budget.h).
 void ob_builder_allow(lua_State *L, const char *where, uint64_t bytes);
+// Makes room for one more element than "count", of a list that scenes make long. Raises an error if there is none.
+#define OB_BUILDER_MAKE_ROOM(L, where, array, count, room) \
+	ob_builder_make_room(L, where, &(array), count, &(room), sizeof *(array))
+void ob_builder_make_room(lua_State *L, const char *where, void *array, uint32_t count, uint32_t *room, size_t size);
 // Number of the script in an object's field `script`, which is added if it is new. Raises an error if it is invalid.
 uint32_t ob_builder_script(lua_State *L, ob_builder *b, const char *where, const char *script);
 // Adds a script, and takes ownership of its text, from malloc; NULL: no memory. Raises an error if there are too many.

@@ -339,13 +339,7 @@ static void add(lua_State *L, ob_builder *b, const char *kind, const ob_joint_pa
 	ob_scene *s = b->scene;
 	if (s->joints == OB_SCENE_JOINTS_MAX)
 		ob_sandbox_fail(L, "%s: expected at most %d joints in a scene", kind, OB_SCENE_JOINTS_MAX);
-	if (s->joints == b->joints_room) {
-		const uint32_t room = b->joints_room ? 2 * b->joints_room : 64;
-		ob_builder_allow(L, kind, room * sizeof *s->joint);
-		if (!OB_GROW(s->joint, room))
-			ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
-		b->joints_room = room;
-	}
+	OB_BUILDER_MAKE_ROOM(L, kind, s->joint, s->joints, b->joints_room);
 	s->joint[s->joints++] = *j;
 	ob_sandbox_extend(L, OB_SCENE_OBJECT_INSTRUCTIONS);
 }

@@ -20,30 +20,27 @@
 
 // ---- material "wood" { friction = .5, density = 600 }
 
-static const ob_field material_fields[] = {
-	OB_FIELD(ob_material, friction, .name = "friction", .kind = OB_FIELD_NUMBER, .low = 0,
-		 .high = OB_FRICTION_MOST),
-	OB_FIELD(ob_material, restitution, .name = "restitution", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
-	OB_FIELD(ob_material, density, .name = "density", .kind = OB_FIELD_NUMBER, .low = 0, .above = true,
-		 .high = 1e9),
-	OB_FIELD(ob_material, colour, .name = "colour", .kind = OB_FIELD_COLOUR),
-	OB_FIELD(ob_material, update_rate, .name = "update_rate", .kind = OB_FIELD_NUMBER, .low = 0, .above = true,
-		 .high = OB_UPDATE_RATE_MOST),
-	OB_FIELD(ob_material, roughness, .name = "roughness", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
-	OB_FIELD(ob_material, metal, .name = "metal", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1),
-	OB_FIELD(ob_material, pattern, .name = "pattern", .kind = OB_FIELD_CHOICE, .choices = PATTERN_NAMES),
-};
+// Fields of a material, which an object may have itself. in: "own." in a body
+#define SURFACE_OF(type, in) \
+	OB_FIELD(type, in friction, .name = "friction", .kind = OB_FIELD_NUMBER, .low = 0, .high = OB_FRICTION_MOST), \
+		OB_FIELD(type, in restitution, .name = "restitution", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
+		OB_FIELD(type, in colour, .name = "colour", .kind = OB_FIELD_COLOUR), \
+		OB_FIELD(type, in roughness, .name = "roughness", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
+		OB_FIELD(type, in metal, .name = "metal", .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
+		OB_FIELD(type, in pattern, .name = "pattern", .kind = OB_FIELD_CHOICE, .choices = PATTERN_NAMES)
+#define MATTER_OF(type, in) \
+	OB_FIELD(type, in density, .name = "density", .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
+		OB_FIELD(type, in update_rate, .name = "update_rate", .kind = OB_FIELD_NUMBER, .low = 0, \
+			 .above = true, .high = OB_UPDATE_RATE_MOST)
 
-static const ob_material not_given = {
-	.friction = NAN,
-	.restitution = NAN,
-	.density = NAN,
-	.update_rate = NAN,
-	.colour = { NAN },
-	.roughness = NAN,
-	.metal = NAN,
-	.pattern = OB_PATTERNS,
-};
+static const ob_field material_fields[] = { SURFACE_OF(ob_material, ), MATTER_OF(ob_material, ) };
+
+#define NOT_GIVEN \
+	{ \
+		.friction = NAN, .restitution = NAN, .density = NAN, .update_rate = NAN, .colour = { NAN }, \
+		.roughness = NAN, .metal = NAN, .pattern = OB_PATTERNS \
+	}
+static const ob_material not_given = NOT_GIVEN;
 
 // Default finish of a surface, by a word in the name of its material.
 static const struct finish {
@@ -56,7 +53,7 @@ static const struct finish {
 	{ "plastic", .35, 0 }, { "stone", .85, 0 }, { "concrete", .9, 0 }, { "brick", .9, 0 },
 	{ "ice", .1, 0 },      { "glass", .05, 0 }, { "billiard", .1, 0 }, { "porcelain", .12, 0 },
 };
-static const struct finish usual_finish = { NULL, .45, 0 };
+static const struct finish usual_finish = { NULL, OB_ROUGHNESS_USUAL, 0 };
 
 static bool has_word(const char *name, const char *word)
 {
@@ -118,7 +115,6 @@ int ob_scene_call_material(lua_State *L)
 
 enum { UNSAID = UINT32_MAX, DYNAMIC = 0, STATIC, KINEMATIC }; // UNSAID: not set; others: indices in choices
 
-#define FRICTION .5
 #define DENSITY 1000. // kg/m^3
 
 // Fields of a call; NaN = not set.
@@ -128,7 +124,8 @@ typedef struct body {
 	ob_vec3 given[OB_SHAPE_KEYS]; // numbers of the shape's size; a single one is in x
 	ob_vec3 at, velocity, spin, force, normal, surface_velocity, inertia;
 	uint32_t kind;
-	double height, mass, density, friction, restitution, roughness, metal, born, dies, update_rate;
+	ob_material own; // without a name
+	double height, mass, born, dies;
 	ob_quat q, rotation, mesh_rotation;
 	const char *mesh;
 	ob_vec3 mesh_at;
@@ -139,11 +136,9 @@ typedef struct body {
 	double scale;
 	uint8_t look; // 1 + that of its mesh; 0: the object has the field mesh, or none
 	bool cells, sides, heights;
-	float colour[4];
 	bool fixed, grid, path, varying_force, avatar, inputs, outputs, parameters, parts;
 	bool own_colour, own_surface; // set by the object or its material
 	uint32_t group, hits; // hits: bit g, group g
-	uint32_t pattern; // ob_pattern; OB_PATTERNS: not set
 	bool sensor, visible;
 } body;
 
@@ -153,24 +148,19 @@ typedef struct body {
 	F(group, .kind = OB_FIELD_COUNT, .low = 0, .high = OB_GROUPS - 1), \
 		F(hits, .kind = OB_FIELD_SET, .low = 0, .high = OB_GROUPS - 1)
 #define SURFACE \
-	GROUPS, F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), \
-		F(friction, .kind = OB_FIELD_NUMBER, .low = 0, .high = OB_FRICTION_MOST), \
-		WITHIN(surface_velocity, OB_SPEED_MOST), F(restitution, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
-		F(colour, .kind = OB_FIELD_COLOUR), F(roughness, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
-		F(metal, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1), \
-		F(pattern, .kind = OB_FIELD_CHOICE, .choices = PATTERN_NAMES), F(visible, .kind = OB_FIELD_BOOLEAN)
-#define PLACE \
+	GROUPS, F(material, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), WITHIN(surface_velocity, OB_SPEED_MOST), \
+		SURFACE_OF(body, own.), F(visible, .kind = OB_FIELD_BOOLEAN)
+#define EXISTS \
 	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), WITHIN(at, OB_PLACE_MOST), \
 		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
-		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
-		F(script, .kind = OB_FIELD_SOURCE, .high = OB_SCENE_SCRIPT_BYTES), F(state, .kind = OB_FIELD_FLAT), \
+		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9)
+#define PLACE \
+	EXISTS, F(script, .kind = OB_FIELD_SOURCE, .high = OB_SCENE_SCRIPT_BYTES), F(state, .kind = OB_FIELD_FLAT), \
 		F(fmu, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), F(inputs, .kind = OB_FIELD_TABLE), \
 		F(outputs, .kind = OB_FIELD_TABLE), F(parameters, .kind = OB_FIELD_TABLE), \
 		F(sensor, .kind = OB_FIELD_BOOLEAN)
 #define MOVING \
-	F(mass, .kind = OB_FIELD_NUMBER, .low = OB_MASS_LEAST, .high = OB_MASS_MOST), \
-		F(density, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
-		F(update_rate, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = OB_UPDATE_RATE_MOST), \
+	F(mass, .kind = OB_FIELD_NUMBER, .low = OB_MASS_LEAST, .high = OB_MASS_MOST), MATTER_OF(body, own.), \
 		F(inertia, .kind = OB_FIELD_VECTOR, .low = 0, .above = true, .high = 1e24), \
 		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
 		WITHIN(velocity, OB_SPEED_MOST), WITHIN(spin, OB_SPIN_MOST), WITHIN(force, OB_FORCE_MOST), \
@@ -194,10 +184,7 @@ static const ob_field ground_fields[] = {
 	SURFACE,
 };
 #define STANDING \
-	F(name, .kind = OB_FIELD_TEXT, .high = OB_NAME_MAX - 1), WITHIN(at, OB_PLACE_MOST), \
-		F(born, .kind = OB_FIELD_NUMBER, .low = 0, .high = 1e9), \
-		F(dies, .kind = OB_FIELD_NUMBER, .low = 0, .above = true, .high = 1e9), \
-		F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
+	EXISTS, F(q, .kind = OB_FIELD_QUATERNION), F(rotation, .kind = OB_FIELD_ROTATION), \
 		OB_FIELD(body, fixed, .name = "static", .kind = OB_FIELD_BOOLEAN), SURFACE
 static const ob_field heightfield_fields[] = {
 	OB_FIELD(body, sides, .name = "size", .kind = OB_FIELD_TABLE, .required = true),
@@ -217,23 +204,16 @@ static const body nothing = {
 	.inertia = { NAN, NAN, NAN },
 	.kind = UNSAID,
 	.mass = NAN,
-	.density = NAN,
-	.update_rate = NAN,
-	.friction = NAN,
-	.restitution = NAN,
-	.roughness = NAN,
-	.metal = NAN,
+	.own = NOT_GIVEN,
 	.dies = INFINITY,
 	.q = { .w = NAN },
 	.rotation = { .w = NAN },
 	.mesh_rotation = { .w = NAN },
 	.mesh_at = { NAN, NAN, NAN },
 	.mesh_scale = NAN,
-	.colour = { NAN },
 	.grid = true,
 	.visible = true,
 	.hits = UINT32_MAX,
-	.pattern = OB_PATTERNS,
 	.scale = 1,
 };
 
@@ -269,13 +249,7 @@ ob_object_def *ob_builder_add(lua_State *L, ob_builder *b, const char *kind, con
 		ob_sandbox_fail(L, "%s: expected at most %d objects in a scene", kind, OB_SCENE_OBJECTS_MAX);
 	if (name)
 		take_name(L, kind, name);
-	if (s->objects == b->objects_room) {
-		uint32_t room = b->objects_room ? 2 * b->objects_room : 64;
-		ob_builder_allow(L, kind, room * sizeof *s->object);
-		if (!OB_GROW(s->object, room))
-			ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
-		b->objects_room = room;
-	}
+	OB_BUILDER_MAKE_ROOM(L, kind, s->object, s->objects, b->objects_room);
 	ob_object_def *o = &s->object[s->objects];
 	*o = (ob_object_def){ .passport = { .id = s->objects, .flags = OB_OBJECT_PRESENT } };
 	if (name)
@@ -302,38 +276,40 @@ static _Noreturn void fail_material(lua_State *L, const ob_builder *b, const cha
 static void apply_pattern(lua_State *L, const char *kind, ob_shape shape, const ob_material *m, body *d)
 {
 	const bool shows = (ob_shape_is(shape, OB_SIDED) || ob_shape_is(shape, OB_UNBOUNDED)) && !d->mesh;
-	if (d->pattern != OB_PATTERNS && !shows)
+	if (d->own.pattern != OB_PATTERNS && !shows)
 		ob_sandbox_fail(L, "%s.pattern: expected with a box, a plane or the ground, and without a mesh", kind);
-	if (d->pattern == OB_PATTERNS)
-		d->pattern = shows && m->pattern != OB_PATTERNS ? m->pattern : OB_PATTERN_PLAIN;
+	if (d->own.pattern == OB_PATTERNS)
+		d->own.pattern = shows && m->pattern != OB_PATTERNS ? m->pattern : OB_PATTERN_PLAIN;
+}
+
+static void apply(double *own, double of_material, double usual)
+{
+	if (isnan(*own))
+		*own = isnan(of_material) ? usual : of_material;
 }
 
 // Applies the object's own values first, then its material's, then the default.
 static void apply_material(lua_State *L, const ob_builder *b, const char *kind, ob_shape shape, body *d)
 {
 	const ob_material *m = d->material ? ob_builder_material(b, d->material) : &not_given;
+	ob_material *own = &d->own;
 	if (!m)
 		fail_material(L, b, kind, d->material);
 	apply_pattern(L, kind, shape, m, d);
-	if (isnan(d->friction))
-		d->friction = isnan(m->friction) ? FRICTION : m->friction;
-	if (isnan(d->restitution))
-		d->restitution = isnan(m->restitution) ? 0 : m->restitution;
-	if (isnan(d->density) && isnan(d->mass))
-		d->density = isnan(m->density) ? DENSITY : m->density;
-	if (isnan(d->update_rate))
-		d->update_rate = isnan(m->update_rate) ? 0 : m->update_rate;
-	d->own_surface = !isnan(d->roughness) || !isnan(d->metal) || !isnan(m->roughness) || !isnan(m->metal);
-	if (isnan(d->roughness))
-		d->roughness = isnan(m->roughness) ? usual_finish.roughness : m->roughness;
-	if (isnan(d->metal))
-		d->metal = isnan(m->metal) ? usual_finish.metal : m->metal;
-	if (isnan(d->colour[0]))
-		memcpy(d->colour, m->colour, sizeof d->colour);
-	d->own_colour = !isnan(d->colour[0]);
+	apply(&own->friction, m->friction, OB_FRICTION_USUAL);
+	apply(&own->restitution, m->restitution, 0);
+	if (isnan(d->mass))
+		apply(&own->density, m->density, DENSITY);
+	apply(&own->update_rate, m->update_rate, 0);
+	d->own_surface = !isnan(own->roughness) || !isnan(own->metal) || !isnan(m->roughness) || !isnan(m->metal);
+	apply(&own->roughness, m->roughness, usual_finish.roughness);
+	apply(&own->metal, m->metal, usual_finish.metal);
+	if (isnan(own->colour[0]))
+		memcpy(own->colour, m->colour, sizeof own->colour);
+	d->own_colour = !isnan(own->colour[0]);
 	if (!d->own_colour) {
 		size_t i = b->scene->objects % (sizeof palette / sizeof *palette);
-		ob_colour_from_hex(d->kind == DYNAMIC ? palette[i] : static_colour, d->colour);
+		ob_colour_from_hex(d->kind == DYNAMIC ? palette[i] : static_colour, own->colour);
 	}
 }
 
@@ -344,7 +320,7 @@ static void refuse_together(lua_State *L, const char *kind, const char *a, const
 
 static void check_together(lua_State *L, const char *kind, const body *d)
 {
-	if (!isnan(d->mass) && !isnan(d->density))
+	if (!isnan(d->mass) && !isnan(d->own.density))
 		refuse_together(L, kind, "mass", "density");
 	if (!isnan(d->inertia.x) && isnan(d->mass))
 		ob_sandbox_fail(L, "%s.inertia: expected mass with it", kind);
@@ -354,7 +330,7 @@ static void check_together(lua_State *L, const char *kind, const body *d)
 	if (d->kind != DYNAMIC && !isnan(d->mass))
 		ob_sandbox_fail(L, "%s.mass: expected none for a %s object, got %s", kind, named,
 				ob_number_text(d->mass).text);
-	if (d->kind != DYNAMIC && !isnan(d->update_rate))
+	if (d->kind != DYNAMIC && !isnan(d->own.update_rate))
 		ob_sandbox_fail(L, "%s.update_rate: expected none for a %s object, which has no steps", kind, named);
 	const struct {
 		const char *name;
@@ -442,7 +418,7 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	check_together(L, kind, d);
 	apply_material(L, b, kind, shape, d);
 	double mass = d->kind != DYNAMIC ? 0
-		      : isnan(d->mass)   ? d->density * ob_shape_volume(shape, size, d->hull)
+		      : isnan(d->mass)   ? d->own.density * ob_shape_volume(shape, size, d->hull)
 					 : d->mass;
 	const ob_mesh_source source = source_of_mesh(d);
 	if (d->mesh && !b->options->joining)
@@ -455,7 +431,7 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 	p->flags |= (d->mesh || d->file) && !d->own_surface ? OB_OBJECT_MESH_SURFACE : 0;
 	p->flags |= d->kind == STATIC ? OB_OBJECT_STATIC : d->kind == KINEMATIC ? OB_OBJECT_KINEMATIC : 0;
 	p->flags |= (d->sensor ? OB_OBJECT_SENSOR : 0) | (d->visible ? 0 : OB_OBJECT_HIDDEN);
-	p->flags |= d->group << OB_OBJECT_GROUP | ~d->hits << OB_OBJECT_PASSES | d->pattern << OB_OBJECT_PATTERN;
+	p->flags |= d->group << OB_OBJECT_GROUP | ~d->hits << OB_OBJECT_PASSES | d->own.pattern << OB_OBJECT_PATTERN;
 	p->shape = (uint8_t)shape;
 	p->size = size;
 	p->mass = mass;
@@ -465,11 +441,11 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 		p->surface_velocity = d->surface_velocity;
 	if (!isnan(d->inertia.x))
 		p->inertia = d->inertia;
-	p->friction = d->friction;
-	p->restitution = d->restitution;
-	p->roughness = (float)d->roughness;
-	p->metal = (float)d->metal;
-	memcpy(p->colour, d->colour, sizeof p->colour);
+	p->friction = d->own.friction;
+	p->restitution = d->own.restitution;
+	p->roughness = (float)d->own.roughness;
+	p->metal = (float)d->own.metal;
+	memcpy(p->colour, d->own.colour, sizeof p->colour);
 	o->state.pose.p = d->at;
 	o->state.pose.q = !isnan(d->q.w) ? d->q : !isnan(d->rotation.w) ? d->rotation : ob_quat_identity();
 	if (d->hull)
@@ -496,7 +472,7 @@ static ob_object_def *add(lua_State *L, const char *kind, ob_shape shape, ob_vec
 		o->script = script;
 		o->state_at = at, o->state_bytes = d->state.size;
 	}
-	o->update_rate = d->kind == DYNAMIC ? d->update_rate : 0;
+	o->update_rate = d->kind == DYNAMIC ? d->own.update_rate : 0;
 	o->born = d->born;
 	o->dies = d->dies;
 	if (d->path) {
@@ -597,10 +573,10 @@ int ob_scene_call_compound(lua_State *L)
 	lua_getfield(L, 1, "parts");
 	d.hull = ob_builder_compound(L, ob_sandbox_user(L), ob_scale(d.inertia, 1 / d.mass), &density);
 	lua_pop(L, 1);
-	if (!isnan(density) && !isnan(d.density))
+	if (!isnan(density) && !isnan(d.own.density))
 		ob_sandbox_fail(L, "compound.density: expected none where its parts have one");
 	if (isnan(d.mass) && !isnan(density))
-		d.density = density;
+		d.own.density = density;
 	return give_name(L, add(L, "compound", OB_SHAPE_HULL, ob_hull_size(d.hull), &d));
 }
 
@@ -644,9 +620,9 @@ int ob_scene_call_ground(lua_State *L)
 	d.fixed = true;
 	ob_fields_read(L, 1, "ground", ground_fields, sizeof ground_fields / sizeof *ground_fields, &d);
 	const ob_material *m = d.material ? ob_builder_material(b, d.material) : NULL;
-	if (isnan(d.colour[0]) && (!m || isnan(m->colour[0])))
+	if (isnan(d.own.colour[0]) && (!m || isnan(m->colour[0])))
 		for (int i = 0; i < 4; i++)
-			d.colour[i] = i < 3 ? look->ground_colour[i] : 1;
+			d.own.colour[i] = i < 3 ? look->ground_colour[i] : 1;
 	d.at.z = d.height;
 	const ob_object_def *o = add(L, "ground", OB_SHAPE_PLANE, ob_v3(0, 0, 0), &d);
 	memcpy(look->ground_colour, o->passport.colour, sizeof look->ground_colour);

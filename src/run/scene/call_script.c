@@ -148,12 +148,8 @@ uint32_t ob_builder_keep_state(lua_State *L, ob_builder *b, const unsigned char 
 {
 	ob_scene *s = b->scene;
 	const uint32_t at = s->states_bytes;
-	if (at + size > b->states_room) {
-		const uint32_t room = 2 * (at + size);
-		if (!OB_GROW(s->states, room))
-			ob_sandbox_fail(L, "state: no memory left on this machine");
-		b->states_room = room;
-	}
+	if (!OB_RESERVE(s->states, at + size, b->states_room))
+		ob_sandbox_fail(L, "state: no memory left on this machine");
 	if (size)
 		memcpy(s->states + at, bytes, size);
 	s->states_bytes += size;

@@ -146,13 +146,7 @@ static void add(lua_State *L, ob_builder *b, const char *kind, const ob_sensor_p
 	ob_scene *s = b->scene;
 	if (s->sensors == OB_SENSORS_MAX)
 		ob_sandbox_fail(L, "%s: expected at most %d sensors in a scene", kind, OB_SENSORS_MAX);
-	if (s->sensors == b->sensors_room) {
-		const uint32_t room = b->sensors_room ? 2 * b->sensors_room : 16;
-		ob_builder_allow(L, kind, room * sizeof *s->sensor);
-		if (!OB_GROW(s->sensor, room))
-			ob_sandbox_fail(L, "%s: no memory left on this machine", kind);
-		b->sensors_room = room;
-	}
+	OB_BUILDER_MAKE_ROOM(L, kind, s->sensor, s->sensors, b->sensors_room);
 	s->sensor[s->sensors++] = *p;
 	ob_sandbox_extend(L, OB_SCENE_OBJECT_INSTRUCTIONS);
 }

@@ -253,6 +253,17 @@ void ob_builder_allow(lua_State *L, const char *where, uint64_t bytes)
 		ob_sandbox_fail(L, "%s: %s", where, e.text);
 }
 
+void ob_builder_make_room(lua_State *L, const char *where, void *array, uint32_t count, uint32_t *room, size_t size)
+{
+	const uint32_t more = *room ? 2 * *room : 64;
+	if (count < *room)
+		return;
+	ob_builder_allow(L, where, more * size);
+	if (!ob_grow(array, more, more, size))
+		ob_sandbox_fail(L, "%s: no memory left on this machine", where);
+	*room = more;
+}
+
 static void make_room(lua_State *L, ob_builder *b, const char *where, const char *field)
 {
 	ob_scene *s = b->scene;

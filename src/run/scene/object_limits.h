@@ -21,6 +21,9 @@
 #define OB_SPIN_MOST 1e4 // rad/s
 #define OB_FORCE_MOST 1e15 // N
 #define OB_ACCELERATION_MOST 1e6 // m/s^2 along each axis, by a force; rad/s^2, by a torque
+// Surface of an object whose scene or request says nothing of it.
+#define OB_FRICTION_USUAL .5
+#define OB_ROUGHNESS_USUAL .45
 #define OB_FRICTION_MOST 1e3
 
 // False and e, as "mass: expected from 1e-12 to 1e+12 kg, got 0 kg". The inertia is not looked at: these limits bound it.

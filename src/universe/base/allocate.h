@@ -23,8 +23,14 @@ void *ob_reallocate(void *old, size_t bytes) __attribute__((warn_unused_result))
 #define OB_GROW(array, count) ob_grow(&(array), count, count, sizeof *(array))
 #define OB_GROW_CLEARED(array, from, count) ob_grow(&(array), from, count, sizeof *(array))
 bool ob_grow(void *array, size_t from, size_t count, size_t size);
-// Makes room for so many elements: beyond "max" the array grows to half as many again, 64 at least.
-#define OB_RESERVE(array, needed, max) ob_reserve(&(array), needed, &(max), sizeof *(array))
+// Makes room for so many elements: beyond "max", of any integer type, the array grows to half as many again, 64 at least.
+#define OB_RESERVE(array, needed, max) \
+	__extension__({ \
+		size_t most_ = (max); \
+		const bool fine_ = ob_reserve(&(array), needed, &most_, sizeof *(array)); \
+		(max) = (__typeof__(max))most_; \
+		fine_; \
+	})
 bool ob_reserve(void *array, size_t needed, size_t *max, size_t size);
 // Makes room for one more element than "count".
 #define OB_MAKE_ROOM(array, count, max) OB_RESERVE(array, (count) + 1, max)

@@ -29,14 +29,8 @@ static bool wait_for_signal(ob_universe *u, uint32_t worker, uint32_t taken)
 // Makes room for so many more bytes. Once that fails, it goes on to.
 static bool grow(ob_mail *m, size_t more)
 {
-	if (!m->lost && m->used + more <= m->max)
-		return true;
-	const size_t max = 2 * (m->used + more);
-	m->lost = m->lost || !OB_GROW(m->bytes, max);
-	if (m->lost)
-		return false;
-	m->max = max;
-	return true;
+	m->lost = m->lost || !OB_RESERVE(m->bytes, m->used + more, m->max);
+	return !m->lost;
 }
 
 // Copies the simulator's outbox. Returns NULL, or a description of the error.

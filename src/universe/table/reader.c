@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/allocate.h"
 #include "base/utf8.h"
 #include "motion/flight.h"
 #include "shape/shape.h"
@@ -396,13 +397,8 @@ static ob_pair_key *touching_pairs(const ob_step_data *x, size_t *n)
 		copy_words(&key, x->pair + i, sizeof key);
 		if (!key.active || key.a >= key.b || key.b >= x->objects_max || key.record >= x->pairs_max)
 			continue;
-		if (*n == room) {
-			room = 2 * room + 64;
-			ob_pair_key *more = realloc(out, room * sizeof *out);
-			if (!more)
-				break;
-			out = more;
-		}
+		if (!OB_MAKE_ROOM(out, *n, room))
+			break;
 		out[(*n)++] = key;
 	}
 	if (*n)
