@@ -138,13 +138,13 @@ static void test_requests(ob_isolation isolation, uint32_t workers)
 	pthread_join(thread, &ok);
 	CHECK(ok != NULL);
 	CHECK(reach(h, steps_of(h) + 1)); // if they came too late for the long run
-	CHECK(ob_roster_find_name(ob_host_roster(h), "newcomer", &entry) && entry.id == 3 && entry.generation == 1);
+	CHECK(ob_roster_find(ob_host_roster(h), 3, &entry) && !strcmp(entry.name, "newcomer") && entry.generation == 1);
 	CHECK(entry.own_worker == !workers);
 	CHECK(!is_there(h, 1) && is_there(h, 2));
 	a.def = ball("second", 30, 0, 3); // gets the slot of ball 1
 	CHECK(ob_host_request(h, &(ob_request){ .kind = OB_REQUEST_ADD, .def = a.def }, NULL) &&
 	      reach(h, steps_of(h) + 1));
-	CHECK(ob_roster_find_name(ob_host_roster(h), "second", &entry) && entry.id == 1 && entry.generation == 2);
+	CHECK(ob_roster_find(ob_host_roster(h), 1, &entry) && !strcmp(entry.name, "second") && entry.generation == 2);
 	CHECK(ob_roster_copy(ob_host_roster(h), &entry, 1) == 4 && !strcmp(entry.name, "ground"));
 	ob_host_stop(h);
 	free(s.object);

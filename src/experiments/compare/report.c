@@ -1,7 +1,6 @@
 // Comparison as a folder: one page with the answer first and explanations after it, its diagrams, its figures.
 #include <inttypes.h>
 #include <math.h>
-#include <string.h>
 
 #include "compare/compare.h"
 #include "compare_texts.h"

@@ -1,6 +1,6 @@
 // A world as MuJoCo's model, in MJCF. Part of obsim-mujoco.so.
 //
-// Each object is a body. Joints that form a tree (joint_tree.h) are MuJoCo's joints, which its coordinates are the values of;
+// Each object is a body. Joints that form a tree (world.h) are MuJoCo's joints, which its coordinates are the values of;
 // their loops are closed by its equality constraints: a ball by "connect", a hinge by two of them, "fixed" by "weld". A distance
 // is a tendon between two sites. Names are numbers: of the object for bodies and geometries, of the joint for what makes it,
 // with ".2" for the second axis of a universal.

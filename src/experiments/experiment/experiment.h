@@ -17,7 +17,7 @@
 //      analysis.h                 medians with intervals, ratios sample by sample, cost at equal error
 //          |
 //          v
-//      words.h, table.h, chart.h, page.h, json.h      figures in words; text, Markdown, HTML; diagrams; DIR/report.html; JSON
+//      table.h, page.h, json.h      figures in words; text, Markdown, HTML; diagrams; DIR/report.html; JSON
 //
 // To define one:
 //

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/number.h"
 #include "experiment/table.h"
 #include "lab/scene.h"
 #include "lab_scenes.h" // generated: lab_NAME_lua[], of each file of scenes/lab

@@ -1,6 +1,5 @@
 #include "lab/report.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "experiment/folder.h"

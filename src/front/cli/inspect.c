@@ -1,6 +1,5 @@
 // obsim inspect: the contents of a checkpoint.
 #include <inttypes.h>
-#include <math.h>
 #include <string.h>
 #include <time.h>
 

@@ -1,6 +1,5 @@
 // obsim paper: the paper's experiment, its tables and figures, and the verdict on its claims.
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"

@@ -1,5 +1,4 @@
 // obsim run --replay: frames of a record.
-#include <errno.h>
 #include <inttypes.h>
 #include <signal.h>
 #include <string.h>

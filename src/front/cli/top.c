@@ -1,7 +1,6 @@
 // obsim top: looks into a running universe from outside, as any program that links libobsim can.
 #include "cli/top.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <locale.h>

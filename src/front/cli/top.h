@@ -1,5 +1,4 @@
-// Sample of a universe at one instant with the rates since the one before (top.c), and its lines of text
-// (top_view.c).
+// Sample of a universe at one instant with the rates since the one before, and its lines of text.
 #ifndef OB_CLI_TOP_H
 #define OB_CLI_TOP_H
 

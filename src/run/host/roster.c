@@ -175,16 +175,3 @@ bool ob_roster_find(const ob_roster *r, uint32_t id, ob_roster_entry *out)
 	unlock_snapshot(s);
 	return found != NULL;
 }
-
-bool ob_roster_find_name(const ob_roster *r, const char *name, ob_roster_entry *out)
-{
-	const snapshot *s = lock_snapshot(r);
-	bool found = false;
-	for (size_t i = 0; i < s->n && !found; i++) {
-		found = strcmp(s->names + s->entry[i].name, name) == 0;
-		if (found)
-			*out = whole(s, &s->entry[i]);
-	}
-	unlock_snapshot(s);
-	return found;
-}

@@ -35,8 +35,7 @@ bool ob_roster_publish(ob_roster *r, const ob_roster_entry *entries, size_t n);
 uint64_t ob_roster_number(const ob_roster *r);
 // copy: the first max entries, ascending by id; returns the number of entries (may exceed max).
 size_t ob_roster_copy(const ob_roster *r, ob_roster_entry *out, size_t max);
-// false: no object of this id, or name, exists now
+// false: no object of this id exists now
 bool ob_roster_find(const ob_roster *r, uint32_t id, ob_roster_entry *out);
-bool ob_roster_find_name(const ob_roster *r, const char *name, ob_roster_entry *out);
 
 #endif

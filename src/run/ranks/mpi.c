@@ -1,6 +1,5 @@
 #include "ranks/module.h"
 
-#include <limits.h>
 #include <mpi.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -11,7 +11,6 @@
 #include "scene/builder.h"
 #include "scene/object_limits.h"
 #include "scene/sandbox.h"
-#include "scene/text.h"
 
 #define OB_SCENE_JOINTS_MAX 1000000
 #define OB_TURN_MOST 6.2 // rad, between the limits of a hinge

@@ -1,5 +1,4 @@
 // Terrains of a scene: heightfields of a function, and meshes of a file. Both have a look.
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,5 @@
 #include "scene/text.h"
 
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 

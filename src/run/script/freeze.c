@@ -3,7 +3,6 @@
 //
 // A table is frozen in place: its contents move into another, from which its metatable, which scripts cannot access,
 // reads them. An outer local cannot be guarded so; its value is noted, and compared after each call.
-#include <stdlib.h>
 
 #include <lauxlib.h>
 

@@ -88,11 +88,6 @@ ob_desk ob_desk_at(const ob_universe *u, uint32_t index)
 				: (ob_desk){ .slip = NULL };
 }
 
-uint32_t ob_desk_worker(const ob_universe *u, const ob_desk *d)
-{
-	return d->index / u->desks.foreign;
-}
-
 uint32_t ob_desk_foreign(const ob_universe *u, const ob_desk *d)
 {
 	return d->index % u->desks.foreign;

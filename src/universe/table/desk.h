@@ -44,7 +44,6 @@ bool ob_desks_await_answers(const ob_universe *u);
 ob_desk ob_desk_at(const ob_universe *u, uint32_t index);
 // Desk of a worker for foreign code of this number, from 0.
 ob_desk ob_desk_of(const ob_universe *u, uint32_t worker, uint32_t foreign);
-uint32_t ob_desk_worker(const ob_universe *u, const ob_desk *d);
 uint32_t ob_desk_foreign(const ob_universe *u, const ob_desk *d);
 void *ob_desk_data(const ob_desk *d); // OB_DESK_BYTES
 // A contained worker: unmaps the desks of all others. The process at a desk: unmaps the universe and all other desks.
