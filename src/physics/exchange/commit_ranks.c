@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "cluster/peers.h"
-#include "cluster/peers.h"
 #include "exchange/committer.h"
 #include "schedule/pair_checks.h"
 #include "table/home.h"
