@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "world/world.h"
-#include "lab/look.h"
+#include "engine/world.h"
+#include "lab/scene.h"
 #include "ode/ode_body.h"
 #include "shape/shape.h"
 
@@ -30,9 +30,12 @@ uint32_t bench_bodies(const ob_world *w)
 
 void bench_build(const bench_order *o, ob_world *w)
 {
-	ob_scene *scene;
 	ob_error e;
-	if (!ob_case_build(&o->scene->of, 0, w, &scene, &e)) {
+	ob_scene *scene = NULL;
+	*w = (ob_world){ .gravity = { 0, 0, -OB_WORLD_GRAVITY } };
+	if (o->scene->build) {
+		o->scene->build(w, o->scene->bodies);
+	} else if (!(scene = ob_lab_scene_load(&o->scene->of, 0, w, &e))) {
 		fprintf(stderr, "%s\n", e.text);
 		exit(1);
 	}
@@ -103,8 +106,79 @@ bool bench_time(const bench_order *o, const ob_engine_kind *kind, ob_error *e)
 	return on;
 }
 
+// Errors of a world of any size, at frames.
+typedef struct errors {
+	double start, lowest, most; // J: energy; largest deviation of bodies that keep it
+	double squares, growth; // J^2, of those; J
+	double worst, rest_worst, rest_sum; // m
+	uint32_t frames, rests;
+} errors;
+
+static void look(const bench_order *o, const ob_world *w, const ob_snapshot *now, errors *r)
+{
+	ob_penetration p;
+	const double energy = ob_measure_energy(now, w->gravity);
+	if (!r->frames++)
+		r->start = r->lowest = energy;
+	r->most = fmax(r->most, fabs(energy - r->start));
+	r->squares += (energy - r->start) * (energy - r->start);
+	r->lowest = fmin(r->lowest, energy);
+	r->growth = fmax(r->growth, energy - r->lowest);
+	ob_measure_penetration(now, &p);
+	r->worst = fmax(r->worst, p.max_m);
+	if (now->time > o->duration - 1) {
+		r->rest_worst = fmax(r->rest_worst, p.max_m);
+		r->rest_sum += p.mean_m;
+		r->rests++;
+	}
+}
+
+static void print_errors(const errors *r, bool elastic)
+{
+	if (elastic) {
+		bench_print("error of energy", "1", r->most / r->start);
+		bench_print("mean squared error of energy", "J^2", r->squares / fmax(r->frames - 1., 1));
+		return;
+	}
+	bench_print("resting mean penetration", "mm", 1e3 * r->rest_sum / fmax(r->rests, 1));
+	bench_print("resting worst penetration", "mm", 1e3 * r->rest_worst);
+	bench_print("worst penetration at any moment", "mm", 1e3 * r->worst);
+	bench_print("growth of energy", "1", r->growth / r->start);
+}
+
+static bool look_at_world(const bench_order *o, const ob_engine_kind *kind, ob_error *e)
+{
+	ob_world w;
+	ob_snapshot now = { 0 };
+	errors r = { 0 };
+	bench_build(o, &w);
+	const double h = o->settings.step_length;
+	const long steps = lround(o->duration / h), frame = lround(fmax(ob_case_step / h, 1));
+	ob_engine *p = kind->create(&w, &o->settings, e);
+	ob_state *state = calloc(w.objects, sizeof *state);
+	bool on = p && ((ob_lab_snapshot_begin(&now, &w) && state) || ob_fail(e, "out of memory"));
+	for (long i = 0; on && i <= steps; i++) {
+		if (i % frame == 0) {
+			kind->get(p, state);
+			ob_lab_snapshot_take(&now, (double)i * h, state);
+			look(o, &w, &now, &r);
+		}
+		on = i == steps || kind->step(p, e);
+	}
+	if (on)
+		print_errors(&r, o->scene->elastic);
+	ob_lab_snapshot_end(&now);
+	if (p)
+		kind->destroy(p);
+	free(state);
+	ob_world_finish(&w);
+	return on;
+}
+
 bool bench_look(const bench_order *o, const ob_engine_kind *kind, ob_error *e)
 {
+	if (o->scene->build)
+		return look_at_world(o, kind, e);
 	ob_case c = o->scene->of;
 	ob_case_result out;
 	c.duration = o->duration;

@@ -3,7 +3,7 @@
 
 #include "engine.h"
 #include "host/host.h"
-#include "world/world.h"
+#include "engine/world.h"
 
 static ob_object_def *define(const ob_world *w)
 {

@@ -6,9 +6,11 @@
 #include "lab/case.h"
 
 typedef struct bench_scene {
-	ob_case of; // world, observations, duration
-	uint32_t bodies; // number, in a world of any size; 0 = the case's own
+	ob_case of; // name, duration; of the lab: world and observations, too
+	void (*build)(ob_world *w, uint32_t bodies); // world of any size; NULL: a case of the lab
+	uint32_t bodies;
 	bool sleeping; // bodies at rest may sleep
+	bool elastic; // keeps its energy; else bodies fall, and come to rest
 } bench_scene;
 
 // Finds "pile", "falling-1000", "cylinders-1000", "capsules-1000" (as many boxes, of the same volumes: "falling"),
