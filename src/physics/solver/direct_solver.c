@@ -114,7 +114,7 @@ static void fill_joint(const ob_island_work *w, ob_direct_contact *c, const lane
 		ob_batch_row_of_lane(b, l, row, child_is_a ? j->child[r] : j->parent[r],
 				     child_is_a ? j->parent[r] : j->child[r]);
 		j->y[r] = -velocity[b - w->batch][row][l];
-		j->compliance[r] = compliance * b->diag[row][l];
+		j->stiffness[r] = 1 / (compliance * b->diag[row][l]);
 	}
 	// Four points on a plane have no response along the null space: the velocity along it is removed.
 	if (!has_four_normals(c) || !normal_null_space(b, l, n))
@@ -199,13 +199,14 @@ static void solve_rows(ob_island_work *w)
 	for (uint32_t k = 0; k < f->contacts; k++) {
 		const ob_direct_contact *c = &f->contact[k];
 		ob_sparse_add_joint(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));
+		ob_sparse_push(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));
 	}
 	for (uint32_t i = 0; i < w->joints.count; i++) {
-		ob_held_joint *j = &w->joints.joint[i];
-		memset(j->rows.y, 0, sizeof j->rows.y);
+		const ob_held_joint *j = &w->joints.joint[i];
 		ob_sparse_add_joint(&f->sparse, &j->rows, j->child, j->parent);
 	}
-	ob_sparse_solve(&f->sparse);
+	ob_sparse_factor(&f->sparse);
+	ob_sparse_substitute(&f->sparse);
 	for (uint32_t k = 0; k < f->contacts; k++) {
 		ob_direct_contact *c = &f->contact[k];
 		ob_sparse_joint_impulses(&f->sparse, &c->joint, c->child - 1, sparse_index(w, c->parent));

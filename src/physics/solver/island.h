@@ -271,9 +271,10 @@ typedef struct ob_joint_set {
 	ob_sparse_solver sparse; // bodies: rows less 1
 	double step_begin; // s, time of the step's start
 	double stiffness; // 1/s: largest rate, by their forces, at which bodies may swing, in this step so far
+	double swing; // 1/s: the same, and of bodies that no joint pulls
 	bool failed; // a stage of this step was too long to be solved
 	uint32_t axes; // number of axes along which something acts
-	bool damped; // one of them has a damper
+	bool damped, soft; // one of them has a damper; or a spring
 	double now; // s: time of the poses at which the ends were found
 	// Share of its part, and s, length of the part, of the last flight; 0: none whose impulses are a guess for the next.
 	double last_share, last_length;

@@ -226,6 +226,11 @@ bool ob_axis_is_damped(const ob_held_joint *j)
 	return damping_of(j->axis) > 0;
 }
 
+bool ob_axis_is_soft(const ob_held_joint *j)
+{
+	return stiffness_of(j->axis) > 0 || ob_axis_is_damped(j);
+}
+
 double ob_axis_swing(const ob_held_joint *j)
 {
 	return ob_max(sqrt(stiffness_of(j->axis) * j->along.response), damping_of(j->axis) * j->along.response);

@@ -15,8 +15,6 @@
 
 #include "solver/solver.h"
 
-enum { OB_AXIS_ROWS = 2 }; // most rows of an axis beside the joint's own
-
 typedef enum ob_axis_event {
 	OB_AXIS_NONE,
 	OB_AXIS_LOW, // a limit is reached
@@ -52,6 +50,8 @@ bool ob_axis_slides(const ob_held_joint *j);
 double ob_axis_swing(const ob_held_joint *j);
 // True if its force depends on its rate.
 bool ob_axis_is_damped(const ob_held_joint *j);
+// True if a spring or a damper acts along the axis: its response is needed.
+bool ob_axis_is_soft(const ob_held_joint *j);
 // Restitution of a hit on a limit with this rate: 0 for slow ones.
 double ob_axis_restitution(const ob_held_joint *j, double rate);
 

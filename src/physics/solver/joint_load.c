@@ -8,8 +8,7 @@ static ob_joint_action sum_of(const ob_joint_action *a, const ob_joint_action *b
 	return (ob_joint_action){ ob_add(a->force, b->force), ob_add(a->torque, b->torque), a->along + b->along };
 }
 
-// Adds an impulse of a row of the first end.
-static void note_row(ob_held_joint *j, uint32_t r, double impulse)
+void ob_joint_note_row(ob_held_joint *j, uint32_t r, double impulse)
 {
 	const double *row = j->end[0].row ? j->rows.child[r] : j->rows.parent[r];
 	const ob_vec3 pull = ob_row_linear(row);
@@ -25,12 +24,7 @@ static void note_row(ob_held_joint *j, uint32_t r, double impulse)
 void ob_joint_note(ob_held_joint *j, const double *impulse)
 {
 	for (uint32_t r = 0; r < j->rows.rows; r++)
-		note_row(j, r, impulse[r]);
-}
-
-void ob_joint_note_axis(ob_held_joint *j, double impulse)
-{
-	note_row(j, j->base, impulse);
+		ob_joint_note_row(j, r, impulse[r]);
 }
 
 void ob_joint_loads_begin(ob_joint_set *set)

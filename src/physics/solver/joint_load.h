@@ -9,9 +9,9 @@
 
 #include "solver/solver.h"
 
-// Notes so much of the impulse of each row; of the axis alone.
+// Notes so much of the impulse of each row; of one of them.
 void ob_joint_note(ob_held_joint *j, const double *impulse);
-void ob_joint_note_axis(ob_held_joint *j, double impulse);
+void ob_joint_note_row(ob_held_joint *j, uint32_t r, double impulse);
 // Drops what was noted since the begin of the part, for all joints.
 void ob_joint_loads_begin(ob_joint_set *set);
 // Keeps what was noted since then; and goes back to that.

@@ -10,7 +10,7 @@
 #include "solver/joint_load.h"
 #include "solver/six.h"
 
-static const double compliance = 1e-9; // share of a row's own response
+static const double compliance = 1e-8; // share of a row's own response; it leaves as much as rounding does
 
 // ---- rows
 
@@ -202,29 +202,24 @@ static void find_row(const ob_held_joint *j, const row_rule *rule, double *of_a,
 // Sets the response of an end to an impulse of a row. Returns its part of the row's velocity.
 static double find_response(const ob_island_work *w, uint32_t body, const double *row, double *response)
 {
-	if (body == OB_SPARSE_FIXED) {
-		memset(response, 0, 6 * sizeof *response);
+	if (body == OB_SPARSE_FIXED)
 		return 0;
-	}
 	const ob_body *b = &w->body[1 + body];
-	double sum = 0;
 	set_row(response, ob_scale(ob_row_linear(row), b->inv_mass), ob_body_turned_by(b, ob_row_angular(row)));
-	for (int i = 0; i < 6; i++)
-		sum += row[i] * response[i];
-	return sum;
+	return ob_six_dot(row, response);
 }
 
 void ob_joint_find_rows(const ob_island_work *w, ob_held_joint *j)
 {
 	const bool swapped = j->end[0].row == 0;
-	for (uint32_t r = 0; r < j->base + (j->axis ? OB_AXIS_ROWS : 0); r++) {
+	for (uint32_t r = 0; r < j->rows.rows || r < j->base + (j->axis != NULL); r++) {
 		double *child = j->rows.child[r], *parent = j->rows.parent[r];
 		find_row(j, rule_of(j, r), swapped ? parent : child, swapped ? child : parent);
-		j->rows.compliance[r] = compliance * (find_response(w, j->child, child, j->response[0][r]) +
-						      find_response(w, j->parent, parent, j->response[1][r]));
+		const double response = find_response(w, j->child, child, j->response[0][r]) +
+					find_response(w, j->parent, parent, j->response[1][r]),
+			     soft = j->along.softness != 0 && r == j->base + j->along.engaged ? j->along.softness : 0;
+		j->rows.stiffness[r] = 1 / (compliance * response + soft);
 	}
-	if (j->along.softness != 0)
-		j->rows.compliance[j->base + j->along.engaged] += j->along.softness;
 }
 
 void ob_joints_set_inertias(const ob_island_work *w, ob_sparse_solver *t)
@@ -255,7 +250,6 @@ void ob_joints_factor(ob_island_work *w)
 	for (uint32_t i = 0; i < set->count; i++) {
 		ob_held_joint *j = &set->joint[i];
 		ob_joint_find_rows(w, j);
-		memset(j->rows.y, 0, sizeof j->rows.y);
 		ob_sparse_add_joint(&set->sparse, &j->rows, j->child, j->parent);
 	}
 	ob_sparse_factor(&set->sparse);
@@ -292,10 +286,7 @@ void ob_joints_find_responses(ob_island_work *w)
 static double row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_row *rows, const double *given)
 {
 	const double *child = rows[1 + j->child], *parent = j->parent == OB_SPARSE_FIXED ? given : rows[1 + j->parent];
-	double sum = 0;
-	for (int i = 0; i < 6; i++)
-		sum += j->rows.child[r][i] * child[i] + j->rows.parent[r][i] * parent[i];
-	return sum;
+	return ob_six_dot(j->rows.child[r], child) + ob_six_dot(j->rows.parent[r], parent);
 }
 
 double ob_joint_row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_row *rows)
@@ -303,13 +294,17 @@ double ob_joint_row_velocity(const ob_held_joint *j, uint32_t r, const ob_body_r
 	return row_velocity(j, r, rows, j->end[j->end[0].row != 0].given);
 }
 
+static void respond(const ob_held_joint *j, uint32_t r, double impulse, ob_body_row *rows)
+{
+	ob_six_add(rows[1 + j->child], impulse, j->response[0][r]);
+	if (j->parent != OB_SPARSE_FIXED)
+		ob_six_add(rows[1 + j->parent], impulse, j->response[1][r]);
+}
+
 void ob_joint_respond(const ob_held_joint *j, const double *impulse, ob_body_row *rows)
 {
-	for (uint32_t r = 0; r < j->rows.rows; r++) {
-		ob_six_add(rows[1 + j->child], impulse[r], j->response[0][r]);
-		if (j->parent != OB_SPARSE_FIXED)
-			ob_six_add(rows[1 + j->parent], impulse[r], j->response[1][r]);
-	}
+	for (uint32_t r = 0; r < j->rows.rows; r++)
+		respond(j, r, impulse[r], rows);
 }
 
 double ob_joint_axis_rate(const ob_held_joint *j, const ob_body_row *rows)
@@ -319,10 +314,8 @@ double ob_joint_axis_rate(const ob_held_joint *j, const ob_body_row *rows)
 
 void ob_joint_push_axis(ob_held_joint *j, double impulse, ob_body_row *rows)
 {
-	ob_joint_note_axis(j, impulse);
-	ob_six_add(rows[1 + j->child], impulse, j->response[0][j->base]);
-	if (j->parent != OB_SPARSE_FIXED)
-		ob_six_add(rows[1 + j->parent], impulse, j->response[1][j->base]);
+	ob_joint_note_row(j, j->base, impulse);
+	respond(j, j->base, impulse, rows);
 }
 
 void ob_joints_find_impulses(ob_island_work *w)
@@ -336,11 +329,14 @@ void ob_joints_find_impulses(ob_island_work *w)
 		ob_sparse_joint_impulses(&set->sparse, &set->joint[i].rows, set->joint[i].child, set->joint[i].parent);
 }
 
-// Lets rows move as their targets say, or not at all by a change of velocities: then their impulses are its share.
+// Lets rows move as their targets say, or not at all by a change of velocities: then their impulses are its share. Each pass takes
+// what the one before has left, until that is rounding.
 static void solve(ob_island_work *w, ob_body_row *rows, bool change, int passes)
 {
 	static const ob_body_row none;
+	double first = 0;
 	for (int pass = 0; w->joints.count && pass < passes; pass++) {
+		double most = 0;
 		for (uint32_t i = 0; i < w->joints.count; i++) {
 			ob_held_joint *j = &w->joints.joint[i];
 			const double *sum = change ? j->share : j->sum;
@@ -350,7 +346,12 @@ static void solve(ob_island_work *w, ob_body_row *rows, bool change, int passes)
 						      : j->target[r] - ob_joint_row_velocity(j, r, rows);
 			if (soft != 0)
 				j->rows.y[j->base + j->along.engaged] -= soft * sum[j->base + j->along.engaged];
+			for (uint32_t r = 0; r < j->rows.rows; r++)
+				most = ob_max(most, fabs(j->rows.y[r]));
 		}
+		first = ob_max(first, most);
+		if (most <= 1e-14 * first)
+			return;
 		ob_joints_find_impulses(w);
 		for (uint32_t i = 0; i < w->joints.count; i++) {
 			ob_held_joint *j = &w->joints.joint[i];
@@ -366,7 +367,7 @@ static void solve(ob_island_work *w, ob_body_row *rows, bool change, int passes)
 
 void ob_joints_solve(ob_island_work *w, ob_body_row *rows)
 {
-	solve(w, rows, false, 3);
+	solve(w, rows, false, 5);
 }
 
 void ob_joints_follow(ob_island_work *w, ob_body_row *change)
@@ -447,6 +448,7 @@ static void add_part(ob_island_work *w, uint32_t of, uint32_t part, const ob_joi
 	j->axis = &j->own;
 	w->joints.axes++;
 	w->joints.damped |= ob_axis_is_damped(j);
+	w->joints.soft |= ob_axis_is_soft(j);
 	ob_sparse_link(&w->joints.sparse, j->child, j->parent);
 }
 
@@ -492,6 +494,7 @@ static void load_joint(ob_island_work *w, const ob_island_input *in, const ob_is
 		j->axis = &from->joint->axis;
 		w->joints.axes++;
 		w->joints.damped |= ob_axis_is_damped(j);
+		w->joints.soft |= ob_axis_is_soft(j);
 	}
 	while (j->base < OB_JOINT_ROWS && rules[j->kind][j->base].type != NO_ROW)
 		j->base++;
@@ -521,9 +524,9 @@ void ob_joints_load(ob_solver *s, const ob_island_input *in)
 		set->joint = ob_reallocate(set->joint, set->max * sizeof *set->joint);
 	}
 	set->step_begin = (double)in->step * s->settings->step_length;
-	set->stiffness = set->last_share = 0;
+	set->stiffness = set->swing = set->last_share = 0;
 	set->axes = 0;
-	set->failed = set->breakable = set->damped = false;
+	set->failed = set->breakable = set->damped = set->soft = false;
 	ob_sparse_begin(&set->sparse, w->bodies);
 	for (uint32_t i = 0; i < in->joints; i++)
 		load_joint(w, in, &in->joint[i]);

@@ -15,7 +15,7 @@ static const double exact = 1e-14; // m, sine: violation that counts as none, be
 static const double rounding = 4e-16; // share of the coordinates
 static const double most_violation = 1e-6; // m, sine: a flight that ends with more was too long
 static const double misplaced = 1e-9; // m, sine: more at a step's start is not of a flight: bodies were put there
-static const double block_rate = 1; // rad: largest swing in a block
+static const double few_rate = .032; // rad: largest swing in a block of five flights, which err by 1e-9 of it then
 static const double flight_rate = .5; // rad: largest swing in a flight of a step without blocks
 
 enum {
@@ -181,35 +181,42 @@ static double inertia_across(const ob_body *b, ob_vec3 arm)
 	return 2 / (i[0] + i[3] + i[5] - ob_dot(arm, ob_body_turned_by(b, arm)) / length2);
 }
 
-// Squared rate (1/s^2) at which the body may swing about the arm of a joint that pulls with a force (N), or turns it.
-static double swing_rate2(const ob_island_work *w, const ob_joint_end *e, double force)
+// Notes squared rates (1/s^2) of the body at an end of a joint that pulls with a force (N): at which that may swing it about its arm,
+// or turns it; and all, also those of a pendulum that turns back, of the end of a distance, of a top that nods.
+static void note_rates2(const ob_island_work *w, const ob_held_joint *j, const ob_joint_end *e, double force,
+			double *swing, double *all)
 {
 	const ob_body *b = &w->body[e->row];
-	const double length2 = e->row ? ob_norm2(e->arm) : 0;
-	if (!(length2 > 0))
-		return 0;
 	const bool alone = b->joints == 1;
-	const double inertia = inertia_across(b, e->arm) + (alone ? b->mass * length2 : 0);
-	const double pulled = (alone ? 1 : 2) * force * sqrt(length2) / inertia;
-	return ob_max(pulled, ob_norm2(ob_cross(ob_row_angular(w->v[e->row]), e->arm)) / length2);
+	const double arm = ob_norm(e->arm), pull = ob_max(force, b->mass * ob_norm(b->acceleration)),
+		     round = j->length > 0 ? 2 * pull * b->inv_mass / j->length : 0;
+	const ob_vec3 rate = ob_row_angular(w->v[e->row]), own = ob_rotate_back(&b->r, rate), i = b->inertia;
+	*all = ob_max(*all, e->row ? round : 0);
+	if (!e->row || !(arm > 0))
+		return;
+	const double own_inertia = inertia_across(b, e->arm), inertia = own_inertia + (alone ? b->mass * arm * arm : 0),
+		     spin = ob_norm(ob_v3(i.x * own.x, i.y * own.y, i.z * own.z)) / own_inertia,
+		     turns = ob_norm(ob_cross(rate, e->arm)) / arm;
+	*swing = ob_max(*swing, ob_max((alone ? 1 : 2) * force * arm / inertia, turns * turns));
+	*all = ob_max(*all, round + ob_max(spin * spin, 2 * pull * arm / inertia));
 }
 
 // Notes the stiffness of the joints, whose impulses at the end of a flight of h (s) have been found.
 static void note_stiffness(ob_island_work *w, double h)
 {
-	double most = 0;
+	double most = 0, all = 0;
 	for (uint32_t i = 0; i < w->joints.count; i++) {
 		const ob_held_joint *j = &w->joints.joint[i];
 		ob_vec3 pull = { 0, 0, 0 };
 		for (uint32_t r = 0; r < j->rows.rows; r++)
 			pull = ob_madd(pull, j->sum[r], ob_row_linear(j->rows.child[r]));
-		const double force = 2 * ob_norm(pull) / fabs(h);
 		for (int side = 0; side < 2; side++)
-			most = ob_max(most, swing_rate2(w, &j->end[side], force));
+			note_rates2(w, j, &j->end[side], 2 * ob_norm(pull) / fabs(h), &most, &all);
 		if (j->axis)
 			most = ob_max(most, ob_axis_swing(j) * ob_axis_swing(j));
 	}
 	w->joints.stiffness = ob_max(w->joints.stiffness, sqrt(most));
+	w->joints.swing = ob_max(w->joints.swing, sqrt(ob_max(most, all)));
 }
 
 // Rows of rotors move as their rotors do.
@@ -222,7 +229,7 @@ static void aim_rotors(ob_island_work *w)
 	}
 }
 
-// Before a flight of h (s): what acts along axes is given by the rates that it leaves if there are dampers.
+// Begins a flight of h (s): forces along axes are those of the rates that they leave, if there are dampers.
 static void begin_flight(ob_island_work *w, double h)
 {
 	note_rates(w);
@@ -231,13 +238,9 @@ static void begin_flight(ob_island_work *w, double h)
 		push_axes(w, h);
 		return;
 	}
-	for (uint32_t i = 0; i < w->joints.count; i++)
-		memcpy(w->joints.joint[i].guess, w->joints.joint[i].sum, sizeof w->joints.joint[i].sum);
 	push_axes_implicitly(w, h);
 	factor(w, 0);
 	note_rates(w);
-	for (uint32_t i = 0; i < w->joints.count; i++)
-		memcpy(w->joints.joint[i].sum, w->joints.joint[i].guess, sizeof w->joints.joint[i].sum);
 }
 
 // After it: the other way round, so that the flight is symmetric.
@@ -267,6 +270,8 @@ static void set_flight(ob_island_work *w, double h)
 static void fly(ob_island_work *w, double h, double end)
 {
 	begin_flight(w, h);
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		memcpy(w->joints.joint[i].sum, w->joints.joint[i].guess, sizeof w->joints.joint[i].sum);
 	for (uint32_t row = 1; row <= w->bodies; row++) {
 		ob_body *body = &w->body[row];
 		body->start_p = body->p;
@@ -289,8 +294,8 @@ static void fly(ob_island_work *w, double h, double end)
 static void guess(ob_island_work *w, double ratio)
 {
 	for (uint32_t i = 0; i < w->joints.count; i++)
-		for (uint32_t r = 0; r < w->joints.joint[i].rows.rows; r++)
-			w->joints.joint[i].sum[r] *= ratio;
+		for (uint32_t r = 0; r < OB_JOINT_ROWS; r++)
+			w->joints.joint[i].guess[r] = ratio * w->joints.joint[i].sum[r];
 }
 
 // Adds what the bodies have moved at most in h (s) to their paths, and counts their turns.
@@ -359,6 +364,9 @@ void ob_joints_project(ob_solver *s)
 static const double shares[] = { .39216144400731413928,  .33259913678935943860, -.70624617255763935981,
 				 .082213596293550800230, .79854399093482996340, .082213596293550800230,
 				 -.70624617255763935981, .33259913678935943860, .39216144400731413928 };
+// Five flights of the fourth order that begin as those nine do.
+static const double few_shares[] = { .39216144400731413928, .43851686650098997310, -.66135662102160822476,
+				     .43851686650098997310, .39216144400731413928 };
 static const double single[] = { 1 };
 
 // Division of a step into parts of h (s), each of so many flights.
@@ -384,21 +392,56 @@ static division divide(const ob_solver *s)
 			   s->settings->step_length / parts };
 }
 
-// Flies from part "from" of the step, a share of it may have been done, for h (s).
-static void fly_part(ob_solver *s, const division *d, double from, double h)
+// An event along the axis of a joint, and how far its state is from it.
+typedef struct axis_event {
+	double margin;
+	uint32_t joint;
+	ob_axis_event kind;
+} axis_event;
+
+// Returns the event that has happened most, or that is nearest.
+static axis_event next_event(const ob_island_work *w)
+{
+	const double half = .5 * w->joints.last_share * w->joints.last_length;
+	axis_event next = { INFINITY, 0, OB_AXIS_NONE };
+	for (uint32_t i = 0; i < w->joints.count; i++) {
+		const ob_held_joint *j = &w->joints.joint[i];
+		ob_axis_event kind;
+		if (!j->axis)
+			continue;
+		const double force = j->along.engaged && half != 0 ? j->sum[j->base] / half : 0,
+			     margin = ob_axis_margin(j, ob_joint_axis_rate(j, w->v), force, &kind);
+		if (margin < next.margin)
+			next = (axis_event){ margin, i, kind };
+	}
+	return next;
+}
+
+// Flies from part "from" of the step, a share of it may have been done, for h (s); not on from its first flight if the event that
+// this finds has happened. event: NULL: none is looked for. Returns the time flown.
+static double fly_part(ob_solver *s, const division *d, double from, double h, axis_event *event)
 {
 	enum { WORK_OF_FLIGHT = 64 }; // for a joint
 	ob_island_work *w = &s->island;
+	const bool alone = d->share == single || (w->joints.swing > 0 && w->joints.swing * h < few_rate * few_rate);
+	const double *share = alone ? single : d->share;
+	uint32_t flights = alone ? 1 : d->flights;
 	double done = 0;
-	for (uint32_t i = 0; i < d->flights && !w->joints.failed; i++) {
-		done += d->share[i];
-		if (w->joints.last_share != 0)
-			guess(w, d->share[i] / w->joints.last_share * (h / w->joints.last_length));
+	for (uint32_t i = 0; i < flights && !w->joints.failed; i++) {
+		done += share[i];
+		guess(w, w->joints.last_share != 0 ? share[i] / w->joints.last_share * (h / w->joints.last_length) : 0);
 		ob_budget_note(s, WORK_OF_FLIGHT * w->joints.count);
-		const double part = (i + 1 < d->flights ? done : 1) * (h / d->h);
-		fly(w, d->share[i] * h, w->joints.step_begin + (from + part) * d->h);
-		w->joints.last_share = d->share[i], w->joints.last_length = h;
+		const double part = (i + 1 < flights ? done : 1) * (h / d->h);
+		fly(w, share[i] * h, w->joints.step_begin + (from + part) * d->h);
+		w->joints.last_share = share[i], w->joints.last_length = h;
+		if (i == 0 && share == shares && w->joints.swing * h < few_rate)
+			share = few_shares, flights = sizeof few_shares / sizeof *few_shares;
+		if (event && (i == 0 || i + 1 == flights))
+			*event = next_event(w);
+		if (event && event->margin < 0)
+			return done * h;
 	}
+	return h;
 }
 
 // Lets velocities be those that the rows allow, after these have changed.
@@ -440,31 +483,6 @@ static void put_back(ob_island_work *w, uint32_t of, double time)
 	factor(w, 0);
 	clear_sums(w);
 	w->joints.last_share = 0;
-}
-
-// An event along the axis of a joint, and how far its state is from it.
-typedef struct axis_event {
-	double margin;
-	uint32_t joint;
-	ob_axis_event kind;
-} axis_event;
-
-// Returns the event that has happened most, or that is nearest.
-static axis_event next_event(const ob_island_work *w)
-{
-	const double half = .5 * w->joints.last_share * w->joints.last_length;
-	axis_event next = { INFINITY, 0, OB_AXIS_NONE };
-	for (uint32_t i = 0; i < w->joints.count; i++) {
-		const ob_held_joint *j = &w->joints.joint[i];
-		ob_axis_event kind;
-		if (!j->axis)
-			continue;
-		const double force = j->along.engaged ? j->sum[j->base] / half : 0,
-			     margin = ob_axis_margin(j, ob_joint_axis_rate(j, w->v), force, &kind);
-		if (margin < next.margin)
-			next = (axis_event){ margin, i, kind };
-	}
-	return next;
 }
 
 static void enter_axes(ob_island_work *w)
@@ -534,7 +552,7 @@ typedef struct bracket {
 	double last, before; // its width at the last two tries
 } bracket;
 
-// Next instant to try. Many events happen at once: the shortest flight comes first. Then it is a false position (Illinois),
+// Next instant to try. Forces change at once: without a margin at the start the shortest flight comes first. Then it is a false position (Illinois),
 // beyond an end that is at the event, so that the bracket closes; the middle where two tries have not halved it.
 static double try_at(bracket *b, double shortest, double resolved)
 {
@@ -542,7 +560,7 @@ static double try_at(bracket *b, double shortest, double resolved)
 		     t = (b->low * b->high_margin - b->high * b->low_margin) / (b->high_margin - b->low_margin);
 	const bool halves = width <= .5 * b->before;
 	b->before = b->last, b->last = width;
-	if (b->low <= 0 && b->high > shortest)
+	if (b->low <= 0 && (b->low_margin <= 0 || t < shortest) && b->high > shortest)
 		return shortest;
 	return halves ? ob_max(b->low + inset, ob_min(t, b->high - inset)) : .5 * (b->low + b->high);
 }
@@ -564,33 +582,41 @@ static double fly_to_event(ob_solver *s, const division *d, double from, double 
 	const double shortest = 1e-3 * d->h,
 		     exact_time = 1e-10 * d->h; // shorter flights find no forces, but for rounding
 	ob_island_work *w = &s->island;
+	if (!w->joints.axes)
+		return fly_part(s, d, from, h, NULL);
 	keep_states(w, OF_EVENT);
-	fly_part(s, d, from, h);
 	axis_event event = next_event(w);
+	const double start = event.margin;
+	double t = fly_part(s, d, from, h, &event);
+	bool found = t == h; // by the whole part: its first flight alone may find what is not there
 	if (w->joints.failed || event.margin >= 0 || ob_budget_spent(s))
 		return h;
-	bracket b = { .high = h, .high_margin = event.margin, .last = INFINITY, .before = INFINITY };
-	double t = h;
+	bracket b = { .low_margin = w->joints.joint[event.joint].along.engaged ? 0 : start,
+		      .high = t,
+		      .high_margin = event.margin,
+		      .last = INFINITY,
+		      .before = INFINITY };
 	for (int round = 0; round < MOST_ROUNDS && b.high - b.low > exact_time && b.high > shortest; round++) {
 		put_back(w, OF_EVENT, w->joints.step_begin + from * d->h);
 		t = try_at(&b, shortest, exact_time);
-		fly_part(s, d, from, t);
+		fly_part(s, d, from, t, NULL);
 		const axis_event now = next_event(w);
 		narrow(&b, t, now.margin);
 		if (now.margin < 0)
-			event = now;
+			event = now, found = true;
 	}
 	if (t != b.low) {
 		put_back(w, OF_EVENT, w->joints.step_begin + from * d->h);
 		if (b.low > 0)
-			fly_part(s, d, from, b.low);
+			fly_part(s, d, from, b.low, NULL);
 	}
-	pass(w, &event);
+	if (found)
+		pass(w, &event);
 	return b.low;
 }
 
 // Flies through a part of the step, from one event along an axis to the next.
-static void fly_with_axes(ob_solver *s, const division *d, uint32_t part)
+static void fly_whole_part(ob_solver *s, const division *d, uint32_t part)
 {
 	enum { MOST_EVENTS = 64 };
 	ob_island_work *w = &s->island;
@@ -598,15 +624,7 @@ static void fly_with_axes(ob_solver *s, const division *d, uint32_t part)
 	for (int event = 0; done < d->h && event < MOST_EVENTS && !w->joints.failed && !ob_budget_spent(s); event++)
 		done += fly_to_event(s, d, (double)part + done / d->h, d->h - done);
 	if (done < d->h && !w->joints.failed)
-		fly_part(s, d, (double)part + done / d->h, d->h - done);
-}
-
-static void fly_whole_part(ob_solver *s, const division *d, uint32_t part)
-{
-	if (s->island.joints.axes)
-		fly_with_axes(s, d, part);
-	else
-		fly_part(s, d, part, d->h);
+		fly_part(s, d, (double)part + done / d->h, d->h - done, NULL);
 }
 
 static void find_axes(ob_island_work *w, double time)
@@ -615,8 +633,12 @@ static void find_axes(ob_island_work *w, double time)
 	if (!w->joints.axes)
 		return;
 	ob_joints_free_axes(w);
-	factor(w, 0);
-	ob_joints_find_responses(w);
+	for (uint32_t i = 0; i < w->joints.count; i++)
+		ob_joint_find_rows(w, &w->joints.joint[i]);
+	if (w->joints.soft) {
+		ob_joints_factor(w);
+		ob_joints_find_responses(w);
+	}
 	enter_axes(w);
 	ob_joints_find(w, time);
 }
@@ -677,9 +699,9 @@ uint32_t ob_joints_substeps(const ob_solver *s)
 	uint32_t n = s->settings->substeps;
 	if (set->failed)
 		return s->island.substeps < OB_MAX_SUBSTEPS / 2 ? 2 * s->island.substeps : OB_MAX_SUBSTEPS;
-	while (n < MOST_BLOCKS * block && block_rate * n < swing * block)
+	while (n < MOST_BLOCKS * block && n < swing * block)
 		n *= 2;
-	if (block_rate * n < swing * block)
+	if (n < swing * block)
 		for (n *= 2; n < OB_MAX_SUBSTEPS && flight_rate * n < swing;)
 			n *= 2;
 	return n < OB_MAX_SUBSTEPS ? n : OB_MAX_SUBSTEPS;

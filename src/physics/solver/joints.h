@@ -6,7 +6,8 @@
 //     v' = v + M^-1 J^T x, x such that g = 0 after     free flight by v'     v = v' + M'^-1 J'^T y, y such that
 //     the flight                                                             J' v = 0
 //
-// Nine such flights of different lengths, some of them backwards, make a block of the sixth order (Kahan and Li 1997).
+// Nine such flights of different lengths, some of them backwards, make a block of the sixth order (Kahan and Li 1997). Short ones
+// have five of the fourth order.
 // A step has single flights, of the second order, if its joints pull so hard that a block would have to be very short.
 //
 // In other islands joints are solved between the contacts' iterations. Bodies go half of the way freely; there J u = -J v

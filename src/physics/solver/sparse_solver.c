@@ -136,9 +136,6 @@ static void reserve_blocks(ob_sparse_solver *t, uint32_t blocks)
 		free(t->block);
 		t->block = ob_allocate(t->blocks_max * sizeof *t->block);
 	}
-	if (blocks)
-		memset(t->block, 0, blocks * sizeof *t->block);
-	memset(t->change, 0, t->bodies * sizeof *t->change);
 }
 
 bool ob_sparse_analyse(ob_sparse_solver *t, uint32_t most)
@@ -207,24 +204,18 @@ void ob_sparse_begin_side(ob_sparse_solver *t)
 void ob_sparse_push(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent)
 {
 	for (uint32_t r = 0; r < j->rows; r++) {
-		const double push = j->y[r] / j->compliance[r];
+		const double push = j->stiffness[r] * j->y[r];
 		ob_six_add(t->change[child], push, j->child[r]);
 		if (parent != OB_SPARSE_FIXED)
 			ob_six_add(t->change[parent], push, j->parent[r]);
 	}
 }
 
-// Adds x y^T.
-static void add_product(double (*m)[6], const double *x, const double *y)
+// Adds s x y^T, or its lower triangle: the upper one is undefined then.
+static void add_product(double (*m)[6], double s, const double *x, const double *y, bool lower)
 {
 	for (int i = 0; i < 6; i++)
-		ob_six_add(m[i], x[i], y);
-}
-
-static void set_scaled(double *out, double s, const double *x)
-{
-	memcpy(out, x, 6 * sizeof *out);
-	ob_six_scale(out, s);
+		ob_six_add_pairs(m[i], s * x[i], y, lower ? 1 + i / 2 : 3);
 }
 
 void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent)
@@ -234,23 +225,20 @@ void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child,
 	double(*both)[6] =
 		fixed ? NULL : t->block[child_first ? block_of(t, child, parent) : block_of(t, parent, child)];
 	for (uint32_t r = 0; r < j->rows; r++) {
-		const double stiffness = 1 / j->compliance[r], push = stiffness * j->y[r];
-		double of_child[6], of_parent[6];
-		set_scaled(of_child, stiffness, j->child[r]);
-		add_product(t->own[child], of_child, j->child[r]);
-		ob_six_add(t->change[child], push, j->child[r]);
+		const double *x = child_first ? j->child[r] : j->parent[r],
+			     *y = child_first ? j->parent[r] : j->child[r];
+		add_product(t->own[child], j->stiffness[r], j->child[r], j->child[r], true);
 		if (fixed)
 			continue;
-		set_scaled(of_parent, stiffness, j->parent[r]);
-		add_product(t->own[parent], of_parent, j->parent[r]);
-		add_product(both, child_first ? j->child[r] : j->parent[r], child_first ? of_parent : of_child);
-		ob_six_add(t->change[parent], push, j->parent[r]);
+		add_product(t->own[parent], j->stiffness[r], j->parent[r], j->parent[r], true);
+		add_product(both, j->stiffness[r], x, y, false);
 	}
 }
 
 // ---- solve
 
-// Replaces the lower triangle by its Cholesky factor. A direction with nothing left but rounding does not move.
+// Replaces the lower triangle by its Cholesky factor, and the upper one by its transpose. A direction with nothing left but rounding
+// does not move.
 static void cholesky(double (*m)[6], double *inverse)
 {
 	for (int i = 0; i < 6; i++)
@@ -259,7 +247,7 @@ static void cholesky(double (*m)[6], double *inverse)
 			for (int k = 0; k < j; k++)
 				sum -= m[i][k] * m[j][k];
 			if (i > j) {
-				m[i][j] = sum * inverse[j];
+				m[i][j] = m[j][i] = sum * inverse[j];
 				continue;
 			}
 			inverse[i] = sum > 0 ? 1 / sqrt(sum) : 0;
@@ -270,65 +258,55 @@ static void cholesky(double (*m)[6], double *inverse)
 // x <- L^-1 x
 static void lower_solve(double (*root)[6], const double *inverse, double *x)
 {
-	for (int i = 0; i < 6; i++) {
-		for (int k = 0; k < i; k++)
-			x[i] -= root[i][k] * x[k];
-		x[i] *= inverse[i];
+	for (int k = 0; k < 6; k++) {
+		x[k] *= inverse[k];
+		for (int i = k + 1; i < 6; i++)
+			x[i] -= root[k][i] * x[k];
 	}
 }
 
 // x <- L^-T x
 static void upper_solve(double (*root)[6], const double *inverse, double *x)
 {
-	for (int i = 5; i >= 0; i--) {
-		for (int k = i + 1; k < 6; k++)
+	for (int k = 5; k >= 0; k--) {
+		x[k] *= inverse[k];
+		for (int i = 0; i < k; i++)
 			x[i] -= root[k][i] * x[k];
-		x[i] *= inverse[i];
 	}
 }
 
 // block <- L^-1 block
 static void lower_solve_block(double (*root)[6], const double *inverse, double (*block)[6])
 {
-	for (int i = 0; i < 6; i++) {
-		double row[6];
-		memcpy(row, block[i], sizeof row);
-		for (int k = 0; k < i; k++)
-			ob_six_add(row, -root[i][k], block[k]);
-		set_scaled(block[i], inverse[i], row);
+	for (int k = 0; k < 6; k++) {
+		ob_six_scale(block[k], inverse[k]);
+		for (int i = k + 1; i < 6; i++)
+			ob_six_add(block[i], -root[i][k], block[k]);
 	}
 }
 
-// m <- m - a^T b
-static void subtract(double (*m)[6], double (*a)[6], double (*b)[6])
+// m <- m - a^T b, as above
+static void subtract(double (*m)[6], double (*a)[6], double (*b)[6], bool lower)
 {
-	for (int i = 0; i < 6; i++) {
-		double row[6];
-		memcpy(row, m[i], sizeof row);
-		for (int k = 0; k < 6; k++)
-			ob_six_add(row, -a[k][i], b[k]);
-		memcpy(m[i], row, sizeof row);
-	}
+	for (int k = 0; k < 6; k++)
+		add_product(m, -1, a[k], b[k], lower);
 }
 
 static void eliminate_body(ob_sparse_solver *t, uint32_t k)
 {
 	const uint32_t body = t->order[k], from = t->first[k], to = t->first[k + 1];
 	cholesky(t->own[body], t->inverse[body]);
-	lower_solve(t->own[body], t->inverse[body], t->change[body]);
 	for (uint32_t i = from; i < to; i++)
 		lower_solve_block(t->own[body], t->inverse[body], t->block[i]);
 	for (uint32_t i = from; i < to; i++) {
 		const uint32_t sooner = t->below[i], place = t->node[sooner].place;
-		subtract(t->own[sooner], t->block[i], t->block[i]);
-		for (int c = 0; c < 6; c++)
-			ob_six_add(t->change[sooner], -t->change[body][c], t->block[i][c]);
+		subtract(t->own[sooner], t->block[i], t->block[i], true);
 		for (uint32_t j = t->first[place]; to - from > 1 && j < t->first[place + 1]; j++)
 			t->node[t->below[j]].mark = j;
 		for (uint32_t j = from; j < to; j++) {
 			const uint32_t later = t->below[j];
 			if (t->node[later].place > place)
-				subtract(t->block[t->node[later].mark], t->block[i], t->block[j]);
+				subtract(t->block[t->node[later].mark], t->block[i], t->block[j], false);
 		}
 	}
 }
@@ -338,8 +316,7 @@ static void back_substitute(ob_sparse_solver *t, uint32_t k)
 	const uint32_t body = t->order[k];
 	for (uint32_t i = t->first[k]; i < t->first[k + 1]; i++)
 		for (int c = 0; c < 6; c++)
-			for (int r = 0; r < 6; r++)
-				t->change[body][c] -= t->block[i][c][r] * t->change[t->below[i]][r];
+			t->change[body][c] -= ob_six_dot(t->block[i][c], t->change[t->below[i]]);
 	upper_solve(t->own[body], t->inverse[body], t->change[body]);
 }
 
@@ -366,22 +343,13 @@ void ob_sparse_substitute(ob_sparse_solver *t)
 		back_substitute(t, k);
 }
 
-void ob_sparse_solve(ob_sparse_solver *t)
-{
-	ob_sparse_factor(t);
-	for (uint32_t k = t->bodies; k-- > t->unlinked;)
-		back_substitute(t, k);
-}
-
 void ob_sparse_joint_impulses(const ob_sparse_solver *t, ob_joint *j, uint32_t child, uint32_t parent)
 {
 	for (uint32_t r = 0; r < j->rows; r++) {
-		double left = j->y[r];
-		for (int i = 0; i < 6; i++)
-			left -= j->child[r][i] * t->change[child][i];
-		for (int i = 0; i < 6 && parent != OB_SPARSE_FIXED; i++)
-			left -= j->parent[r][i] * t->change[parent][i];
-		j->x[r] = left / j->compliance[r];
+		double left = j->y[r] - ob_six_dot(j->child[r], t->change[child]);
+		if (parent != OB_SPARSE_FIXED)
+			left -= ob_six_dot(j->parent[r], t->change[parent]);
+		j->x[r] = j->stiffness[r] * left;
 	}
 }
 

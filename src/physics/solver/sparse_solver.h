@@ -34,7 +34,7 @@ typedef struct ob_joint {
 	uint32_t rows;
 	double child[OB_JOINT_ROWS][6], parent[OB_JOINT_ROWS][6]; // J_c, J_p
 	double y[OB_JOINT_ROWS]; // m/s, rad/s
-	double compliance[OB_JOINT_ROWS];
+	double stiffness[OB_JOINT_ROWS]; // e^-1
 	double x[OB_JOINT_ROWS]; // impulses
 } ob_joint;
 
@@ -88,7 +88,6 @@ static inline bool ob_sparse_is_linked(const ob_sparse_solver *t, uint32_t body)
 // Sets the body's inertia.
 void ob_sparse_set_inertia(ob_sparse_solver *t, uint32_t body, double (*m)[6]);
 void ob_sparse_add_joint(ob_sparse_solver *t, const ob_joint *j, uint32_t child, uint32_t parent);
-void ob_sparse_solve(ob_sparse_solver *t);
 // For several right-hand sides of the same joints. Clear, then set inertias and add joints; factor; then for each side
 // begin it, push with the joints' y, and substitute.
 void ob_sparse_clear(ob_sparse_solver *t);
