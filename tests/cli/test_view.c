@@ -98,6 +98,31 @@ static void test_all(void)
 	free(text);
 }
 
+static void test_sensors(void)
+{
+	ob_top_sensor sensors[3] = {
+		{ .passport = { .kind = OB_SENSOR_IMU, .object = 4, .width = 6, .name = "imu#0" },
+		  .number = 7,
+		  .time = .25,
+		  .value = { 1.5, 0, -2, 0, 0, .125 } },
+		{ .passport = { .kind = OB_SENSOR_LIDAR, .width = 360, .name = "a\033[2J" },
+		  .number = 1,
+		  .value = { 2.25 } },
+		{ .passport = { .kind = OB_SENSOR_CAMERA, .beams = 64, .rows = 36, .name = "eye" } },
+	};
+	ob_top_sample s = make_sample();
+	ob_top_view view = { 0 };
+	s.sensor = sensors, s.sensors = 3;
+	char *text = show(&view, &s);
+	CHECK(strstr(text, "imu#0") && strstr(text, "0.2500") && strstr(text, "0.125"));
+	CHECK(strstr(text, "nearest 2.25 of 360") && strstr(text, "64 x 36") && !strchr(text, '\033'));
+	free(text);
+	view = (ob_top_view){ .columns = 80, .lines = 6, .sensors = true };
+	text = show(&view, &s);
+	CHECK(strstr(text, "SENSOR") && !strstr(text, "box 0 "));
+	free(text);
+}
+
 static void test_harmless(void)
 {
 	ob_top_sample s = make_sample();
@@ -123,6 +148,7 @@ int main(void)
 	setlocale(LC_CTYPE, "C.UTF-8");
 	test_sizes();
 	test_all();
+	test_sensors();
 	test_harmless();
 	return check_end();
 }

@@ -27,8 +27,8 @@ CAMERA = 'camera { on = "car", name = "eye", at = { .2, 0, .3 }, width = 40, hei
 class Client(server.Viewer):
 	"""What Foxglove does: channels by topic, and their messages."""
 
-	def __init__(self, port, **more):
-		super().__init__(port, "/", protocol="foxglove.websocket.v1", **more)
+	def __init__(self, port, protocol="foxglove.websocket.v1", **more):
+		super().__init__(port, "/", protocol=protocol, **more)
 		self.info, self.channels, self.found, self.clock, self.said = None, {}, {}, -1, []
 		self.until(lambda: self.channels)
 
@@ -116,7 +116,7 @@ class Foxglove(server.Case):
 	def test_parameters(self):
 		self.begin("--foxglove")
 		watcher = self.client(headers=("Origin: https://app.foxglove.dev",))
-		for c in watcher, self.client():
+		for c in watcher, self.client(protocol="foxglove.sdk.v1"):
 			c.send(op="getParameters", parameterNames=[], id="now")
 			c.until(lambda c=c: c.said)
 			self.assertEqual(c.said.pop(), {"op": "parameterValues", "parameters": [{"name": "n", "value": 3}], "id": "now"})

@@ -427,7 +427,8 @@ void ob_options_help(FILE *f, ob_command_bit command)
 		print_line(f, left, help_of((ob_option_id)i, command));
 	}
 	if (command == OB_COMMAND_TOP)
-		fputs("\nKeys: q quits, w shows workers or objects, s sorts by id or speed, arrows and page keys "
+		fputs("\nKeys: q quits, w shows workers, n sensors, or objects again, s sorts by id or speed, arrows "
+		      "and page keys "
 		      "scroll.\n",
 		      f);
 	if (command == OB_COMMAND_RUN)

@@ -103,15 +103,13 @@ static ob_key name_key(const char *bytes)
 		const char *bytes;
 		ob_key key;
 	} keys[] = {
-		{ "q", OB_KEY_QUIT },          { "Q", OB_KEY_QUIT },
-		{ "\003", OB_KEY_QUIT },       { "k", OB_KEY_UP },
-		{ "j", OB_KEY_DOWN },          { " ", OB_KEY_PAGE_DOWN },
-		{ "w", OB_KEY_WORKERS },       { "s", OB_KEY_SORT },
-		{ "\033[A", OB_KEY_UP },       { "\033[B", OB_KEY_DOWN },
-		{ "\033OA", OB_KEY_UP },       { "\033OB", OB_KEY_DOWN },
-		{ "\033[5~", OB_KEY_PAGE_UP }, { "\033[6~", OB_KEY_PAGE_DOWN },
-		{ "\033[H", OB_KEY_HOME },     { "\033[F", OB_KEY_END },
-		{ "\033[1~", OB_KEY_HOME },    { "\033[4~", OB_KEY_END },
+		{ "q", OB_KEY_QUIT },      { "Q", OB_KEY_QUIT },          { "\003", OB_KEY_QUIT },
+		{ "k", OB_KEY_UP },        { "j", OB_KEY_DOWN },          { " ", OB_KEY_PAGE_DOWN },
+		{ "w", OB_KEY_WORKERS },   { "s", OB_KEY_SORT },          { "n", OB_KEY_SENSORS },
+		{ "\033[A", OB_KEY_UP },   { "\033[B", OB_KEY_DOWN },     { "\033OA", OB_KEY_UP },
+		{ "\033OB", OB_KEY_DOWN }, { "\033[5~", OB_KEY_PAGE_UP }, { "\033[6~", OB_KEY_PAGE_DOWN },
+		{ "\033[H", OB_KEY_HOME }, { "\033[F", OB_KEY_END },      { "\033[1~", OB_KEY_HOME },
+		{ "\033[4~", OB_KEY_END },
 	};
 	for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
 		if (strcmp(keys[i].bytes, bytes) == 0)

@@ -18,6 +18,7 @@ typedef enum ob_key {
 	OB_KEY_END,
 	OB_KEY_WORKERS, // w
 	OB_KEY_SORT, // s
+	OB_KEY_SENSORS, // n
 } ob_key;
 
 // Standard input and output must be a terminal. ob_terminal_leave restores it, and so do signals that end the process.

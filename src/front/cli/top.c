@@ -200,6 +200,37 @@ static void write_objects(ob_top_view *view, ob_top_sample *s, FILE *f)
 		put_object(view, &s->object[view->scroll + i], f);
 }
 
+static void put_sensor(ob_top_view *view, const ob_top_sensor *o, FILE *f)
+{
+	const ob_sensor_passport *p = &o->passport;
+	char line[LINE_MAX_BYTES], name[128], object[16] = "-";
+	const int pad = NAME_WIDTH - clean_name(p->name, NAME_WIDTH, name, sizeof name);
+	const char *kind = ob_sensor_kind_name(p->kind);
+	if (p->kind != OB_SENSOR_ENCODER)
+		snprintf(object, sizeof object, "%" PRIu32, p->object);
+	int n = snprintf(line, sizeof line, "%s%*s %-12s %6s", name, pad, "", kind ? kind : "?", object);
+	if (o->number)
+		n += snprintf(line + n, sizeof line - (size_t)n, " %9.4f", o->time);
+	if (p->kind == OB_SENSOR_CAMERA)
+		snprintf(line + n, sizeof line - (size_t)n, "  picture %" PRIu64 " of %" PRIu32 " x %" PRIu32,
+			 o->number, p->beams, p->rows);
+	else if (p->kind == OB_SENSOR_LIDAR && o->number)
+		snprintf(line + n, sizeof line - (size_t)n, "  nearest %.4g of %" PRIu32, o->value[0], p->width);
+	else
+		for (uint32_t k = 0; k < p->width && k < sizeof o->value / sizeof *o->value && o->number; k++)
+			n += snprintf(line + n, sizeof line - (size_t)n, " %8.4g", tidy(o->value[k]));
+	put_line(view, f, line);
+}
+
+static void write_sensors(ob_top_view *view, const ob_top_sample *s, FILE *f)
+{
+	put_line(view, f, "");
+	put_line(view, f, "SENSOR       KIND         OBJECT    TIME s  VALUES");
+	const uint32_t shown = fit(view, s->sensors, 0);
+	for (uint32_t i = 0; i < shown; i++)
+		put_sensor(view, &s->sensor[view->scroll + i], f);
+}
+
 void ob_top_view_write(ob_top_view *view, ob_top_sample *s, FILE *f)
 {
 	view->written = 0;
@@ -210,6 +241,10 @@ void ob_top_view_write(ob_top_view *view, ob_top_sample *s, FILE *f)
 		put_workers(view, s, view->scroll, shown, f);
 		return;
 	}
+	if (view->sensors && !all) {
+		write_sensors(view, s, f);
+		return;
+	}
 	uint32_t glance = all || s->workers < WORKERS_AT_A_GLANCE ? s->workers : WORKERS_AT_A_GLANCE;
 	put_workers(view, s, 0, glance, f);
 	if (glance < s->workers) {
@@ -218,6 +253,8 @@ void ob_top_view_write(ob_top_view *view, ob_top_sample *s, FILE *f)
 		put_line(view, f, line);
 	}
 	write_objects(view, s, f);
+	if (all && s->sensors)
+		write_sensors(view, s, f);
 }
 
 // ---- top sample
@@ -319,6 +356,33 @@ static bool look_at_workers(ob_top_sample *s, const ob_universe *u)
 	return true;
 }
 
+// Reads the newest sample of each sensor.
+static bool look_at_sensors(ob_top_sample *s, const ob_universe *u)
+{
+	double value[OB_SENSOR_VALUES_MAX];
+	void *records = s->sensor;
+	const bool fine = grow(&records, &s->sensor_room, ob_universe_sensors(u), sizeof *s->sensor);
+	s->sensor = records;
+	s->sensors = 0;
+	for (uint32_t i = 0; fine && i < s->sensor_room && i < ob_universe_sensors(u); i++) {
+		ob_top_sensor *to = &s->sensor[s->sensors];
+		const ob_sensor_passport *p = &to->passport;
+		*to = (ob_top_sensor){ 0 };
+		if (!ob_universe_get_sensor(u, i, &to->passport))
+			continue;
+		s->sensors++;
+		const bool picture = p->kind == OB_SENSOR_CAMERA, lidar = p->kind == OB_SENSOR_LIDAR;
+		if (ob_universe_get_samples(u, i, 0, &to->number, &to->time, picture ? NULL : value, 1) == 0)
+			continue;
+		to->value[0] = lidar ? INFINITY : 0;
+		for (uint32_t k = 0; k < p->width && lidar; k++)
+			to->value[0] = fmin(to->value[0], value[k]);
+		for (uint32_t k = 0; k < p->width && k < sizeof to->value / sizeof *value && !lidar && !picture; k++)
+			to->value[k] = value[k];
+	}
+	return fine;
+}
+
 bool ob_top_look(ob_top_sample *s, const ob_universe *u)
 {
 	double at = ob_clock_wall(), span = at - s->at, time = s->info.time;
@@ -329,13 +393,14 @@ bool ob_top_look(ob_top_sample *s, const ob_universe *u)
 	s->alive = ob_universe_is_hosted(u);
 	s->steps_per_second = first ? NAN : (double)(s->info.step - step) / span;
 	s->pace = first ? NAN : (s->info.time - time) / span;
-	return look_at_workers(s, u) && look_at_objects(s, u);
+	return look_at_workers(s, u) && look_at_objects(s, u) && look_at_sensors(s, u);
 }
 
 void ob_top_finish(ob_top_sample *s)
 {
 	free(s->worker);
 	free(s->object);
+	free(s->sensor);
 	*s = (ob_top_sample){ 0 };
 }
 
@@ -399,10 +464,12 @@ static void act(ob_key key, ob_top_view *view)
 	view->scroll -= up < view->scroll ? up : view->scroll;
 	view->scroll += key == OB_KEY_DOWN ? 1 : key == OB_KEY_PAGE_DOWN ? page : 0;
 	if (key == OB_KEY_WORKERS)
-		view->workers = !view->workers;
+		view->workers = !view->workers, view->sensors = false;
+	if (key == OB_KEY_SENSORS)
+		view->sensors = !view->sensors, view->workers = false;
 	if (key == OB_KEY_SORT)
 		view->by_speed = !view->by_speed;
-	if (key == OB_KEY_HOME || key == OB_KEY_WORKERS || key == OB_KEY_SORT)
+	if (key == OB_KEY_HOME || key == OB_KEY_WORKERS || key == OB_KEY_SORT || key == OB_KEY_SENSORS)
 		view->scroll = 0;
 	if (key == OB_KEY_END)
 		view->scroll = UINT32_MAX / 2; // the view brings it into range

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include <ob/sensor.h>
 #include <ob/universe.h>
 
 // The host refreshes a worker's CPU time about twice a second, at instants of its own. So a rate is taken between
@@ -29,15 +30,23 @@ typedef struct ob_top_object {
 	double speed, spin; // m/s, rad/s
 } ob_top_object;
 
+typedef struct ob_top_sensor {
+	ob_sensor_passport passport;
+	uint64_t number; // its newest sample; 0: none can be read yet
+	double time; // s
+	double value[6]; // the first ones, or the shortest range of a lidar; none of a camera
+} ob_top_sensor;
+
 typedef struct ob_top_sample {
 	ob_universe_info info;
 	bool alive; // its host still runs
 	double at; // s, wall clock of this look; 0 = none yet
 	double steps_per_second, pace; // NaN = not known yet; pace: simulated per wall second
-	uint32_t workers, objects;
+	uint32_t workers, objects, sensors;
 	ob_top_worker *worker;
 	ob_top_object *object;
-	uint32_t worker_room, object_room;
+	ob_top_sensor *sensor;
+	uint32_t worker_room, object_room, sensor_room;
 } ob_top_sample;
 
 // Only the workers' clocks: call it some times between two looks, so that refreshes are seen when they come.
@@ -48,7 +57,7 @@ void ob_top_finish(ob_top_sample *s);
 
 typedef struct ob_top_view {
 	int columns, lines; // of the screen; lines 0 = as many as it takes
-	bool workers; // show the workers at length, else the objects
+	bool workers, sensors; // show the workers, or the sensors, at length, else the objects
 	bool by_speed; // fastest objects first, else by id
 	uint32_t scroll; // first record shown
 	int written; // lines, of this look

@@ -15,6 +15,7 @@
 #include "serve/client.h"
 
 #define OB_FOXGLOVE_PROTOCOL "foxglove.websocket.v1"
+#define OB_FOXGLOVE_SDK_PROTOCOL "foxglove.sdk.v1" // the same messages: the name that Foxglove's own servers have since
 
 typedef struct ob_foxglove ob_foxglove;
 

@@ -96,7 +96,8 @@ static world *world_of(ob_server *s, const ob_client *c)
 
 static bool is_foxglove(struct lws *wsi)
 {
-	return strcmp(lws_get_protocol(wsi)->name, OB_FOXGLOVE_PROTOCOL) == 0;
+	const char *name = lws_get_protocol(wsi)->name;
+	return strcmp(name, OB_FOXGLOVE_PROTOCOL) == 0 || strcmp(name, OB_FOXGLOVE_SDK_PROTOCOL) == 0;
 }
 
 // ---- sending
@@ -679,6 +680,10 @@ static const struct lws_protocols protocols[] = {
 	  .per_session_data_size = sizeof(session),
 	  .rx_buffer_size = OB_COMMAND_BYTES_MAX },
 	{ .name = OB_FOXGLOVE_PROTOCOL,
+	  .callback = on_event,
+	  .per_session_data_size = sizeof(session),
+	  .rx_buffer_size = OB_COMMAND_BYTES_MAX },
+	{ .name = OB_FOXGLOVE_SDK_PROTOCOL,
 	  .callback = on_event,
 	  .per_session_data_size = sizeof(session),
 	  .rx_buffer_size = OB_COMMAND_BYTES_MAX },
