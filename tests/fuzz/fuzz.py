@@ -315,6 +315,42 @@ class Scenes:
 			"local q = random_rotation()", "local i = math.random(1, 6)", "local p = param('p', .5)", "local b = param('b', true)",
 			"sphere { radius = random(.1, .5), at = { random(), random(), 2 }, q = random_rotation() }"])
 
+	def robot(self):
+		"""Two bodies with a joint, and sensors of all kinds on them."""
+		r = self.r
+		base, arm = self.place(), self.place()
+		lines = [f"box {{ name = 'base', size = {self.one_of(['{.4, .2, .1}', '{1, 1, 1}'], ['{}', '{0, 1, 1}'])}, at = {base} }}", f"sphere {{ name = 'arm', radius = .1, at = {arm} }}"]
+		kind = r.choice(["hinge", "slider", "ball", "fixed"])
+		fields = [f"at = {base}"] if kind != "slider" else []
+		if kind in ("hinge", "slider"):
+			fields.append(f"axis = {self.one_of(['{0, 0, 1}', '{1, 2, 3}'], ['{0, 0, 0}', '{}'])}")
+			fields += self.maybe(.4, "motor", lambda: f"{{ {r.choice(['rate', 'stiffness = 9, to'])} = {self.number(-3, 3)}, most = {self.number(1e-3, 1e6)} }}")
+			fields += self.maybe(.2, "friction", lambda: self.number(0, 1e6))
+			fields += self.maybe(.2, "low", lambda: self.number(-3, 0)) + self.maybe(.2, "high", lambda: self.number(0, 3))
+		if kind != "fixed":
+			for name in "stiffness", "damping", "armature":
+				fields += self.maybe(.2, name, lambda: self.number(0, 1e6))
+		lines.append(f"{kind} {{ 'arm', {self.one_of([chr(39) + 'base' + chr(39)], ['nil', '7'])}, name = 'joint', {', '.join(fields)} }}")
+		turns = kind in ("hinge", "slider")
+		for _ in range(r.randint(1, 4)):
+			kind = r.choice(["imu", "encoder" if turns else "imu", "force_torque", "touch", "lidar"] * 3 + ["camera"])
+			of_joint = kind in ("encoder", "force_torque")
+			fields = [self.one_of(["joint = 'joint'" if of_joint else "on = 'arm'"] * 9, ["on = 'nobody'", "joint = 5", "on = 'base', joint = 'joint'"])]
+			for name, value in [("rate", lambda: self.number(.001, 1e5)), ("noise", lambda: self.number(0, 10)), ("bias", lambda: self.number(0, 10)),
+					("walk", lambda: self.number(0, 10)), ("delay", lambda: self.number(0, 10)), ("keep", lambda: str(self.one_of([1, 7, 1000], [0, -1, 1e9, .5])))]:
+				fields += self.maybe(.25, name, value) if kind != "camera" or name in ("rate", "delay", "keep") else []
+			if not of_joint and kind != "touch":
+				fields += self.maybe(.5, "at", lambda: self.vector(-1, 1)) + self.maybe(.2, "rotation", lambda: "{ axis = { 0, 0, 1 }, degrees = 90 }")
+			if kind == "lidar":
+				for name, value in [("beams", lambda: str(self.one_of([1, 2, 60, 4096], [0, 4097, -1, 1.5]))), ("rows", lambda: str(self.one_of([1, 2, 8], [0, 5000]))),
+						("fan", lambda: self.number(0, 360)), ("rise", lambda: self.number(0, 180)), ("reach", lambda: self.number(1e-3, 1e6))]:
+					fields += self.maybe(.4, name, value)
+			if kind == "camera":
+				fields += [f"width = {self.one_of([1, 8, 33], [0, -1, 100000])}", f"height = {self.one_of([1, 8, 17], [0, 1e9])}"]
+				fields += self.maybe(.4, "fov", lambda: self.number(1, 170))
+			lines.append(f"{kind} {{ {', '.join(fields)} }}")
+		return lines
+
 	def scene(self):
 		r = self.r
 		lines = [self.head()] if r.random() < .95 else []
@@ -326,6 +362,7 @@ class Scenes:
 		lines += [self.material(name) for name in ("'a'", "'b'") if r.random() < .98]
 		lines += ["ground {}"] if r.random() < .6 else []
 		lines += [self.body() for _ in range(r.randint(1, 12))]
+		lines += self.robot() if r.random() < .3 else []
 		if r.random() < .1:
 			lines.append(f"for i = 1, {r.choice([20, 200])} do sphere {{ radius = .1, at = {{ i % {r.randint(1, 7)}, i // 7, .1 * i }} }} end")
 		return "\n".join(lines) + "\n"
