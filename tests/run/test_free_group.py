@@ -49,6 +49,15 @@ def gas(draw, x, y):
 		f"{number(draw, -4, 4)}, {number(draw, -4, 4)} }}") for i in range(draw.randint(4, 14))]
 
 
+def hills(draw, x, y):
+	"""Compounds and balls on a heightfield, or on the plane."""
+	ground = "heightfield { size = { 16, 16 }, cells = { 20, 20 }, height = function(x, y) return .3 * math.sin(x) * math.cos(y) end }"
+	parts = [f"compound {{ at = {{ {x + draw.uniform(-1, 1):.3f}, {y + draw.uniform(-1, 1):.3f}, {1 + .7 * i} }}, q = random_rotation(), parts = {{ "
+		f"{{ size = {{ {number(draw, .3, .7)}, .2, .15 }} }}, {{ size = {{ .15, .2, {number(draw, .2, .5)} }}, at = {{ .2, 0, .2 }} }} }} }}"
+		for i in range(draw.randint(2, 5))]
+	return [draw.choice([ground, "ground {}"])] + parts + heap(draw, x + draw.randint(1, 4), y) + shots(draw, x, y)
+
+
 class Group(program.Case):
 	def scene(self, draw):
 		falls = draw.random() < .8
@@ -73,6 +82,18 @@ class Group(program.Case):
 			for way in ways:
 				with self.subTest(seed=seed, way=way):
 					r = program.report(scene, "--seed", seed, "--sync", "free", "--set", "coupling=group", *way)
+					self.assertEqual(r["state_hash"], lockstep, f"{r['deaths']} deaths")
+
+	def test_compounds_and_terrain(self):
+		for seed in range(FIRST, FIRST + SCENES):
+			draw = random.Random(seed)
+			path = self.path("hills.lua")
+			with open(path, "w") as f:
+				f.write("\n".join(["scene { duration = .8 }", *hills(draw, draw.randint(-3, 3), draw.randint(-3, 3))]) + "\n")
+			lockstep = program.report(path, "--seed", seed)["state_hash"]
+			for way in program.ways(WAYS[0], WAYS[1], WAYS[3] + ["--fault", f"kill:p=.003,seed={seed}"]):
+				with self.subTest(seed=seed, way=way):
+					r = program.report(path, "--seed", seed, "--sync", "free", "--set", "coupling=group", *way)
 					self.assertEqual(r["state_hash"], lockstep, f"{r['deaths']} deaths")
 
 	def test_refused(self):

@@ -21,6 +21,8 @@ typedef struct group_worker {
 	ob_universe *u;
 	uint32_t worker, until, entered, word;
 	uint32_t blocker; // worker that it says to wait for; OB_NO_WORKER: none
+	uint32_t looked, clear; // no group was mixed at the step of the last look, until this one
+	uint32_t span, shorts; // steps that the last look was for; looks for one step until it tries more
 	ob_group_world world;
 	ob_groups groups;
 	uint32_t *listed, lists; // [capacity] the list that each body was in last; number of lists so far
@@ -60,6 +62,7 @@ static bool adopt(group_worker *w, bool first)
 		ob_group_world_take(&w->world, w->come, w->comes);
 	}
 	ob_group_world_adopt(&w->world);
+	w->clear = 0;
 	return ob_groups_list(&w->groups, w->u);
 }
 
@@ -70,6 +73,7 @@ static bool begin(group_worker *w, ob_universe *u, uint32_t number, ob_error *e)
 			     .worker = number,
 			     .entered = ob_free_entered(u),
 			     .until = ob_free_until(u),
+			     .span = 1,
 			     .blocker = OB_NO_WORKER };
 	w->come = calloc(ob_universe_capacity(u), sizeof *w->come);
 	w->listed = calloc(ob_universe_capacity(u), sizeof *w->listed);
@@ -115,13 +119,14 @@ static void idle(group_worker *w, uint32_t step)
 // Waits for another worker, unless something has come from it since it was said that this one waits.
 static void wait_for(group_worker *w, uint32_t other)
 {
-	if (w->blocker == other) {
-		ob_group_wait(w->u, w->worker, w->word);
-		w->blocker = OB_NO_WORKER;
-	} else {
+	if (w->blocker != other) {
 		w->blocker = other;
 		ob_group_await(w->u, w->worker, other);
+		if (!ob_groups_are_barred(&w->groups))
+			return;
 	}
+	ob_group_wait(w->u, w->worker, w->word);
+	w->blocker = OB_NO_WORKER;
 }
 
 static void list(group_worker *w, uint32_t id)
@@ -190,25 +195,23 @@ static uint32_t worker_for(group_worker *w, uint32_t root, uint32_t step)
 	return b->other == OB_NO_WORKER ? home_of(w, root, step) : b->place.worker;
 }
 
-// Looks at the groups of the worker's bodies until the step's end, and gives some away. Returns OB_NO_WORKER if all may step; the
-// worker itself if some have gone to another; else another worker to wait for.
+// Looks at the groups of the worker's bodies until a step's end, as found, and gives some away. Returns OB_NO_WORKER if all may step;
+// the worker itself if some have gone to another; else another worker to wait for.
 static uint32_t look_at_groups(group_worker *w, uint32_t step)
 {
 	uint32_t blocker = OB_NO_WORKER;
 	bool gave = false;
-	ob_groups_find(&w->groups, w->worker, step, step + 1);
 	ob_group_world_chance(&w->world);
 	for (uint32_t i = 0; i < w->groups.n; i++) {
 		const ob_group_body *b = &w->groups.body[i];
-		if (b->step > step || b->parent != i || !b->mine)
+		if (b->step > step || w->groups.ball[i].parent != i || !b->mine)
 			continue;
-		const uint32_t waits = b->behind != OB_NO_WORKER ? b->behind : b->other;
-		const uint32_t to = b->behind == OB_NO_WORKER ? worker_for(w, i, step) : w->worker;
+		const uint32_t to = worker_for(w, i, step); // none is behind, else the search would have ended there
 		if (to != w->worker) {
 			give(w, i, to, step);
 			gave = true;
-		} else if (waits != OB_NO_WORKER) {
-			blocker = waits;
+		} else if (b->other != OB_NO_WORKER) {
+			blocker = b->other;
 		}
 	}
 	return gave ? w->worker : blocker;
@@ -225,15 +228,26 @@ static bool wait_for_clock(group_worker *w, uint32_t step)
 	return true;
 }
 
-// Worker that the bodies have to wait for before they step; OB_NO_WORKER: none. One that has all of them looks now and then if it
-// may give some back.
+// Worker that the bodies have to wait for before they step; OB_NO_WORKER: none. One look serves for several steps if all groups are
+// the worker's own until then and no body comes: for twice as many as the last, or, where that failed, for one, some times.
 static uint32_t find_blocker(group_worker *w, uint32_t step)
 {
-	enum { LOOK_EVERY = 8 };
+	enum { MOST = 8, SHORT = 8 };
 	const bool all = w->world.n + w->comes == w->groups.n;
-	if (ob_universe_workers(w->u) == 1 || (all && step % LOOK_EVERY))
+	if (ob_universe_workers(w->u) == 1 || (w->comes == 0 && step >= w->looked && step < w->clear))
 		return OB_NO_WORKER;
-	return look_at_groups(w, step);
+	uint32_t span = all ? MOST : w->shorts > 0 ? 1 : 2 * w->span < MOST ? 2 * w->span : MOST;
+	ob_groups_find(&w->groups, w->worker, step, step + span);
+	if (span > 1 && w->groups.barred) {
+		w->shorts = SHORT;
+		ob_groups_find(&w->groups, w->worker, step, step + (span = 1));
+	}
+	const uint32_t blocker = w->groups.barred ? w->groups.behind->place.worker : look_at_groups(w, step);
+	if (blocker != OB_NO_WORKER)
+		return blocker;
+	w->shorts -= w->shorts > 0;
+	w->looked = step, w->clear = step + span, w->span = span;
+	return OB_NO_WORKER;
 }
 
 static bool work(group_worker *w)
@@ -248,7 +262,7 @@ static bool work(group_worker *w)
 	if (wait_for_clock(w, step))
 		return true;
 	list_parked(w, step);
-	const uint32_t blocker = find_blocker(w, step);
+	const uint32_t parked = w->comes, blocker = find_blocker(w, step);
 	if (blocker == w->worker)
 		return true;
 	if (blocker != OB_NO_WORKER) {
@@ -258,6 +272,8 @@ static bool work(group_worker *w)
 	if (w->blocker != OB_NO_WORKER)
 		ob_group_await(w->u, w->worker, w->blocker = OB_NO_WORKER);
 	list_parked(w, step); // looking at groups has listed others
+	if (w->comes != parked) // which came after the look
+		w->clear = 0;
 	ob_group_world_take(&w->world, w->come, w->comes);
 	return ob_group_world_step(&w->world);
 }

@@ -229,8 +229,10 @@ static bool list_contacts(const ob_group_world *w, uint32_t id, uint32_t *contac
 		if (*contacts == OB_GROUP_CONTACTS)
 			return false;
 		ob_group_contact *c = &w->contact[(*contacts)++];
-		*c = (ob_group_contact){ .key = *k, .check = ob_pairs_next_check(data, at.pair) };
+		c->key = *k;
 		c->key.record = OB_NO_RECORD;
+		c->check = ob_pairs_next_check(data, at.pair);
+		c->stamp = 0;
 		if (!k->active) // the next step would release a record
 			continue;
 		const ob_pair_record *r = &data->record[k->record];

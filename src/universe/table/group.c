@@ -1,5 +1,6 @@
 #include "table/group.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "table/futex.h"
@@ -84,9 +85,18 @@ static ob_group_state *state_at(const ob_universe *u, uint32_t id, uint64_t vers
 	return &u->free.state[OB_GROUP_VERSIONS * (uint64_t)id + version % OB_GROUP_VERSIONS];
 }
 
-static uint64_t first_contact(uint32_t id, uint64_t version)
+// Place of a contact: the first few of each version lie together, those beyond take memory when they come.
+static ob_group_contact *contact_at(const ob_universe *u, uint32_t id, uint64_t version, uint32_t i)
 {
-	return (2 * (uint64_t)id + version % 2) * OB_GROUP_CONTACTS;
+	const uint64_t block = 2 * (uint64_t)id + version % 2;
+	return i < OB_GROUP_USUALLY ? &u->free.contact[block * OB_GROUP_USUALLY + i]
+				    : &u->free.more_contact[block * OB_GROUP_SELDOM + i - OB_GROUP_USUALLY];
+}
+
+// Bytes of a contact that say something.
+static size_t size_of(const ob_group_contact *c)
+{
+	return c->key.record == OB_NO_RECORD ? offsetof(ob_group_contact, state) : sizeof *c;
 }
 
 static uint64_t version_of(const ob_universe *u, uint32_t id)
@@ -126,21 +136,29 @@ void ob_group_get(const ob_universe *u, uint32_t id, ob_motion *m, ob_group_stat
 	ob_words_get(m, motion_at(u, id, v), sizeof *m);
 	ob_words_get(s, state_at(u, id, v), sizeof *s);
 	s->contacts = s->contacts < OB_GROUP_CONTACTS ? s->contacts : OB_GROUP_CONTACTS;
-	ob_words_get(contact, &u->free.contact[first_contact(id, v)], s->contacts * sizeof *contact);
+	for (uint32_t i = 0; i < s->contacts; i++) {
+		const ob_group_contact *from = contact_at(u, id, v, i);
+		ob_words_get(&contact[i], from, offsetof(ob_group_contact, state));
+		if (contact[i].key.record != OB_NO_RECORD)
+			ob_words_get(&contact[i], from, sizeof *from);
+	}
 }
 
 bool ob_group_put(ob_universe *u, uint32_t id, const ob_motion *m, const ob_group_state *s,
 		  const ob_group_contact *contact)
 {
 	ob_free_cell *c = &u->free.cell[id];
-	const uint64_t next = c->version + 1, first = first_contact(id, next);
-	if (s->contacts && !ob_pages_take(u, OB_AREA_FREE_CONTACT, first, s->contacts)) {
+	const uint64_t next = c->version + 1;
+	if (s->contacts > OB_GROUP_USUALLY &&
+	    !ob_pages_take(u, OB_AREA_FREE_CONTACT_MORE, (2 * (uint64_t)id + next % 2) * OB_GROUP_SELDOM,
+			   s->contacts - OB_GROUP_USUALLY)) {
 		ob_step_fail(u, OB_STEP_MEMORY_FULL, id);
 		return false;
 	}
 	ob_words_put(motion_at(u, id, next), m, sizeof *m);
 	ob_words_put(state_at(u, id, next), s, sizeof *s);
-	ob_words_put(&u->free.contact[first], contact, s->contacts * sizeof *contact);
+	for (uint32_t i = 0; i < s->contacts; i++)
+		ob_words_put(contact_at(u, id, next, i), &contact[i], size_of(&contact[i]));
 	__atomic_store_n(&c->version, next, __ATOMIC_SEQ_CST);
 	return true;
 }

@@ -23,17 +23,19 @@
 #define OB_GROUP_EMPTY UINT32_MAX // steps made by a worker that holds no body: it may take any
 enum { OB_GROUP_VERSIONS = 4 }; // states of a body that are kept
 enum {
-	OB_GROUP_CONTACTS = 1024,
-	OB_GROUP_USUALLY = 4
-}; // contacts that a body may be the lower one of; that memory is planned for
+	OB_GROUP_CONTACTS = 1024, // that a body may be the lower one of
+	OB_GROUP_USUALLY = 8, // of these, that memory is there for
+	OB_GROUP_SELDOM = OB_GROUP_CONTACTS - OB_GROUP_USUALLY
+};
 
 // A contact that goes on beyond a step.
 typedef struct ob_group_contact {
 	ob_pair_key key; // its record is 0 if it has a state, else OB_NO_RECORD
+	uint32_t check; // step in which the pair must be checked; UINT32_MAX: none
+	uint32_t stamp; // as ob_pair_record.stamp
+	// If it has a state:
 	ob_pair_state state;
 	double impulse_b[OB_PAIR_ROWS]; // impulse on body b, if the two do not agree on one
-	uint32_t stamp; // as ob_pair_record.stamp
-	uint32_t check; // step in which the pair must be checked; UINT32_MAX: none
 } ob_group_contact;
 
 typedef struct ob_group_state {

@@ -16,7 +16,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 51, OB_LAYOUT_PAGE = 4096 };
+enum { OB_LAYOUT_VERSION = 52, OB_LAYOUT_PAGE = 4096 };
 
 // Areas in their order: the name, the pointer of ob_universe to the first element, and the number of elements by the sizes s
 // (layout.c).
@@ -89,9 +89,10 @@ enum { OB_LAYOUT_VERSION = 51, OB_LAYOUT_PAGE = 4096 };
 	X(FREE_BED, free.bed, free ? s->workers : 0) \
 	X(FREE_RING, free.ring, (uint64_t)s->capacity * s->history) \
 	X(FREE_LEDGER, free.ledger, (uint64_t)s->capacity * s->ledgers) \
-	X(FREE_PLACE, free.place, s->grouped ? s->capacity : 0) /* these three empty unless bodies are solved in groups (group.h) */ \
+	X(FREE_PLACE, free.place, s->grouped ? s->capacity : 0) /* these four empty unless bodies are solved in groups (group.h) */ \
 	X(FREE_STATE, free.state, s->grouped ? OB_GROUP_VERSIONS * (uint64_t)s->capacity : 0) \
-	X(FREE_CONTACT, free.contact, s->grouped ? 2 * (uint64_t)s->capacity * s->grouped : 0) \
+	X(FREE_CONTACT, free.contact, s->grouped ? 2 * (uint64_t)s->capacity * OB_GROUP_USUALLY : 0) \
+	X(FREE_CONTACT_MORE, free.more_contact, s->grouped ? 2 * (uint64_t)s->capacity * (s->grouped - OB_GROUP_USUALLY) : 0) \
 	X(TRACE_RING, trace_ring, traced ? s->workers + OB_TRACE_HOST_RINGS : 0) /* from here on empty unless traced */ \
 	X(TRACE_EVENT, trace_event, traced ? (uint64_t)s->workers * s->trace_events + OB_TRACE_HOST_RINGS * OB_TRACE_HOST_EVENTS : 0) /* rings of the workers, then of the host */ \
 	X(TRACE_SINCE, trace_since, traced ? s->capacity : 0) /* ns */
@@ -229,7 +230,7 @@ struct ob_universe {
 		ob_ledger *ledger;
 		uint64_t *place;
 		ob_group_state *state;
-		ob_group_contact *contact;
+		ob_group_contact *contact, *more_contact;
 	} free; // only if the run is free
 	char *outbox_area;
 	struct ob_outbox *outbox; // if this process is a contained simulator; NULL: it writes in place

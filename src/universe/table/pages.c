@@ -69,7 +69,7 @@ bool ob_universe_reserve(ob_universe *u, uint32_t ids, ob_error *e)
 		const ob_area area = (ob_area)i;
 		// most objects never have a second version of their body properties, and outboxes are seldom full;
 		// cells, joints and contacts of groups are taken one by one
-		if (area != OB_AREA_PASSPORT_EVEN && area != OB_AREA_FREE_CONTACT && area != OB_AREA_OUTBOX &&
+		if (area != OB_AREA_PASSPORT_EVEN && area != OB_AREA_FREE_CONTACT_MORE && area != OB_AREA_OUTBOX &&
 		    area != OB_AREA_SCRIPT_CELL && area != OB_AREA_JOINT && area != OB_AREA_JOINT_STATE &&
 		    area != OB_AREA_NEXT_JOINT)
 			fine = ob_pages_take(u, area, 0, ob_layout_elements_of(&u->header.sizes, area, ids));
