@@ -1,5 +1,5 @@
 // Friction beyond the cases of the lab: a sphere that slides until it rolls, step by step; one on an incline on either
-// side of its limit; spheres that roll on a box which is pushed, with a single substep.
+// side of its limit; spheres that roll on a box which is pushed, with a single substep; a slab that spins, with a pebble on it.
 #include <stdlib.h>
 
 #include "check.h"
@@ -139,9 +139,52 @@ static void test_push(ob_vec3 direction)
 	free(s);
 }
 
+// Place (x, y: m) and turn (z: rad) of a slab of 20 kg that has slid and spun for 3 s. A box of "pebble" kg lies on it and
+// moves along; 0: none.
+static ob_vec3 slab_goes(double pebble, double speed, double spin)
+{
+	little_scene *s = little_scene_new();
+	ob_world_ground(&s->world);
+	ob_world_body slab = ob_world_box(&s->world, 20, ob_v3(1, .5, .25), ob_v3(0, 0, .25));
+	slab.state->v = ob_v3(speed, 0, 0), slab.state->w = ob_v3(0, 0, spin);
+	if (pebble > 0) {
+		ob_world_body b = ob_world_box(&s->world, pebble, ob_v3(.1, .1, .1), ob_v3(0, 0, .6));
+		b.state->v = ob_v3(speed, 0, 0), b.state->w = ob_v3(0, 0, spin);
+	}
+	ob_world_material(&s->world, .3, 0);
+	little_universe l;
+	little_open(&l, s);
+	little_run_to(&l, 3);
+	const ob_state b = little_state(&l, 1);
+	little_close(&l);
+	free(s);
+	return ob_v3(b.pose.p.x, b.pose.p.y, 2 * atan2(b.pose.q.z, b.pose.q.w));
+}
+
+// A body without weight changes nothing. 2e-3 m and rad: friction of a slab that carries another takes its direction once in a
+// partial substep, and in the first one has no load to go by.
+static void test_pebble(void)
+{
+	const struct {
+		double speed, spin;
+	} start[] = { { 3, 8 }, { 3, 0 }, { 1, 4 }, { 2, -12 }, { .5, 6 } };
+	for (size_t i = 0; i < sizeof start / sizeof *start; i++)
+		for (double pebble = 1e-9; pebble < 1; pebble *= 1e4) {
+			const ob_vec3 alone = slab_goes(0, start[i].speed, start[i].spin),
+				      with = slab_goes(pebble, start[i].speed, start[i].spin);
+			const double aside = hypot(with.x - alone.x, with.y - alone.y),
+				     turned = fabs(remainder(with.z - alone.z, 2 * 3.14159265358979324));
+			printf("slab at %g m/s and %g rad/s with a pebble of %g kg: %.2e m, %.2e rad\n", start[i].speed,
+			       start[i].spin, pebble, aside, turned);
+			CHECK(aside <= 2e-3 + 10 * pebble / 20);
+			CHECK(turned <= 2e-3 + 20 * pebble / 20);
+		}
+}
+
 int main(void)
 {
 	test_slip_to_roll();
+	test_pebble();
 	ball_on_incline(2);
 	ball_on_incline(1.02);
 	ball_on_incline(.98);

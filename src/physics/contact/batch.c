@@ -57,6 +57,11 @@ void ob_batch_prepare(ob_batch *b)
 		ob_kernel_best()->prepare(b);
 }
 
+void ob_batch_find_follows(ob_batch *b, const ob_body_row *v, const ob_body_row *u)
+{
+	ob_kernel_best()->find_follows(b, v, u);
+}
+
 static unsigned lone_lanes(const ob_batch *b, const ob_solver_iteration *iteration)
 {
 	unsigned found = 0;

@@ -5,7 +5,7 @@
 // solve the block (Moreau's projected form: Jourdan, Alart and Jean 1998). If the bodies have no other contact, a sweep
 // solves friction and twist together: they hold, or slip within the limit surface of the patch (contact/patch.h).
 // Otherwise the friction vector is projected onto a disc of radius mu * (sum of normal impulses), the twist onto mu *
-// radius * that sum.
+// radius * that sum; or both follow the load, in the lanes "follows".
 //
 // Both bodies of a pair receive the same impulse from the same function, with opposite signs: momentum is conserved to
 // rounding, whichever worker computes it.
@@ -58,6 +58,9 @@ typedef struct ob_batch {
 	unsigned hit; // lanes with a body that was hit within the substep: the rows differ from those of its start
 	unsigned turning; // lanes whose geometry turns within the substep
 	unsigned slides; // lanes whose friction was at its limit in the last iteration
+	unsigned
+		follows; // lanes whose friction follows the load: patches of known pressure that slide throughout the substep
+	unsigned unloaded; // lanes without a load when the substep began
 	unsigned sweeps; // number in the last iteration
 	unsigned solved; // isolated lanes that the last iteration has solved to the end: they need no other
 	unsigned active; // other lanes whose velocities changed by more than the wake threshold in the last iteration
@@ -72,6 +75,7 @@ typedef struct ob_batch {
 	// half edges, radius of a disc (0: a parallelogram).
 	lanes patch_e1[2], patch_e2[2], patch_s[4], patch_t[4], disc;
 	ob_patch_model model;
+	lanes follow[2], follow_twist[4]; // in "follows": friction for a unit of load; twist for a unit of each point's
 	lanes friction_mass[6]; // inverse of A's block of friction and twist: 44 45 46 55 56 66
 	// Block of friction alone. hold: matrix from the impulses that stop each row by itself to those that stop both.
 	// slide_mass: inverse of the largest eigenvalue; slide: slide_mass times the diagonal; slide_rate2: eigenvalue
@@ -167,6 +171,9 @@ void ob_friction_arms(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *
 // it if they need them. Lanes that are solved by themselves do not.
 void ob_batch_prepare(ob_batch *b);
 
+// Finds which of the patches in "follows" slide throughout the substep, and in which direction: before the first iteration,
+// when all impulses are those expected. v, u: velocities when the substep began, and as these impulses leave them.
+void ob_batch_find_follows(ob_batch *b, const ob_body_row *v, const ob_body_row *u);
 // One iteration: solves all lanes for the present velocities u and displacements d, and applies the changes. v:
 // velocities at the substep's start. A lane is solved by itself (contact/lone.h) if it is isolated, has no disc, and
 // impulses move only one of its bodies.

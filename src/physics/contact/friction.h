@@ -2,7 +2,7 @@
 //
 //      |f| <= mu x                at a point, and at the centroid of a contact in a stack or heap: a disc
 //      |twist| <= mu radius x     about the normal, at that centroid
-//      (f, twist) in C(x)         of an area between two bodies that touch nothing else: contact/patch.h
+//      (f, twist) in C(x)         of an area whose pressure is known, as nothing else carries the two: contact/patch.h
 //
 // The law stands here and in contact/patch.h alone, as a text compiled for one number and for four in lanes. Sweeps of the
 // contact solver call it for four pairs side by side (contact/kernel.c), sweeps and Newton steps for one (contact/lone.c).

@@ -256,6 +256,73 @@ static inline void solve_patch(const ob_batch *b, lane_mask patch, const lanes *
 	patch_friction(b, patch, &load, sum, missing, x + OB_POINTS, f, next);
 }
 
+// Finds the patches that slide throughout the substep, and the direction of their friction: that against the mean slip. v, u:
+// velocities at the substep's start, and as the impulses of the last one would leave them.
+static void find_follows(ob_batch *b, const ob_body_row *v, const ob_body_row *u)
+{
+	const lanes *x = b->impulse, sum = x[0] + x[1] + x[2] + x[3], bound = b->mu * sum;
+	lanes va[6], vb[6], start[OB_ROWS] = { 0 }, last[OB_ROWS] = { 0 }, undo[3], mean[3], grad[3];
+	lanes *slip = start + OB_POINTS, *end = last + OB_POINTS;
+	lane_mask slides = lanes_mask(b->follows) & (b->radius > 0) & is_load(bound);
+	b->follows = 0;
+	if (!lanes_bits(slides))
+		return;
+	if (b->dirty)
+		prepare(b);
+	gather_both(b, v, va, vb);
+	friction_velocities(b, OB_KIND_FULL, va, vb, start);
+	sym_mul(b->friction_mass, slip, undo);
+	const lanes rim = undo[2] / b->radius;
+	slides &= undo[0] * undo[0] + undo[1] * undo[1] + rim * rim > bound * bound;
+	if (!lanes_bits(slides))
+		return;
+	gather_both(b, u, va, vb);
+	friction_velocities(b, OB_KIND_FULL, va, vb, last);
+	for (int c = 0; c < 3; c++)
+		end[c] += (lanes)(lanes_mask(b->turning) & (lane_mask)b->turn[OB_POINTS + c]);
+	slides &= dot3(undo, end) > 0;
+	if (!lanes_bits(slides))
+		return;
+	b->follows = lanes_bits(slides);
+	patch_load load;
+	patch_slip at;
+	find_pressure(b, x, sum, load.edges);
+	patch_set_pressure(b, &load);
+	patch_load_set(b, &load);
+	patch_load_areas(b, lanes_bits(slides), &load);
+	for (int c = 0; c < 3; c++)
+		mean[c] = slip[c] + end[c];
+	patch_slip_about_pressure(&load, slides, mean, &at);
+	sym_mul(at.bound, mean, grad);
+	for (int c = 0; c < 3; c++)
+		grad[c] *= -b->mu;
+	for (int c = 0; c < 2; c++)
+		b->follow[c] = lanes_select(slides, grad[c], b->follow[c]);
+	for (int k = 0; k < OB_POINTS; k++) {
+		const lanes s = b->patch_s[k], t = b->patch_t[k];
+		const lanes arm[2] = { s * b->patch_e1[0] + t * b->patch_e2[0],
+				       s * b->patch_e1[1] + t * b->patch_e2[1] };
+		const lanes twist = grad[2] + arm[0] * grad[1] - arm[1] * grad[0];
+		b->follow_twist[k] = lanes_select(slides, twist, b->follow_twist[k]);
+	}
+}
+
+// Friction of patches that follow the load.
+static inline void follow_load(const ob_batch *b, const lanes *x, lanes sum, lanes *friction)
+{
+	friction[0] = b->follow[0] * sum, friction[1] = b->follow[1] * sum;
+	friction[2] = b->follow_twist[0] * x[0] + b->follow_twist[1] * x[1] + b->follow_twist[2] * x[2] +
+		      b->follow_twist[3] * x[3];
+}
+
+// A lane whose slip has turned round follows the load no longer.
+static inline void check_follows(ob_batch *b, const lanes *r, const lanes *x)
+{
+	lanes friction[3];
+	follow_load(b, x, x[0] + x[1] + x[2] + x[3], friction);
+	b->follows &= ~lanes_bits(dot3(friction, r + OB_POINTS) > 0);
+}
+
 // Friction at a point or at the centroid: the impulse that holds, or if that is too large, one on the disc. The step to
 // the disc has the same scale in all directions, whatever the masses; else the slip's direction would depend on the
 // tangents.
@@ -304,9 +371,17 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 	if (patches && lanes_bits(patch))
 		solve_patch(b, patch, x, sum, step, f, next);
 	lanes bound = b->mu * sum;
+	if (in_use(kind, OB_ROW_TWIST) && b->follows) {
+		lanes load[3];
+		const lane_mask follows = open & lanes_mask(b->follows);
+		follow_load(b, x, sum, load);
+		for (int c = 0; c < 3; c++)
+			next[c] = lanes_select(follows, load[c], next[c]);
+		patch |= follows;
+	}
 	solve_disc(b, isolated & ~patch, bound, x, step, disc);
 	lanes d4 = disc[0], d5 = disc[1];
-	if (patches) {
+	if (in_use(kind, OB_ROW_TWIST)) {
 		d4 = lanes_select(patch, next[0] - x[4], d4);
 		d5 = lanes_select(patch, next[1] - x[5], d5);
 	}
@@ -319,7 +394,7 @@ PER_KIND lanes sweep_block(const ob_batch *b, ob_batch_kind kind, bool patches, 
 		return largest;
 	bound *= b->radius;
 	lanes d6 = twist_within(-bound - x[6], bound - x[6], step[6]);
-	if (patches)
+	if (in_use(kind, OB_ROW_TWIST))
 		d6 = lanes_select(patch, next[2] - x[6], d6);
 	couple(b, kind, 6, d6, step);
 	x[6] += lanes_where(open, d6);
@@ -493,6 +568,8 @@ PER_KIND void solve_kind(ob_batch *b, ob_batch_kind kind, const ob_solver_iterat
 	}
 	memcpy(x, b->impulse, sizeof x);
 	b->slides = 0;
+	if (in_use(kind, OB_ROW_TWIST) && b->follows)
+		check_follows(b, r, x);
 	if (b->isolated) {
 		patch_search friction = { .v = v, .model = &b->model };
 		b->model.known =
@@ -502,6 +579,7 @@ PER_KIND void solve_kind(ob_batch *b, ob_batch_kind kind, const ob_solver_iterat
 	} else {
 		solve_block(b, kind, false, iteration, NULL, x, r);
 	}
+	b->slides |= b->follows;
 	for (int i = 0; i < OB_ROWS; i++) {
 		change[i] = lanes_of(0);
 		if (!in_use(kind, i))
@@ -607,6 +685,7 @@ const ob_kernel OB_KERNEL = {
 	.set = set_lane,
 	.friction_arms = friction_arms,
 	.prepare = prepare,
+	.find_follows = find_follows,
 	.solve = solve,
 	.solve_lone = OB_SOLVE_LONE,
 	.project = project,

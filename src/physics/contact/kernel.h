@@ -10,6 +10,7 @@ typedef struct ob_kernel {
 	void (*friction_arms)(const ob_vec3 *arm_a, const ob_vec3 *arm_b, const double *gap, int points, ob_vec3 n,
 			      ob_vec3 *a, ob_vec3 *b);
 	void (*prepare)(ob_batch *b);
+	void (*find_follows)(ob_batch *b, const ob_body_row *v, const ob_body_row *u);
 	void (*solve)(ob_batch *b, const ob_solver_iteration *iteration, ob_body_row *u, const ob_body_row *v,
 		      const ob_body_row *d, ob_body_row *delta);
 	// Adds lane l to the batch's results of the iteration: impact, slides, solved, active, sweeps, changed,

@@ -343,6 +343,17 @@ static inline void patch_slip_at(const patch_load *p, mask asked, real *d, patch
 
 // ---- friction
 
+// Finds the power and its bound about the centre of pressure, in the lanes "to". Moves the slip there, too.
+static inline void patch_slip_about_pressure(const patch_load *p, mask to, real *slip, patch_slip *at)
+{
+	patch_slip_at(p, to, slip, at);
+	patch_move((real[2]){ p->centre[0] - p->pressure[0], p->centre[1] - p->pressure[1] }, at->bound);
+	if (p->areas)
+		patch_slip_areas(p, slip, at);
+	slip[0] -= slip[2] * p->pressure[1];
+	slip[1] += slip[2] * p->pressure[0];
+}
+
 // Makes the ellipsoid about the centre of pressure that touches C at the wrench of "slip", with the same normal. It is
 // as near to C as a quadratic form comes there (D(u)^2 <= u Q u, equal along the slip). A dense heap can afford the
 // integrals once in a substep; in all its sweeps and iterations the ellipsoid takes the place of C. to: lanes to set.
@@ -350,12 +361,7 @@ static inline void patch_model_set(const patch_load *p, mask to, const real *sli
 {
 	real d[3] = { slip[0], slip[1], slip[2] }, q[6], c[6];
 	patch_slip at;
-	patch_slip_at(p, to, d, &at);
-	patch_move((real[2]){ p->centre[0] - p->pressure[0], p->centre[1] - p->pressure[1] }, at.bound);
-	if (p->areas)
-		patch_slip_areas(p, d, &at);
-	d[0] -= d[2] * p->pressure[1];
-	d[1] += d[2] * p->pressure[0];
+	patch_slip_about_pressure(p, to, d, &at);
 	for (int i = 0; i < 6; i++)
 		q[i] = at.bound[i] * at.power;
 	c[0] = q[3] * q[5] - q[4] * q[4], c[1] = q[2] * q[4] - q[1] * q[5], c[2] = q[1] * q[4] - q[2] * q[3];

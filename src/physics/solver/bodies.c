@@ -346,12 +346,12 @@ static void turn_body(ob_solver *s, uint32_t row, bool held)
 	drift_body(w, row, w->h, held && w->max_acceleration > 0);
 }
 
-// True if the body spins upright on its only contact: its turn changes no gap.
+// True if the body spins upright on all its contacts: its turn changes no gap.
 static bool spins_upright(const ob_island_work *w, uint32_t row, ob_vec3 spin)
 {
 	const double leaning = 1e-6; // sine
 	const ob_body *body = &w->body[row];
-	if (body->contacts != 1 || !(ob_norm2(spin) * w->h * w->h > unnoticed_turn * unnoticed_turn))
+	if (!(ob_norm2(spin) * w->h * w->h > unnoticed_turn * unnoticed_turn))
 		return false;
 	for (uint32_t k = 0; k < body->adjacent; k++) {
 		const uint32_t lane = w->contact[w->adjacency[body->first_adjacent + k]].lane;
@@ -360,12 +360,13 @@ static bool spins_upright(const ob_island_work *w, uint32_t row, ob_vec3 spin)
 		const ob_batch *b = &w->batch[lane / OB_LANES];
 		const uint32_t l = lane % OB_LANES;
 		const ob_vec3 across = ob_cross(spin, ob_batch_vector(b->n, l));
-		return ob_norm2(across) <= leaning * leaning * ob_norm2(spin);
+		if (!(ob_norm2(across) <= leaning * leaning * ob_norm2(spin)))
+			return false;
 	}
-	return false;
+	return body->contacts > 0;
 }
 
-// Turns a body on which an external torque acts, or that spins upright on its only contact. Half of its change of angular
+// Turns a body on which an external torque acts, or that spins upright on its contacts. Half of its change of angular
 // momentum in the partial substep comes before the turn, half after it, so the error is of second order (Strang 1968). A
 // jump that contacts have made comes before.
 static void turn_by_halves(ob_solver *s, uint32_t row, ob_vec3 before, double smooth)

@@ -93,6 +93,8 @@ static uint32_t holding_rows(const ob_batch *b, int l, const lanes *rate, double
 			row[n++] = (uint8_t)j;
 	}
 	double bound = within * b->mu[l] * sum;
+	if (b->follows >> l & 1)
+		return n;
 	if (n && b->mu[l] > 0 && length(b->impulse[4][l], b->impulse[5][l]) <= bound)
 		row[n++] = 4, row[n++] = 5;
 	if (n && b->mu[l] > 0 && b->radius[l] > 0 && fabs(b->impulse[6][l]) <= bound * b->radius[l])

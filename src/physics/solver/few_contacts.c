@@ -26,7 +26,7 @@ typedef struct unknown {
 
 typedef struct few {
 	uint32_t contacts, lane[OB_FEW_CONTACTS];
-	double brought[OB_FEW_CONTACTS][OB_ROWS]; // friction and twist for a unit of load
+	double brought[OB_FEW_CONTACTS][OB_POINTS][OB_ROWS]; // friction and twist for a unit of each point's load
 	uint32_t unknowns;
 	unknown unknown[MOST_ROWS];
 	double m[MOST_ROWS][MOST_ROWS + 1];
@@ -86,8 +86,8 @@ static unknown *add_unknown(const ob_island_work *w, few *f, uint32_t contact, i
 	memcpy(push_a, x->of_a, sizeof push_a);
 	memcpy(push_b, x->of_b, sizeof push_b);
 	for (int i = OB_POINTS; row < OB_POINTS && i < OB_ROWS; i++)
-		if (f->brought[contact][i] != 0)
-			add_row(b, l, i, f->brought[contact][i], push_a, push_b), x->brings = true;
+		if (f->brought[contact][row][i] != 0)
+			add_row(b, l, i, f->brought[contact][row][i], push_a, push_b), x->brings = true;
 	x->a = accelerate(b->ima[l], b->ia, l, push_a, x->to_a) ? b->body_a[l] : NO_BODY;
 	x->b = accelerate(b->imb[l], b->ib, l, push_b, x->to_b) ? b->body_b[l] : NO_BODY;
 	return x;
@@ -109,31 +109,34 @@ static void add_contact(const ob_island_work *w, few *f, uint32_t lane)
 	const uint32_t l = lane % OB_LANES, contact = f->contacts++;
 	const ob_batch *b = &w->batch[lane / OB_LANES];
 	const double friction[2] = { b->impulse[4][l], b->impulse[5][l] }, x6 = b->impulse[6][l];
-	double sum = 0, slip[2], *brought = f->brought[contact];
+	const double sum = ob_batch_load(b, l);
+	double slip[2], brought[OB_ROWS] = { 0 };
 	disc_tangent tangent;
 	f->lane[contact] = lane;
-	memset(brought, 0, sizeof *f->brought);
-	for (int i = 0; i < OB_POINTS; i++)
-		sum += b->impulse[i][l];
 	if (!is_load(sum))
 		return;
 	const double bound = b->mu[l] * sum, twist = bound * b->radius[l];
-	const bool slides = disc_slides(bound, friction[0] * friction[0] + friction[1] * friction[1]),
-		   spins = disc_slides(twist, x6 * x6);
-	if (slides && is_load(bound)) {
+	const bool follows = b->follows >> l & 1,
+		   slides = follows || disc_slides(bound, friction[0] * friction[0] + friction[1] * friction[1]),
+		   spins = follows || disc_slides(twist, x6 * x6);
+	if (follows) {
+		brought[OB_ROW_FRICTION] = b->follow[0][l], brought[OB_ROW_FRICTION + 1] = b->follow[1][l];
+	} else if (slides && is_load(bound)) {
 		slip_of(w, b, l, slip);
 		tangent = disc_follow(friction, sum, slip);
 		memcpy(brought + OB_ROW_FRICTION, tangent.brought, sizeof tangent.brought);
 	}
-	if (spins)
-		brought[OB_ROW_TWIST] = x6 / sum;
+	for (int i = 0; i < OB_POINTS; i++) {
+		brought[OB_ROW_TWIST] = follows ? b->follow_twist[i][l] : spins ? x6 / sum : 0;
+		memcpy(f->brought[contact][i], brought, sizeof brought);
+	}
 	for (int i = 0; i < OB_POINTS; i++)
 		if (b->impulse[i][l] > 0 && ob_batch_has_point(b, (int)l, i))
 			add_unknown(w, f, contact, i, NULL);
 	if (!slides) {
 		add_unknown(w, f, contact, OB_POINTS, (double[2]){ 1, 0 });
 		add_unknown(w, f, contact, OB_POINTS, (double[2]){ 0, 1 });
-	} else if (is_load(bound)) {
+	} else if (!follows && is_load(bound)) {
 		add_unknown(w, f, contact, OB_POINTS, tangent.across)->extra = tangent.t;
 	}
 	if (!spins)
@@ -222,7 +225,7 @@ static void apply(ob_island_work *w, const few *f, double share)
 		if (x->row < OB_POINTS) {
 			b->impulse[x->row][l] = ob_max(0, b->impulse[x->row][l]);
 			for (int i = OB_POINTS; i < OB_ROWS; i++)
-				b->impulse[i][l] += f->brought[x->contact][i] * change;
+				b->impulse[i][l] += f->brought[x->contact][x->row][i] * change;
 		}
 		for (int c = 0; c < 6 && x->a != NO_BODY; c++)
 			w->u[x->a][c] += change * x->to_a[c];

@@ -59,6 +59,7 @@ typedef struct ob_body {
 	bool rolls; // its contact does not go along with its spin, which moves no surface (solver/surfaces.h)
 	uint32_t surface; // 1 + index into the kinematic surfaces (solver/surfaces.h); 0: none
 	double carried; // N s, sum over all surfaces that carry it
+	double load; // N s, sum over its contacts when the partial substep began
 	bool among_others; // it touches moving bodies, or a joint holds it
 	uint32_t joints; // that hold it
 	bool turns; // it has a contact whose geometry turns
