@@ -38,7 +38,7 @@ class Report(program.Case):
 		self.assertAlmostEqual(r["body_step_cpu_us"], 1e6 * r["cpu_s"] / (20 * 60), delta=1e-6)
 		self.assertLess(r["energy_end"], r["energy_start"])
 		self.assertLess(r["energy_gain_max"], 1e-3)
-		self.assertEqual((r["tolerance"], r["substeps"], r["substeps_min"]), (1e-3, 0, 8))
+		self.assertEqual((r["tolerance"], r["substeps"], r["substeps_min"]), (1e-3, 0, 1))
 		self.assertLessEqual(r["error_reached"], 1e-3)
 		self.assertEqual((r["frames"], r["fps"], r["frame_rate"], r["momentum_error"]), (0, None, None, None))
 

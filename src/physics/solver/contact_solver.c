@@ -227,7 +227,7 @@ static bool few_touch(const ob_island_work *w)
 // more after an iteration.
 static bool find_follows(ob_island_work *w, bool again)
 {
-	const double others = .1;
+	const double others = .01;
 	bool any = false;
 	for (uint32_t i = 0; i < w->rows; i++)
 		w->body[i].load = w->body[i].joints ? INFINITY : 0; // a joint brings load, too
@@ -317,7 +317,8 @@ void ob_solver_iterate(ob_solver *s)
 	enum { WORK_OF_STEP = 32 };
 	bool any_active = true;
 	double residual = 0, changed;
-	bool asks = find_follows(w, false);
+	const bool asks =
+		!iteration.ghosts && find_follows(w, false); // ghosts move between iterations: no slip is known
 	ob_direct_begin_partial(&w->direct);
 	if (w->joints.count && ob_direct_stands(w)) // contacts show by their first change that they are in equilibrium
 		ob_joints_solve(w, w->u);
