@@ -9,6 +9,7 @@ regret.py BUILD [OPTION ...]
   --seconds N          simulated, at most (3)
   --judge N            substeps that count as the truth (512)
   --list               prints each scene and tolerance
+  --verdicts           no costs: what the reports say, and whether they say the same with verify=on (exits 1 if not)
 
 The truth of a second is that second gone through again with so many substeps, from the places and velocities that the run
 had when it began. A second of a body is wrong if at its end its surface is further from there than the tolerance.
@@ -19,6 +20,8 @@ had when it began. A second of a body is wrong if at its end its surface is furt
   alarm     the run said that motion may exceed the tolerance (obsim run --strict exits 1)
   false     alarms without a wrong second
   silent    wrong seconds without an alarm
+  verdicts  runs of which a strict one ends otherwise, or elsewhere, with verify=on than without, though verifying found nothing;
+            or alike, though it did
 
 CPU is the simulators' alone, the least of three runs with one worker. The search ends with the first number
 of substeps that takes as long as the control, for a regret of 1.
@@ -49,19 +52,19 @@ class Scene:
         self.build, self.name, self.path, self.parameters, self.seed = build, name, path, parameters, seed
         self.title = name + (f' {seed}' if seed else '')
 
-    def report(self, knob, seconds):
-        """The report of a run, with the least CPU of three; None if it failed. knob: ('tolerance', m) or ('substeps', n)."""
+    def run(self, knob, seconds, *more):
+        """The exit status and the report of a run. knob: ('tolerance', m) or ('substeps', n)."""
         words = [f'{self.build}/obsim', 'run', self.path, '--workers', '1', '--set', 'measure=end', '--json', '-', '--duration',
                  repr(seconds), *[w for name, value in self.parameters.items() for w in ('-D', f'{name}={value}')],
                  *(['--seed', str(self.seed)] if self.seed else []),
-                 *(['--tolerance', repr(knob[1])] if knob[0] == 'tolerance' else ['--set', f'substeps={knob[1]}'])]
-        reports = []
-        for _ in range(3):
-            done = subprocess.run(words, capture_output=True, text=True, check=False)
-            if done.returncode != 0:
-                return None
-            reports.append(json.loads(done.stdout))
-        return min(reports, key=lambda r: r['cpu_s'])
+                 *(['--tolerance', repr(knob[1])] if knob[0] == 'tolerance' else ['--set', f'substeps={knob[1]}']), *more]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        return done.returncode, json.loads(done.stdout) if done.stdout else None
+
+    def report(self, knob, seconds, times=3):
+        """The report of a run, with the least CPU of three; None if it failed."""
+        runs = [self.run(knob, seconds) for _ in range(times)]
+        return None if any(code for code, _ in runs) else min((report for _, report in runs), key=lambda r: r['cpu_s'])
 
     def play(self, knob):
         options = {knob[0]: knob[1], 'workers': 1} | ({'seed': self.seed} if self.seed else {})
@@ -128,12 +131,21 @@ def judge(scene, knob, seconds, truth):
     return errors
 
 
+def is_torn(scene, tolerance, seconds):
+    """True if a strict run says one thing, and another with verify=on."""
+    (plain, a), (verified, b) = (scene.run(('tolerance', tolerance), seconds, '--strict', '--set', f'verify={how}') for how in ('off', 'on'))
+    if not a or not b:
+        return plain != verified
+    found = b['verified_steps'] > 0 and b['verified_share'] < 1
+    return a['state_hash'] != b['state_hash'] or verified != max(plain, int(found))
+
+
 class Verdict:
     """The regret of a tolerance in a scene, and what its report was worth."""
 
     def __init__(self, scene, tolerance, seconds, fixed, truth):
-        self.scene, self.tolerance, self.failed = scene, tolerance, False
-        own = scene.report(('tolerance', tolerance), seconds)
+        self.scene, self.tolerance, self.failed, self.torn = scene, tolerance, False, fixed is None and is_torn(scene, tolerance, seconds)
+        own = scene.report(('tolerance', tolerance), seconds, 3 if fixed else 1)
         try:
             errors = own and judge(scene, ('tolerance', tolerance), seconds, truth)
         except obsim.Error: # the truth takes more work than a step may
@@ -146,7 +158,7 @@ class Verdict:
         self.bounded = own['bounded_share']
         self.regret = self.lavish = 1
         self.beside = [0, 0]
-        for n in (2**k for k in range(10)):
+        for n in (2**k for k in range(10 if fixed else 0)):
             cpu, errors = fixed(n)
             if cpu is None or cpu >= own['cpu_s']:
                 break
@@ -165,10 +177,11 @@ class Verdict:
             return f'{self.scene.title:32} {1e3 * self.tolerance:6g} failed'
         return (f'{self.scene.title:32} {1e3 * self.tolerance:6g} {self.regret:7.2f} ({self.beside[0]:3}) {self.lavish:7.2f} '
                 f'({self.beside[1]:3}) {self.wrong:4} of {self.seconds:<4} {1e3 * self.worst:9.3g} {100 * self.bounded:5.0f} % '
-                f'{"false" if self.alarm and not self.wrong else "alarm" if self.alarm else "SILENT" if self.wrong else ""}')
+                f'{"false" if self.alarm and not self.wrong else "alarm" if self.alarm else "SILENT" if self.wrong else ""}'
+                f'{" TORN" if self.torn else ""}')
 
 
-def measure(scene, tolerances, most, truth):
+def measure(scene, tolerances, most, truth, verdicts):
     """Verdicts of a scene; runs with a fixed number of substeps are shared."""
     known = {}
     def fixed(n):
@@ -180,7 +193,7 @@ def measure(scene, tolerances, most, truth):
                 return errors[0]
             known[n] = (report and report['cpu_s'], judged)
         return known[n]
-    return [Verdict(scene, tolerance, most, fixed, truth) for tolerance in tolerances]
+    return [Verdict(scene, tolerance, most, None if verdicts else fixed, truth) for tolerance in tolerances]
 
 
 def summary(verdicts, tolerances):
@@ -208,6 +221,7 @@ def main():
     p.add_argument('--seconds', type=int, default=3)
     p.add_argument('--judge', type=int, default=512)
     p.add_argument('--list', action='store_true')
+    p.add_argument('--verdicts', action='store_true')
     a = p.parse_args()
     first, last = (int(x) for x in a.seeds.split('..'))
     tolerances = [1e-3 * float(t) for t in a.tolerances.split(',')]
@@ -215,11 +229,15 @@ def main():
     for scene in find_scenes(a.build, range(first, last + 1)):
         if not any(fnmatch.fnmatch(scene.name, wanted) for wanted in a.scenes.split(',')):
             continue
-        for v in measure(scene, tolerances, a.seconds, a.judge):
+        for v in measure(scene, tolerances, a.seconds, a.judge, a.verdicts):
             verdicts.append(v)
             if a.list or v.failed:
                 print(v.line(), flush=True)
     summary(verdicts, tolerances)
+    torn = [v for v in verdicts if v.torn]
+    for v in torn:
+        print(f'two verdicts: {v.scene.title} at {1e3 * v.tolerance:g} mm')
+    sys.exit(bool(torn))
 
 
 if __name__ == '__main__':
