@@ -16,7 +16,7 @@ FOLDERS = ['src/physics/contact', 'src/physics/solver']
 FORMER = '09c4338a'
 # Lines of code, constants, branches. Both trees have the format of .clang-format, so that a line is a line.
 THEN = [15926, 224, 59]
-CEILING = [15972, 221, 60]
+CEILING = [15981, 221, 60]
 
 CONSTANT = re.compile(r'(?:static )?const (?:double|int|uint32_t) ([^;]*);')
 # A number by which nothing but a number of the text follows: "x = 1e-3", not "x = 1 / y", which is arithmetic.

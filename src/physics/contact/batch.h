@@ -60,6 +60,7 @@ typedef struct ob_batch {
 	unsigned slides; // lanes whose friction was at its limit in the last iteration
 	unsigned
 		follows; // lanes whose friction follows the load: patches of known pressure that slide throughout the substep
+	unsigned unloaded; // lanes without a load when the substep began
 	unsigned sweeps; // number in the last iteration
 	unsigned solved; // isolated lanes that the last iteration has solved to the end: they need no other
 	unsigned active; // other lanes whose velocities changed by more than the wake threshold in the last iteration

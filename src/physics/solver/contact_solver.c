@@ -223,10 +223,12 @@ static bool few_touch(const ob_island_work *w)
 
 // Finds patches that slide and whose pressure is known, as all but "others" of the load of one of the two bodies is theirs: by
 // loads, not by the number of contacts, so a body without weight changes nothing. Elsewhere loads may be moved from one
-// contact to another, and with them the centres of pressure.
-static void find_follows(ob_island_work *w)
+// contact to another, and with them the centres of pressure. Returns true if a contact has no load yet: it is asked once
+// more after an iteration.
+static bool find_follows(ob_island_work *w, bool again)
 {
 	const double others = .01;
+	bool any = false;
 	for (uint32_t i = 0; i < w->rows; i++)
 		w->body[i].load = w->body[i].joints ? INFINITY : 0; // a joint brings load, too
 	for (uint32_t i = 0; i < w->batches; i++)
@@ -238,9 +240,12 @@ static void find_follows(ob_island_work *w)
 		}
 	for (uint32_t i = 0; i < w->batches; i++) {
 		ob_batch *b = &w->batch[i];
-		b->follows = 0;
+		if (again && !b->unloaded)
+			continue;
+		b->follows = b->unloaded = 0;
 		for (unsigned left = b->live & ~b->isolated; left && b->kind == OB_KIND_FULL; left &= left - 1) {
 			const uint32_t l = (uint32_t)__builtin_ctz(left);
+			b->unloaded |= (unsigned)!(ob_batch_load(b, l) > 0) << l;
 			const ob_body *of[2] = { &w->body[b->body_a[l]], &w->body[b->body_b[l]] };
 			const double most = (1 + others) * ob_batch_load(b, l);
 			const bool known = (of[0]->inv_mass > 0 && of[0]->load < most) ||
@@ -249,7 +254,9 @@ static void find_follows(ob_island_work *w)
 		}
 		if (b->follows)
 			ob_batch_find_follows(b, w->v, w->u);
+		any |= b->unloaded != 0;
 	}
+	return any;
 }
 
 static void activate_all(ob_island_work *w)
@@ -310,8 +317,8 @@ void ob_solver_iterate(ob_solver *s)
 	enum { WORK_OF_STEP = 32 };
 	bool any_active = true;
 	double residual = 0, changed;
-	if (!iteration.ghosts) // which move between iterations: no slip is known
-		find_follows(w);
+	const bool asks =
+		!iteration.ghosts && find_follows(w, false); // ghosts move between iterations: no slip is known
 	ob_direct_begin_partial(&w->direct);
 	if (w->joints.count && ob_direct_stands(w)) // contacts show by their first change that they are in equilibrium
 		ob_joints_solve(w, w->u);
@@ -326,6 +333,8 @@ void ob_solver_iterate(ob_solver *s)
 			ob_few_contacts_step(w);
 			activate_all(w);
 		}
+		if (k == 1 && asks)
+			find_follows(w, true);
 		s->counters.solver_iterations++;
 		s->methods.read(s, w->u, k);
 		w->iteration += 1 + (k == 0); // a gap of 1, so that no body is active from the last partial substep
