@@ -11,7 +11,7 @@
 
 #include "base/file.h"
 
-#ifdef __SANITIZE_ADDRESS__ // a sanitizer takes no such module
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__ // a sanitizer takes no such module
 #define OWN_FIRST RTLD_LOCAL
 #else
 #define OWN_FIRST (RTLD_LOCAL | RTLD_DEEPBIND)
