@@ -1,5 +1,5 @@
 -- A tour of obsim: boxes fall, while their simulators are killed, and one of them is slow. The page tells what is to be seen.
--- obsim serve tour; with --sync free nobody waits for the slow one; mpirun -n 2 obsim run tour --duration 4: the same hash on two ranks.
+-- obsim serve tour; with --sync free only those near the slow one wait for it; mpirun -n 2 obsim run tour --duration 4: the same hash on two ranks.
 --   -D n=60       how many boxes
 --   -D slow=1     the first one's simulator computes for some milliseconds in each step
 local n = param("n", 60, { whole = true, min = 1, max = 1000, label = "boxes" })

@@ -22,6 +22,7 @@ hand *hand_create_for(uint32_t objects, ob_free_settings f, ob_vec3 gravity)
 	hand *h = calloc(1, sizeof *h);
 	grid = !grid;
 	f.objects = objects;
+	f.coupling = OB_COUPLING_OWN;
 	f.pace = INFINITY;
 	ob_universe_setup setup = { .capacity = objects, .workers = 1, .isolation = "thread", .free = &f };
 	setup.run = ob_run_settings_default();
@@ -29,7 +30,7 @@ hand *hand_create_for(uint32_t objects, ob_free_settings f, ob_vec3 gravity)
 	setup.run.tolerance = 0;
 	setup.run.substeps = 1;
 	f.rate_most = ob_max(f.rate_most, f.update_rate);
-	ob_free_plan_depths(&f, setup.run.step_length, objects, &setup.history, &setup.ledgers);
+	setup.history = ob_free_plan_depth(&f, setup.run.step_length, objects);
 	ob_ode_init();
 	for (uint32_t i = 0; i < HAND_MOST; i++)
 		h->sim[i].id = i;

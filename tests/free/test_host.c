@@ -13,13 +13,22 @@
 #include "host/host_state.h"
 #include "host/stall.h"
 
+static ob_coupling coupling = OB_COUPLING_OWN;
+
 static ob_host *start_with(const ob_scene *s, ob_isolation isolation, uint32_t workers, double lag, double pace,
 			   double patience, ob_on_death policy)
 {
 	ob_error e = { "" };
-	const ob_free_settings f = {
-		.update_rate = 200, .rate_most = 200, .max_lag = lag, .jitter = .2, .pace = pace, .end = 1e3, .seed = 1
-	};
+	const bool grouped = coupling == OB_COUPLING_GROUP;
+	const double rate = grouped ? 1 / s->run.step_length : 200;
+	const ob_free_settings f = { .update_rate = rate,
+				     .rate_most = rate,
+				     .max_lag = lag,
+				     .jitter = grouped ? 0 : .2,
+				     .pace = pace,
+				     .end = 1e3,
+				     .seed = 1,
+				     .coupling = coupling };
 	ob_host_config c = { .isolation = isolation,
 			     .workers = workers,
 			     .spare = 2,
@@ -221,6 +230,13 @@ int main(int argc, char **argv)
 	test_heap(isolation, 0, .002);
 	test_requests(isolation);
 	test_slow_clock(isolation);
+	coupling = OB_COUPLING_GROUP;
+	test_heap(isolation, 2, INFINITY);
+	test_heap(isolation, 0, INFINITY);
+	test_requests(isolation);
+	if (processes)
+		test_kills();
+	coupling = OB_COUPLING_OWN;
 	if (processes) {
 		test_kills();
 		test_stops(0, 1 << 3);

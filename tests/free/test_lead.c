@@ -32,11 +32,9 @@ static ob_motion newest(const hand *h, uint32_t id)
 // A ball bounces off a post and goes to the left, while the simulators of others stand. On the right of the post, where the new
 // motion would come from, lie these. It has never been there: all keep their velocities, and none gains energy: in two rings of
 // heavy ones, none of which knows of the others' hits, that was .035 of all. first: the ball has the lowest id.
-static void test_bounce(ob_coupling coupling, bool first)
+static void test_bounce(bool first)
 {
-	const ob_free_settings f = {
-		.update_rate = 1000, .max_lag = .002, .end = INFINITY, .seed = 1, .coupling = coupling
-	};
+	const ob_free_settings f = { .update_rate = 1000, .max_lag = .002, .end = INFINITY, .seed = 1 };
 	const double mass = 100, post = .02, away = (post + radius) * sqrt(.5);
 	uint32_t ball = 0, other[OTHERS];
 	hand *h = hand_create(f, none);
@@ -72,9 +70,7 @@ static void test_bounce(ob_coupling coupling, bool first)
 
 int main(void)
 {
-	for (int first = 0; first < 2; first++) {
-		test_bounce(OB_COUPLING_LEDGER, first);
-		test_bounce(OB_COUPLING_OWN, first);
-	}
+	test_bounce(true);
+	test_bounce(false);
 	return check_end();
 }

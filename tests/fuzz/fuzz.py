@@ -615,7 +615,7 @@ class Schedules(Files):
 			with tempfile.TemporaryDirectory() as folder:
 				words = ["run", os.path.join(SCENES, scene + ".lua"), "--duration", ".05"]
 				path = os.path.join(folder, "file")
-				subprocess.run([obsim, *words, "--sync", "free", "--set", f"record_schedule={path}"], stdout=subprocess.DEVNULL, check=True)
+				subprocess.run([obsim, *words, "--sync", "free", "--set", "coupling=own", "--set", f"record_schedule={path}"], stdout=subprocess.DEVNULL, check=True)
 				with open(path, "rb") as f:
 					data = f.read()
 				first, steps = data.index(b"step"), []

@@ -229,7 +229,7 @@ class Bombs(unittest.TestCase):
 	def test_schedules(self):
 		path = os.path.join(self.folder, "schedule")
 		words = "run", program.scene("stack"), "--duration", ".05"
-		self.assertEqual(program.call(*words, "--sync", "free", "--set", f"record_schedule={path}").returncode, 0)
+		self.assertEqual(program.call(*words, "--sync", "free", "--set", "coupling=own", "--set", f"record_schedule={path}").returncode, 0)
 		with open(path, "rb") as f:
 			good = f.read()
 		first = good.index(b"step")

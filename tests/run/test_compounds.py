@@ -64,7 +64,7 @@ class Compounds(configurations.SameBits, program.Case):
 	def test_refusals(self):
 		with open(self.scene, "w", encoding="utf-8") as f:
 			f.write("compound { parts = { { size = { 1, 1, 1 } }, { size = { 1, 1, 1 }, at = { 1, 0, 0 } } } }")
-		for words, said in ((["--sync", "free"], "compounds"), (["--arch", "monolith"], "no hulls")):
+		for words, said in ((["--sync", "free", "--set", "coupling=own"], "compounds"), (["--arch", "monolith"], "no hulls")):
 			done = program.call("run", self.scene, "--duration", "1/60", *words)
 			self.assertNotEqual(done.returncode, 0)
 			self.assertIn(said, done.stderr)

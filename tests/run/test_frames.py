@@ -66,7 +66,7 @@ class Frames(program.Case):
 
 	def test_own_times(self):
 		"""Bodies have colours by lag in a free run, and are grey in lockstep."""
-		for name, *words in (("free", "--sync", "free", "--set", "jitter=.3"), ("lockstep",)):
+		for name, *words in (("free", "--sync", "free", "--set", "coupling=own", "--set", "jitter=.3"), ("lockstep",)):
 			self.draw(name, "--duration", "1", "--still", "1", "--colour-by", "lag", *words)
 		self.assertNotEqual(digest(self.path("free")), digest(self.path("lockstep")))
 

@@ -11,7 +11,7 @@ import program
 
 STACK = """
 local n = param('n', 4)
-scene { duration = .5, sync = 'free', update_rate = 500 }
+scene { duration = .5, sync = 'free', coupling = 'own', update_rate = 500 }
 ground {}
 for i = 1, n do box { size = {1, 1, 1}, at = {0, 0, i - .5 + .01 * i} } end
 """
@@ -39,7 +39,8 @@ class Free(program.Case):
 		"""Bodies that touch nothing end where they do in lockstep, whatever their rates."""
 		scene = self.scene(FLIGHT)
 		expected = program.report(scene)
-		for more in (), ("--set", "update_rate=37"), ("--isolation", "process", "--workers", "objects"), ("--set", "jitter=.3"):
+		own = "--set", "coupling=own"
+		for more in (), own, (*own, "--set", "update_rate=37"), ("--isolation", "process", "--workers", "objects"), (*own, "--set", "jitter=.3"):
 			r, _ = self.run_free(scene, *more)
 			self.assertAlmostEqual(r["energy_end"] / expected["energy_end"], 1, delta=1e-9)
 			self.assertEqual(r["steps"], 60)
@@ -58,25 +59,29 @@ class Free(program.Case):
 
 	def test_killed_simulators_go_on(self):
 		"""A simulator that is killed goes on where it had published: the common time reaches the end."""
-		for coupling in "own", "ledger":
-			r, done = self.run_free(self.scene(STACK), "--isolation", "process", "--workers", "objects",
-				"--fault", "kill:p=.002,seed=3", "--set", f"coupling={coupling}")
+		for coupling, *more in ("own", "--set", "update_rate=500"), ("group",):
+			r, done = self.run_free(self.scene(STACK.replace(", coupling = 'own', update_rate = 500", "")), "--isolation", "process",
+				"--workers", "objects", "--fault", "kill:p=.02,seed=3", "--set", f"coupling={coupling}", *more)
 			self.assertGreater(r["deaths"], 0)
 			self.assertEqual((r["steps"], r["coupling"]), (30, coupling))
 			self.assertIn("goes on where it had published", done.stderr)
 			self.assertIn("each simulator went on where it had published", done.stdout)
 
-	def test_ledger_has_one_impulse(self):
-		for more in ["--set", "solver=ghost"], ["--set", "integrator=ode"]:
-			done = program.call("run", self.scene(FLIGHT), "--sync", "free", "--set", "coupling=ledger", *more)
-			self.assertEqual(done.returncode, 2, done.stderr)
+	def test_groups_are_the_default(self):
+		"""They end in lockstep's bits, and the report has what they have, and nothing else."""
+		scene = self.scene(STACK.replace(", coupling = 'own', update_rate = 500", ""))
+		r, done = self.run_free(scene, "--report", "full", "--tolerance", ".5mm", "--set", "sleeping=on")
+		self.assertRegex(done.stdout, r"free +60 Hz, coupling group; \d+ updates, \d+ waits")
+		self.assertEqual(r["coupling"], "group")
+		self.assertEqual([r[k] for k in ("max_lag", "jitter", "delay", "wait_s", "lag_mean_s", "lag_max_s")], 6 * [None])
+		expected = program.report(scene, "--sync", "lockstep", "--tolerance", ".5mm", "--set", "sleeping=on")
+		self.assertEqual(r["state_hash"], expected["state_hash"])
 
 	def test_stopped_simulator(self):
 		"""Only those that touch a stopped simulator wait, at the bound, and obsim top says so; it goes on later."""
 		name = f"free-stop-{os.getpid()}"
 		run = program.start("run", self.scene(STACK + "sphere { radius = .1, at = {9, 0, 1} }"), "--isolation", "process",
-			"--workers", "objects", "--pace", 1, "--set", "max_lag=.02", "--duration", 3600, "--name", name, "--set", "measure=end",
-			"--set", "coupling=ledger")
+			"--workers", "objects", "--pace", 1, "--set", "max_lag=.02", "--duration", 3600, "--name", name, "--set", "measure=end")
 		self.addCleanup(run.wait)
 		self.addCleanup(run.kill)
 
@@ -105,13 +110,14 @@ for i = 1, 5 do sphere { radius = .1, at = {i, 0, 1}, born = i * .1, dies = i * 
 sphere { radius = .1, at = {9, 0, 1} }
 """)
 		for more in (), ("--workers", "objects"), ("--isolation", "process"):
-			r, _ = self.run_free(scene, "--set", "update_rate=240", *more)
-			self.assertEqual((r["steps"], r["objects"]), (60, 2))
+			for coupling in ("--set", "coupling=own", "--set", "update_rate=240"), ():
+				r, _ = self.run_free(scene, *coupling, *more)
+				self.assertEqual((r["steps"], r["objects"]), (60, 2))
 
 	def test_rates_of_objects(self):
 		"""Objects step at rates of their own; --set update_rate is for the others."""
 		scene = self.scene("""
-scene { duration = 1, sync = 'free', update_rate = 100 }
+scene { duration = 1, sync = 'free', coupling = 'own', update_rate = 100 }
 material "fast" { update_rate = 400 }
 sphere { radius = .1, at = {0, 0, 20}, material = "fast" }
 sphere { radius = .1, at = {9, 0, 20}, material = "fast", update_rate = 250 }
@@ -123,21 +129,21 @@ sphere { radius = .1, at = {19, 0, 20} }
 
 	def test_frames_of_the_common_time(self):
 		series = self.path("series.csv")
-		self.run_free(self.scene(FLIGHT), "--set", "update_rate=111", "--series", series)
+		self.run_free(self.scene(FLIGHT), "--set", "coupling=own", "--set", "update_rate=111", "--series", series)
 		with open(series) as f:
 			self.assertEqual(len(f.readlines()), 62)
 
 	def test_paced(self):
-		r, _ = self.run_free(self.scene(FLIGHT), "--pace", 4, "--set", "update_rate=100")
+		r, _ = self.run_free(self.scene(FLIGHT), "--pace", 4, "--set", "coupling=own", "--set", "update_rate=100")
 		self.assertEqual(r["max_lag"], None)
 		self.assertGreater(r["elapsed_s"], .2)
 
 	def test_refusals(self):
 		scene = self.scene(FLIGHT)
 		for words, named in [
-			(["--tolerance", "1mm"], "tolerance"), (["--harden", "--isolation", "process"], "harden"),
-			(["--arch", "monolith"], "arch"), (["--set", "lag=1", "--set", "solver=lagged"], "lag"),
-			(["--checkpoint", self.path("c")], "checkpoint"), (["--set", "sleeping=on"], "sleeping"),
+			(["--set", "coupling=own", "--tolerance", "1mm"], "tolerance"), (["--harden", "--isolation", "process"], "harden"),
+			(["--arch", "monolith"], "arch"), (["--set", "coupling=own", "--set", "lag=1", "--set", "solver=lagged"], "lag"),
+			(["--checkpoint", self.path("c")], "checkpoint"), (["--set", "coupling=own", "--set", "sleeping=on"], "sleeping"),
 			(["--explain"], "explain"), (["--check"], "check"),
 			(["--on-death", "freeze"], "on-death"), (["--set", "solver=jacobi"], "solver"),
 			(["--set", "measure=profile"], "profile"),

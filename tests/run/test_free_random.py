@@ -37,11 +37,13 @@ class Random(program.Case):
 		return path
 
 	def options(self, draw, seed):
-		words = ["--sync", "free", "--set", "coupling=" + draw.choice(["own", "ledger"]), "--seed", seed, "--set", "measure=end",
-			"--set", f"update_rate={draw.choice([60, 100, 333, 1000])}", "--set", f"jitter={draw.choice([0, .3, .9])}",
-			"--workers", draw.choice([1, 2, 3, "objects"])]
-		words += draw.choice([[], ["--set", "max_lag=none"], ["--set", "max_lag=.0005"], ["--set", "max_lag=.05"]])
-		words += draw.choice([[], [], ["--set", "delay=.002"], ["--pace", 2]])
+		words = ["--sync", "free", "--seed", seed, "--set", "measure=end", "--workers", draw.choice([1, 2, 3, "objects"])]
+		if draw.random() < .5:
+			words += ["--set", "coupling=own", "--set", f"update_rate={draw.choice([60, 100, 333, 1000])}",
+				"--set", f"jitter={draw.choice([0, .3, .9])}"]
+			words += draw.choice([[], ["--set", "max_lag=none"], ["--set", "max_lag=.0005"], ["--set", "max_lag=.05"]])
+			words += draw.choice([[], ["--set", "delay=.002"]])
+		words += draw.choice([[], [], ["--pace", 2]])
 		isolation = draw.choice(["thread", "process"])
 		faults = [None, f"slow:p=.01,ms=3,seed={seed}"]
 		faults += [f"kill:p=.004,seed={seed}"] * 2 if isolation == "process" else []

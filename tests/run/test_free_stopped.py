@@ -68,7 +68,7 @@ class Stopped(program.Case):
 		scene = self.path("scene.lua")
 		with open(scene, "w") as f:
 			f.write(SCENE)
-		run = self.start_stepping(scene, "--sync", "free", "--set", "coupling=ledger", "--set", f"update_rate={RATE}", "--pace", 1, "--set", f"max_lag={BOUND}", "--isolation", "process", "--workers", "objects", "--duration", 3600, "--set", "measure=end")
+		run = self.start_stepping(scene, "--sync", "free", "--set", "coupling=own", "--set", f"update_rate={RATE}", "--pace", 1, "--set", f"max_lag={BOUND}", "--isolation", "process", "--workers", "objects", "--duration", 3600, "--set", "measure=end")
 		universe = Universe(self.name)
 		self.assertTrue(program.wait_until(lambda: min(universe.own_times().values()) > 1))
 		pid = int(re.search(rf"^ +{STOPPED} +(\d+) ", self.top(), re.M)[1])

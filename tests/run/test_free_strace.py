@@ -9,7 +9,7 @@ import unittest
 import program
 
 SCENE = """
-scene { duration = 1, sync = 'free', update_rate = 500 }
+scene { duration = 1, sync = 'free', coupling = 'own', update_rate = 500 }
 ground {}
 for i = 1, 4 do box { size = {1, 1, 1}, at = {0, 0, i - .5} } end
 """
@@ -36,17 +36,16 @@ class Strace(program.Case):
 			return calls, json.load(f)
 
 	def test_no_futex_in_a_step(self):
-		for coupling in "own", "ledger":
-			calls, r = self.traced("--workers", "2", "--set", "max_lag=none", "--set", f"coupling={coupling}")
-			self.assertGreaterEqual(r["updates"], 1900)
-			self.assertEqual(r["waits"], 0)
-			self.assertLess(calls.count("futex"), FEW, coupling)
-			for lock in "sched_yield", "semop", "flock", "poll", "epoll_wait":
-				self.assertNotIn(lock, calls)
+		calls, r = self.traced("--workers", "2", "--set", "max_lag=none")
+		self.assertGreaterEqual(r["updates"], 1900)
+		self.assertEqual(r["waits"], 0)
+		self.assertLess(calls.count("futex"), FEW)
+		for lock in "sched_yield", "semop", "flock", "poll", "epoll_wait":
+			self.assertNotIn(lock, calls)
 
 	def test_waits_are_counted(self):
 		"""By the bound of the lag: a call to wait, and one to wake, for each wait that the report counts."""
-		calls, r = self.traced("--workers", "objects", "--set", "max_lag=.002", "--set", "coupling=ledger")
+		calls, r = self.traced("--workers", "objects", "--set", "max_lag=.002")
 		self.assertGreater(r["waits"], 0)
 		self.assertLess(calls.count("futex"), 2 * r["waits"] + FEW)
 

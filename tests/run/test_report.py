@@ -17,8 +17,7 @@ verified_steps unverified_steps verified_p50_m verified_p90_m verified_p99_m ver
 verified_second_p50_m verified_second_p90_m verified_second_p99_m verified_second_max_m verified_share energy_recovered narrow load box_tests step_p90_s step_max_s critical_s critical_16_s work_s held_s gate_s gate_cpu_s idle_s
 elapsed_s host_cpu_s renderer_cpu_s switches deaths worker_memory_bytes separation_max_m separation_mean_m trace_events
 trace_lost resumed_s checkpoints checkpoint_bytes checkpoint_s faults fault_kinds faults_overwritten frozen
-scripts_stopped scripts_warned sync coupling update_rate max_lag jitter delay updates waits wait_s lag_mean_s lag_max_s
-energy_by_lag_j""".split()
+scripts_stopped scripts_warned sync coupling update_rate max_lag jitter delay updates waits wait_s lag_mean_s lag_max_s""".split()
 
 
 class Report(program.Case):

@@ -77,7 +77,7 @@ class Serve(Case):
 	def test_free_run(self):
 		"""While a simulator of a free run stands, a viewer sees that its neighbour waits for it, at the bound of the lag."""
 		self.serve("--sync", "free", "--set", "max_lag=.02", "--isolation", "process", "--workers", "objects", "-D", "n=3",
-			"--set", "coupling=ledger", scene="stack")
+			"--set", "coupling=own", scene="stack")
 		v = self.viewer()
 		v.send(do="inspect", id=2)
 		v.until(lambda: v.told.get("details", {}).get("pid"))

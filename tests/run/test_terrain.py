@@ -110,7 +110,7 @@ cylinder { radius = .2, length = .3, at = { -1.5, 1, 1.2 } }
 
 	def test_refusals(self):
 		self.write("heightfield { size = { 9, 9 }, cells = { 3, 3 }, height = function(x) return x * x end }")
-		done = program.call("run", self.scene, "--duration", "1/60", "--sync", "free")
+		done = program.call("run", self.scene, "--duration", "1/60", "--sync", "free", "--set", "coupling=own")
 		self.assertNotEqual(done.returncode, 0)
 		self.assertIn("heightfields", done.stderr)
 

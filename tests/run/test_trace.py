@@ -163,7 +163,7 @@ class Trace(program.Case):
 
 	def test_free_run(self):
 		"""Steps, and who waits for whom: for one that it may touch."""
-		words = [program.scene("stack"), "-D", "n=4", "--duration", ".5", "--sync", "free", "--set", "coupling=ledger", "--set", "update_rate=240"]
+		words = [program.scene("stack"), "-D", "n=4", "--duration", ".5", "--sync", "free", "--set", "coupling=own", "--set", "update_rate=240"]
 		for way in WAYS:
 			with self.subTest(way=way):
 				r = program.report(*words, *way, "--trace", self.path("t.json"))

@@ -1,4 +1,4 @@
-// Versions and ledgers of a free run: one writer, readers of any version that is kept; a writer that is killed anywhere.
+// Versions of a free run: one writer, readers of any version that is kept; a writer that is killed anywhere.
 // Argument: "threads" or "killed".
 #include "table/free.h"
 
@@ -14,7 +14,7 @@
 
 #include "base/random.h"
 
-enum { DEPTH = 8, OBJECT = 1, ACCOUNTS = 3, PUBLICATIONS = 100000, KILLS = 60 };
+enum { DEPTH = 8, OBJECT = 1, PUBLICATIONS = 100000, KILLS = 60 };
 
 static ob_universe *u;
 
@@ -22,14 +22,13 @@ static void create(void)
 {
 	ob_error e;
 	const ob_free_settings settings = {
-		.update_rate = 1000, .rate_most = 1000, .objects = 2, .coupling = OB_COUPLING_LEDGER
+		.update_rate = 1000, .rate_most = 1000, .objects = 2, .coupling = OB_COUPLING_OWN
 	};
 	const ob_universe_setup setup = { .capacity = 2,
 					  .workers = 1,
 					  .isolation = "thread",
 					  .run = ob_run_settings_default(),
 					  .history = DEPTH,
-					  .ledgers = 2,
 					  .free = &settings };
 	u = ob_universe_create(&setup, &e);
 	if (!u || !ob_universe_reserve(u, 2, &e)) {
@@ -39,14 +38,10 @@ static void create(void)
 }
 
 // Version number n: each of its numbers follows from n.
-static void make(uint64_t n, ob_motion *m, ob_ledger *l)
+static ob_motion make(uint64_t n)
 {
 	const double x = (double)n;
-	*m = (ob_motion){ .t0 = x, .p = { x, x + 1, x + 2 }, .q = { 1, 0, 0, 0 }, .v = { x, -x, x }, .path = 3 * x };
-	*l = (ob_ledger){ .head = { .accounts = ACCOUNTS, .torque = { x, x, x } } };
-	for (uint32_t i = 0; i < ACCOUNTS; i++)
-		l->account[i] =
-			(ob_account){ .partner = i, .epoch = (uint32_t)n, .sum = { x, x }, .rate = { x, [5] = x } };
+	return (ob_motion){ .t0 = x, .p = { x, x + 1, x + 2 }, .q = { 1, 0, 0, 0 }, .v = { x, -x, x }, .path = 3 * x };
 }
 
 static bool is_motion(const ob_motion *m)
@@ -57,35 +52,23 @@ static bool is_motion(const ob_motion *m)
 
 static void publish(uint64_t n)
 {
-	ob_motion m;
-	ob_ledger l;
-	make(n, &m, &l);
-	ob_free_publish(u, OBJECT, &m, &l);
+	const ob_motion m = make(n);
+	ob_free_publish(u, OBJECT, &m);
 }
 
 static uint64_t torn, wrong, reads;
 
-// One reading of a random kept version, of the newest account, and of all.
+// One reading of a random kept version.
 static void read_once(uint64_t *random)
 {
 	ob_motion m, next;
-	ob_account a;
-	ob_ledger l;
-	ob_ledger_head head;
-	bool found;
 	const double newest = ob_free_time(u, OBJECT), asked = newest - (double)(ob_splitmix(random) % DEPTH);
 	const uint64_t v = ob_free_read(u, OBJECT, asked, &m, &next);
-	const uint32_t partner = (uint32_t)(ob_splitmix(random) % ACCOUNTS);
 	reads++;
 	torn += !v || !is_motion(&m) || (!isnan(next.t0) && !is_motion(&next));
 	// a version is its number and its time at once; it is the one asked for, or that is not kept any more
 	wrong += v &&
 		 (m.t0 != (double)v || (m.t0 < asked && m.t0 != newest) || (!isnan(next.t0) && next.t0 != m.t0 + 1));
-	torn += !ob_free_read_account(u, OBJECT, asked, partner, &m, &a, &head, &found) || !found || !is_motion(&m);
-	torn += a.partner != partner || a.sum[0] != m.t0 || a.sum[1] != m.t0 || a.rate[5] != m.t0 ||
-		a.epoch != (uint32_t)m.t0 || head.torque[2] != m.t0;
-	torn += !ob_free_read_ledger(u, OBJECT, &m, &l) || !is_motion(&m) || l.head.accounts != ACCOUNTS ||
-		l.account[2].sum[0] != m.t0 || l.account[0].sum[0] != m.t0;
 }
 
 static void *write_all(void *unused)

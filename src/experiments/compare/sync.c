@@ -14,24 +14,21 @@
 
 #define RATE(HZ) \
 	{ \
-		"ledger_" #HZ "_hz", "ledger, " #HZ " Hz", OB_SYNC_LEDGER, false, false, 0, HZ, false \
+		"own_" #HZ "_hz", "own, " #HZ " Hz", OB_SYNC_OWN, false, false, 0, HZ, false \
 	}
-#define LAGS(COUPLING, KEY, TITLE) \
-	{ KEY "_lag_1ms", TITLE ", lag 1 ms", COUPLING, false, false, .001, 0, false }, \
-		{ KEY "_lag_3ms", TITLE ", lag 3 ms", COUPLING, false, false, .003, 0, false }, \
-		{ KEY "_lag_10ms", TITLE ", lag 10 ms", COUPLING, false, false, .01, 0, false }, \
-		{ KEY "_lag_30ms", TITLE ", lag 30 ms", COUPLING, false, false, .03, 0, false }, \
+#define LAG(MS) \
 	{ \
-		KEY "_lag_100ms", TITLE ", lag 100 ms", COUPLING, false, false, .1, 0, false \
+		"own_lag_" #MS "ms", "own, lag " #MS " ms", OB_SYNC_OWN, false, false, 1e-3 * MS, 0, false \
 	}
 const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS] = {
 	{ "lockstep_threads", "lockstep, 2 threads", OB_SYNC_LOCKSTEP, false, false, 0, 0, true },
 	{ "lockstep_processes", "lockstep, 2 processes", OB_SYNC_LOCKSTEP, true, false, 0, 0, true },
 	{ "lockstep_threads_each", "lockstep, thread each", OB_SYNC_LOCKSTEP, false, true, 0, 0, false },
-	{ "ledger_threads", "ledger, 2 threads", OB_SYNC_LEDGER, false, false, 0, 0, true },
-	{ "ledger_processes", "ledger, 2 processes", OB_SYNC_LEDGER, true, false, 0, 0, false },
-	{ "ledger_threads_each", "ledger, thread each", OB_SYNC_LEDGER, false, true, 0, 0, false },
-	{ "ledger_processes_each", "ledger, process each", OB_SYNC_LEDGER, true, true, 0, 0, false },
+	{ "lockstep_processes_each", "lockstep, process each", OB_SYNC_LOCKSTEP, true, true, 0, 0, false },
+	{ "group_threads", "group, 2 threads", OB_SYNC_GROUP, false, false, 0, 0, true },
+	{ "group_processes", "group, 2 processes", OB_SYNC_GROUP, true, false, 0, 0, false },
+	{ "group_threads_each", "group, thread each", OB_SYNC_GROUP, false, true, 0, 0, false },
+	{ "group_processes_each", "group, process each", OB_SYNC_GROUP, true, true, 0, 0, false },
 	{ "own_threads", "own, 2 threads", OB_SYNC_OWN, false, false, 0, 0, false },
 	{ "own_processes", "own, 2 processes", OB_SYNC_OWN, true, false, 0, 0, false },
 	{ "own_processes_each", "own, process each", OB_SYNC_OWN, true, true, 0, 0, true },
@@ -41,8 +38,11 @@ const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS] = {
 	RATE(250),
 	RATE(500),
 	RATE(2000),
-	LAGS(OB_SYNC_LEDGER, "ledger", "ledger"),
-	LAGS(OB_SYNC_OWN, "own", "own"),
+	LAG(1),
+	LAG(3),
+	LAG(10),
+	LAG(30),
+	LAG(100),
 };
 
 #define METRIC(id, key, title, unit, scale, meaning, ...) \
@@ -56,7 +56,7 @@ const ob_metric ob_sync_metrics[OB_SYNC_METRICS] = {
 	       "steps of all simulators in a second of wall-clock time", NULL),
 	METRIC(LATENCY, "latency_mean_s", "latency", "ms", 1e3,
 	       "from cause to effect: a simulator's own time less the time of the neighbour's version that it reads, "
-	       "mean; in lockstep bodies in contact are solved together, so there is none",
+	       "mean; in lockstep and in groups bodies in contact are solved together, so there is none",
 	       "lag_mean_s"),
 	METRIC(LATENCY_MOST, "latency_max_s", "latency, most", "ms", 1e3, "the largest of them", "lag_max_s"),
 	METRIC(WORST, "worst_penetration_m", "worst penetration", "mm", 1e3, "of any pair at any boundary of 1/60 s",
@@ -66,10 +66,6 @@ const ob_metric ob_sync_metrics[OB_SYNC_METRICS] = {
 	METRIC(ENERGY, "energy_gain_max", "energy gained", "1", 1,
 	       "largest energy above that of the start, over it, 0 below 1e-12; work of prescribed motion is not "
 	       "counted",
-	       NULL),
-	METRIC(BY_LAG, "energy_by_lag", "by late mail", "1", 1,
-	       "energy that late mail of the ledger has added, over the energy of the start: the sum over all pairs of "
-	       "each impulse's work on the body that received it, less its work on that body as the sender saw it",
 	       NULL),
 	METRIC(MOMENTUM, "momentum_error", "momentum", "1", 1,
 	       "largest change of momentum that nothing explains, over its size; only in scenes without fixed bodies",
@@ -95,7 +91,7 @@ static double rate_of(const ob_sync_comparison *c, const ob_sync_configuration *
 static char **arguments(const job *j, uint64_t seed)
 {
 	enum { OWN = 24 };
-	static const char *const coupling[] = { "", "ledger", "own", "own", "own" };
+	static const char *const coupling[] = { "", "group", "own", "own", "own" };
 	const ob_sync_comparison *c = j->comparison;
 	const ob_sync_configuration *of = j->of;
 	char **argv = calloc(OWN + OB_SYNC_DEFINES, sizeof *argv);
@@ -111,8 +107,9 @@ static char **arguments(const job *j, uint64_t seed)
 	ADD("--isolation=%s", of->processes ? "process" : "thread");
 	ADD("--workers=%s", of->each ? "objects" : "2");
 	ADD("--sync=%s", of->coupling == OB_SYNC_LOCKSTEP ? "lockstep" : "free");
-	if (of->coupling != OB_SYNC_LOCKSTEP) {
+	if (of->coupling != OB_SYNC_LOCKSTEP)
 		ADD("--set=coupling=%s", coupling[of->coupling]);
+	if (of->coupling >= OB_SYNC_OWN) {
 		ADD("--set=update_rate=%.17g", rate_of(c, of));
 		ADD("--set=jitter=%.17g", c->jitter);
 		ADD("--set=delay=%.17g", of->delay);
@@ -139,7 +136,6 @@ static void read_report(const job *j, const char *r, double *m)
 	m[OB_SYNC_UPDATES] = (free ? ob_json_read_number(r, "updates") : steps) / ob_json_read_number(r, "wall_s");
 	m[OB_SYNC_SIZES] = m[OB_SYNC_WORST] / j->point->size;
 	m[OB_SYNC_ENERGY] = gain < rounding ? 0 : gain;
-	m[OB_SYNC_BY_LAG] = ob_json_read_number(r, "energy_by_lag_j") / (energy != 0 ? fabs(energy) : 1);
 	m[OB_SYNC_LOST] = energy - ob_json_read_number(r, "energy_end");
 }
 
@@ -181,7 +177,7 @@ static bool schedule(const ob_sync_comparison *c, const ob_sync_point *p, uint32
 		if (!of->swept && p != ob_sync_main_point(c))
 			continue;
 		all[w] = (job){ c, p, of };
-		const double rate = of->coupling == OB_SYNC_LOCKSTEP ? LOCKSTEP_STEPS : rate_of(c, of);
+		const double rate = of->coupling < OB_SYNC_OWN ? LOCKSTEP_STEPS : rate_of(c, of);
 		ob_trial t = { .seed = p->seed,
 			       .guess_s = .1 + step_s * rate * c->duration * p->objects,
 			       .what = &all[w] };
@@ -277,7 +273,7 @@ void ob_sync_finish(ob_sync_comparison *c)
 
 static bool is_positive(ob_sync_metric m)
 {
-	return m != OB_SYNC_ENERGY && m != OB_SYNC_BY_LAG && m != OB_SYNC_MOMENTUM && m != OB_SYNC_LOST;
+	return m != OB_SYNC_ENERGY && m != OB_SYNC_MOMENTUM && m != OB_SYNC_LOST;
 }
 
 ob_estimate ob_sync_estimate(const ob_sync_comparison *c, const ob_sync_point *p, int configuration, ob_sync_metric m)
@@ -300,7 +296,7 @@ static bool is_of_lags(int w, ob_sync_coupling coupling)
 bool ob_sync_is_of_rates(int w)
 {
 	const ob_sync_configuration *of = &ob_sync_table[w];
-	return of->coupling == OB_SYNC_LEDGER && !of->processes && !of->each && of->delay == 0;
+	return of->coupling == OB_SYNC_OWN && !of->processes && !of->each && of->delay == 0;
 }
 
 ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling)
@@ -385,17 +381,16 @@ static ob_estimate order_between(const ob_sync_comparison *c, const ob_sync_poin
 			      error.interval };
 }
 
-// Says the orders of a coupling's error over decades of the lag. Overlapping intervals contradict no fixed power.
-static verdict judge_coupling(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling,
-			      const char *name, ob_sync_text *t)
+// Says the orders of the error of own responses over decades of the lag. Overlapping intervals contradict no fixed power.
+static verdict judge_lags(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_text *t)
 {
 	static const double bounds[] = { 0, .001, .01, .1 }; // s, injected
 	double least_high = INFINITY, most_low = -INFINITY;
 	int last = -1;
 	bool known = true;
-	OB_SAY(t->words, " %s: powers", name);
+	OB_SAY(t->words, " Powers");
 	for (int w = 0, k = 0; w < OB_SYNC_CONFIGURATIONS && k < 4; w++) {
-		if (!is_of_lags(w, coupling) || ob_sync_table[w].delay != bounds[k])
+		if (!is_of_lags(w, OB_SYNC_OWN) || ob_sync_table[w].delay != bounds[k])
 			continue;
 		if (last >= 0) {
 			const ob_estimate order = order_between(c, p, last, w);
@@ -429,78 +424,95 @@ static verdict judge_coupling(const ob_sync_comparison *c, const ob_sync_point *
 
 static verdict judge_power(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_text *t)
 {
-	const verdict ledger = judge_coupling(c, p, OB_SYNC_LEDGER, "Ledger", t),
-		      own = judge_coupling(c, p, OB_SYNC_OWN, "Own", t);
+	const verdict v = judge_lags(c, p, t);
 	const ob_line step = ob_sync_order_of_step(c, p);
 	if (!isnan(step.slope_low))
 		OB_SAY(t->words,
-		       " Beside it, without an injected lag, the ledger's error grows with the length of a step to the "
+		       " Beside it, without an injected lag, the error grows with the length of a step to the "
 		       "power of %.2f (%.2f to %.2f).",
 		       step.slope, step.slope_low, step.slope_high);
 	OB_SAY(t->words, " Scenes of other speeds and sizes would test whether the product alone counts.");
-	return worse(ledger, own);
+	return v;
 }
 
-static verdict judge_momentum(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_text *t)
+// Whether a ratio is at most so large: undecided where its interval allows both.
+static verdict is_at_most(ob_estimate ratio, double most)
 {
-	const int l = best_free(c, p, OB_SYNC_LEDGER), o = best_free(c, p, OB_SYNC_OWN);
-	const ob_estimate ledger = ob_sync_estimate(c, p, l, OB_SYNC_MOMENTUM),
-			  own = ob_sync_estimate(c, p, o, OB_SYNC_MOMENTUM);
-	if (!ledger.n || !own.n) {
-		OB_SAY(t->words,
-		       " Something is fixed in this scene, and takes up momentum. (The program's tests hold the "
-		       "ledger, with the mail under way, to 1e-12 for random lags, jitter, orders and kills.)");
-		return NOT_TESTED;
-	}
-	OB_SAY(t->words, " Change of momentum, without the mail under way: ");
-	say_estimate(t, ledger, 1);
-	OB_SAY(t->words, " by the ledger, ");
-	say_estimate(t, own, 1);
-	OB_SAY(t->words, " by own responses.");
-	return ledger.high < own.low ? SUPPORTED : ledger.low > own.high ? CONTRADICTED : UNDECIDED;
+	return isnan(ratio.low)     ? UNDECIDED
+	       : ratio.high <= most ? SUPPORTED
+	       : ratio.low > most   ? CONTRADICTED
+				    : UNDECIDED;
 }
 
-// Energy gained and late mail's are those of one run, so at each injected lag they are compared by their intervals.
-static verdict judge_energy(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_text *t)
+// Says the ratio of a metric of each form of groups to that of a form of lockstep: the one with the same workers, or by two threads.
+// Returns whether all are at most so large.
+static verdict judge_groups(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_metric m, bool alike,
+			    double most, ob_sync_text *t)
 {
-	static const double noticeable = 1e-6;
 	verdict v = NOT_TESTED;
-	OB_SAY(t->words, " Energy gained, and late mail's, over that at the start:");
 	for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
-		const ob_estimate gained = ob_sync_estimate(c, p, w, OB_SYNC_ENERGY),
-				  mail = ob_sync_estimate(c, p, w, OB_SYNC_BY_LAG);
-		if (!is_of_lags(w, OB_SYNC_LEDGER) || ob_sync_table[w].delay == 0 || !gained.n || !mail.n)
+		const ob_sync_configuration *of = &ob_sync_table[w], *to = ob_sync_table;
+		if (of->coupling != OB_SYNC_GROUP)
 			continue;
-		OB_SAY(t->words, " %g ms: ", 1e3 * ob_sync_table[w].delay);
-		if (gained.high < noticeable || gained.value < noticeable)
-			OB_SAY(t->words, "none");
-		else
-			say_estimate(t, gained, 1);
-		OB_SAY(t->words, ", ");
-		say_estimate(t, mail, 1);
-		OB_SAY(t->words, ";");
-		const verdict here = isnan(gained.low)                                     ? UNDECIDED
-				     : gained.high < noticeable || gained.high <= mail.low ? SUPPORTED
-				     : gained.low > fmax(mail.high, noticeable)            ? CONTRADICTED
-											   : UNDECIDED;
+		while (alike && (to->each != of->each || to->processes != of->processes))
+			to++;
+		const ob_estimate ratio = ob_records_estimate_ratio(&c->records, p->key, of->key, to->key, m);
+		if (!ratio.n)
+			continue;
+		OB_SAY(t->words, "%s ", v == NOT_TESTED ? "" : ",");
+		say_estimate(t, ratio, 1);
+		OB_SAY(t->words, " (%s)", of->title);
+		const verdict here = is_at_most(ratio, most);
 		v = v == NOT_TESTED ? here : worse(v, here);
 	}
-	const size_t length = strlen(t->words);
-	t->words[length - (t->words[length - 1] == ';')] = 0;
-	OB_SAY(t->words, ". What hits lose is not measured apart, so late mail may have added more than was gained, "
-			 "but it cannot be shown to be the only source.");
+	return v;
+}
+
+static verdict judge_error(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_text *t)
+{
+	static const double alike = 1.2;
+	const int g = best_free(c, p, OB_SYNC_GROUP), o = best_free(c, p, OB_SYNC_OWN);
+	const ob_estimate group = ob_sync_estimate(c, p, g, OB_SYNC_MOMENTUM),
+			  own = ob_sync_estimate(c, p, o, OB_SYNC_MOMENTUM),
+			  ratio = ob_records_estimate_ratio(&c->records, p->key, ob_sync_table[o].key,
+							    ob_sync_table[0].key, OB_SYNC_WORST);
+	OB_SAY(t->words, " Worst penetration over that of lockstep:");
+	const verdict same = judge_groups(c, p, OB_SYNC_WORST, false, alike, t), other = is_at_most(ratio, alike);
+	verdict v = worse(same, other == SUPPORTED ? CONTRADICTED : other == CONTRADICTED ? SUPPORTED : other);
+	OB_SAY(t->words, "; ");
+	say_estimate(t, ratio, 1);
+	OB_SAY(t->words, " (%s). ", ob_sync_table[o].title);
+	if (!group.n || !own.n) {
+		OB_SAY(t->words, "Something is fixed in this scene, and takes up momentum.");
+		return v;
+	}
+	OB_SAY(t->words, "Change of momentum: ");
+	say_estimate(t, group, 1);
+	OB_SAY(t->words, " in groups, ");
+	say_estimate(t, own, 1);
+	OB_SAY(t->words, " by own responses.");
+	return worse(v, group.high < own.low ? SUPPORTED : group.low > own.high ? CONTRADICTED : UNDECIDED);
+}
+
+static verdict judge_cost(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_text *t)
+{
+	static const double most = 2;
+	OB_SAY(t->words, " CPU over that of lockstep with the same workers:");
+	const verdict v = judge_groups(c, p, OB_SYNC_CPU, true, most, t);
+	OB_SAY(t->words, "; over that of lockstep with two threads:");
+	judge_groups(c, p, OB_SYNC_CPU, false, most, t);
+	OB_SAY(t->words, ".");
 	return v;
 }
 
 ob_sync_text ob_sync_judge(const ob_sync_comparison *c, int hypothesis)
 {
 	static verdict (*const judge[OB_SYNC_HYPOTHESES])(const ob_sync_comparison *, const ob_sync_point *,
-							  ob_sync_text *) = { judge_power, judge_momentum,
-									      judge_energy };
+							  ob_sync_text *) = { judge_power, judge_error, judge_cost };
 	const ob_sync_point *p = ob_sync_main_point(c);
 	ob_sync_text t = { "" }, judged;
 	verdict v = NOT_TESTED;
-	if (best_free(c, p, OB_SYNC_LEDGER) < 0 || best_free(c, p, OB_SYNC_OWN) < 0)
+	if (best_free(c, p, OB_SYNC_GROUP) < 0 || best_free(c, p, OB_SYNC_OWN) < 0)
 		OB_SAY(t.words, " Too little was measured.");
 	else
 		v = judge[hypothesis](c, p, &t);
@@ -601,23 +613,24 @@ ob_sync_text ob_sync_recommend(const ob_sync_comparison *c, const ob_sync_point 
 	if (p != ob_sync_main_point(c))
 		return t;
 	say_gains(&t, c, p);
-	const double lag = tolerable_lag(c, p, of->coupling, share), gains = gains_from(c, p, of->coupling, false),
-		     may_gain = gains_from(c, p, of->coupling, true);
+	const double lag = tolerable_lag(c, p, OB_SYNC_OWN, share), gains = gains_from(c, p, OB_SYNC_OWN, false),
+		     may_gain = gains_from(c, p, OB_SYNC_OWN, true);
 	if (lag > 0)
 		OB_SAY(t.words,
-		       " Free simulators of this coupling stay within %.0f %% of the bodies' size up to a latency of "
-		       "%.3g ms, which is a lag of %.2g sizes at these speeds.",
+		       " Own responses, to what is seen late, stay within %.0f %% of the bodies' size up to a latency "
+		       "of %.3g ms, which is a lag of %.2g sizes at these speeds.",
 		       100 * share, 1e3 * lag, lag * p->speed / p->size);
 	else if (lag < 0)
-		OB_SAY(t.words, " Even without an injected lag it may sink in by more than %.0f %% of their size.",
+		OB_SAY(t.words,
+		       " Even without an injected lag own responses may sink in by more than %.0f %% of their size.",
 		       100 * share);
 	if (isnan(may_gain))
-		OB_SAY(t.words, " No injected lag made this coupling gain energy.");
+		OB_SAY(t.words, " No injected lag made them gain energy.");
 	else if (isnan(gains))
-		OB_SAY(t.words, " From an injected lag of %.3g ms on it may gain energy: that is undecided.",
+		OB_SAY(t.words, " From an injected lag of %.3g ms on they may gain energy: that is undecided.",
 		       1e3 * may_gain);
 	else
-		OB_SAY(t.words, " It gains energy from an injected lag of %.3g ms on: bound the lag below %s.",
+		OB_SAY(t.words, " They gain energy from an injected lag of %.3g ms on: bound the lag below %s.",
 		       1e3 * gains,
 		       may_gain < gains ? "that, and better below the lags where that is undecided" : "that");
 	return t;

@@ -13,7 +13,7 @@
 
 typedef enum ob_sync_coupling {
 	OB_SYNC_LOCKSTEP,
-	OB_SYNC_LEDGER,
+	OB_SYNC_GROUP, // solved together, by lockstep's own step
 	OB_SYNC_OWN, // neighbours with their mass
 	OB_SYNC_HEAVY, // neighbours infinitely heavy
 	OB_SYNC_ODE, // as OWN, with ODE's bodies and contact joints
@@ -29,7 +29,7 @@ typedef struct ob_sync_configuration {
 	bool swept; // runs at each point of a sweep
 } ob_sync_configuration;
 
-enum { OB_SYNC_CONFIGURATIONS = 26, OB_SYNC_POINTS = 16, OB_SYNC_DEFINES = 64 };
+enum { OB_SYNC_CONFIGURATIONS = 22, OB_SYNC_POINTS = 16, OB_SYNC_DEFINES = 64 };
 extern const ob_sync_configuration ob_sync_table[OB_SYNC_CONFIGURATIONS];
 
 typedef enum ob_sync_metric {
@@ -41,7 +41,6 @@ typedef enum ob_sync_metric {
 	OB_SYNC_WORST,
 	OB_SYNC_SIZES, // worst penetration over the bodies' size
 	OB_SYNC_ENERGY,
-	OB_SYNC_BY_LAG, // energy that late mail has added, over that of the start
 	OB_SYNC_MOMENTUM,
 	OB_SYNC_LAG, // lag x speed / size
 	OB_SYNC_SHOWN = OB_SYNC_LAG, // from here on for diagrams and files
@@ -86,7 +85,7 @@ ob_estimate ob_sync_estimate(const ob_sync_comparison *c, const ob_sync_point *p
 ob_line ob_sync_order(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_coupling coupling);
 // True for configurations that differ in the rate alone.
 bool ob_sync_is_of_rates(int configuration);
-// Order of the ledger's error in the length of a step, without an injected lag.
+// Order of the error of own responses in the length of a step, without an injected lag.
 ob_line ob_sync_order_of_step(const ob_sync_comparison *c, const ob_sync_point *p);
 
 typedef struct ob_sync_text {

@@ -8,7 +8,7 @@
 #include "experiment/table.h"
 #include "sync_texts.h"
 
-static const char *const coupling_title[OB_SYNC_COUPLINGS] = { "lockstep", "ledger", "own", "own, heavy", "own, ODE" };
+static const char *const coupling_title[OB_SYNC_COUPLINGS] = { "lockstep", "group", "own", "own, heavy", "own, ODE" };
 
 // True if any configuration measured it: momentum is measured only where nothing is fixed.
 static bool was_measured(const ob_sync_comparison *c, const ob_sync_point *p, ob_sync_metric m)
@@ -128,12 +128,12 @@ static ob_chart *chart_error(const ob_sync_comparison *c, const ob_sync_point *p
 {
 	ob_chart *d = begin_chart(c, p, "error", "Worst penetration over the lag, two threads", "lag × speed / size",
 				  "worst penetration / size");
-	for (int k = OB_SYNC_LEDGER; k < OB_SYNC_COUPLINGS; k++) {
+	for (int k = OB_SYNC_OWN; k < OB_SYNC_COUPLINGS; k++) {
 		const ob_line order = ob_sync_order(c, p, k);
 		char name[128];
 		snprintf(name, sizeof name, isnan(order.slope) ? "%s" : "%s: slope %.2f", coupling_title[k],
 			 order.slope);
-		ob_chart_begin(d, k - 1, false, name);
+		ob_chart_begin(d, k - OB_SYNC_OWN, false, name);
 		add_lags(d, c, p, k, OB_SYNC_SIZES);
 	}
 	return d;
@@ -141,19 +141,17 @@ static ob_chart *chart_error(const ob_sync_comparison *c, const ob_sync_point *p
 
 static ob_chart *chart_energy(const ob_sync_comparison *c, const ob_sync_point *p)
 {
-	ob_chart *d = begin_chart(c, p, "energy", "Energy over the lag, two threads", "lag × speed / size",
-				  "energy / energy at the start");
+	ob_chart *d = begin_chart(c, p, "energy", "Energy gained over the lag, two threads", "lag × speed / size",
+				  "energy gained / energy at the start");
 	d->y.scale = OB_SCALE_LINEAR;
-	ob_chart_begin(d, OB_SYNC_LEDGER - 1, false, "ledger: gained");
-	add_lags(d, c, p, OB_SYNC_LEDGER, OB_SYNC_ENERGY);
-	ob_chart_begin(d, OB_SYNC_LEDGER - 1, true, "ledger: by late mail");
-	add_lags(d, c, p, OB_SYNC_LEDGER, OB_SYNC_BY_LAG);
-	ob_chart_begin(d, OB_SYNC_OWN - 1, false, "own: gained");
-	add_lags(d, c, p, OB_SYNC_OWN, OB_SYNC_ENERGY);
+	for (int k = OB_SYNC_OWN; k < OB_SYNC_COUPLINGS; k++) {
+		ob_chart_begin(d, k - OB_SYNC_OWN, false, coupling_title[k]);
+		add_lags(d, c, p, k, OB_SYNC_ENERGY);
+	}
 	return d;
 }
 
-// Worst penetration over the rate of steps, with the ledger on two threads and no injected lag; lockstep beside it.
+// Worst penetration over the rate of steps, of own responses on two threads, without an injected lag; lockstep beside it.
 static ob_chart *chart_rates(const ob_sync_comparison *c, const ob_sync_point *p)
 {
 	ob_chart *d = begin_chart(c, p, "rate", "Worst penetration over the rate of steps, two threads",
@@ -161,8 +159,8 @@ static ob_chart *chart_rates(const ob_sync_comparison *c, const ob_sync_point *p
 	const ob_line order = ob_sync_order_of_step(c, p);
 	const double exact = 1e3 * ob_sync_estimate(c, p, 0, OB_SYNC_WORST).value;
 	char name[128];
-	snprintf(name, sizeof name, isnan(order.slope) ? "ledger" : "ledger: order %.2f", order.slope);
-	ob_chart_begin(d, OB_SYNC_LEDGER - 1, false, name);
+	snprintf(name, sizeof name, isnan(order.slope) ? "own" : "own: order %.2f", order.slope);
+	ob_chart_begin(d, 0, false, name);
 	for (int pass = 0; pass < 2; pass++) // the usual rate's row stands before the others
 		for (int w = 0; w < OB_SYNC_CONFIGURATIONS; w++) {
 			const double rate = ob_sync_table[w].rate > 0 ? ob_sync_table[w].rate : c->rate;
@@ -247,7 +245,7 @@ static void write_setting(ob_page *p, const void *with)
 static void write_slopes(ob_page *p, const ob_sync_comparison *c, const ob_sync_point *at)
 {
 	ob_page_markup(p, "<ul>\n");
-	for (int k = OB_SYNC_LEDGER; k < OB_SYNC_COUPLINGS; k++) {
+	for (int k = OB_SYNC_OWN; k < OB_SYNC_COUPLINGS; k++) {
 		const ob_line order = ob_sync_order(c, at, k);
 		if (isnan(order.slope_low))
 			continue;
@@ -265,8 +263,7 @@ static void write_diagrams(ob_page *p, const ob_sync_comparison *c, const ob_syn
 	write_slopes(p, c, at);
 	ob_chart_html(chart_rates(c, at), p, "Bars: intervals of 95 % (Student). No injected lag.");
 	ob_chart_html(chart_energy(c, at), p,
-		      "Bars: intervals of 95 % (Student). Gained: the most above the start, 0 if never. By late mail: "
-		      "its work, at the end of the run.");
+		      "Bars: intervals of 95 % (Student). The most above the start, 0 if never.");
 	ob_chart_html(chart_cost(c, at), p, "Bars: intervals of 95 % of the CPU (Student).");
 }
 

@@ -12,9 +12,7 @@ extern const ob_engine_kind ob_engine_obsim_jacobi;
 extern const ob_engine_kind ob_engine_obsim_ode;
 extern const ob_engine_kind ob_engine_obsim_ghost;
 extern const ob_engine_kind ob_engine_obsim_lag;
-extern const ob_engine_kind ob_engine_free_ledger; // free.c: one for each coupling and isolation
-extern const ob_engine_kind ob_engine_free_ledger_processes;
-extern const ob_engine_kind ob_engine_free_own;
+extern const ob_engine_kind ob_engine_free_own; // free.c: own responses by each isolation, and two other kinds
 extern const ob_engine_kind ob_engine_free_own_processes;
 extern const ob_engine_kind ob_engine_free_heavy;
 extern const ob_engine_kind ob_engine_free_ode;

@@ -20,7 +20,6 @@ struct ob_engine {
 
 typedef struct form {
 	ob_isolation isolation;
-	uint32_t coupling;
 	ob_integrator integrator;
 	bool heavy;
 } form;
@@ -65,7 +64,7 @@ static ob_engine *create(const ob_world *w, const ob_run_settings *s, form as, o
 					.pace = INFINITY,
 					.end = INFINITY,
 					.seed = 1,
-					.coupling = as.coupling,
+					.coupling = OB_COUPLING_OWN,
 					.heavy = as.heavy };
 	ob_host_config c = { .name = name, .isolation = as.isolation, .workers = 2, .run = *s, .free = &free };
 	c.run.gravity = w->gravity;
@@ -111,34 +110,24 @@ static double cpu(const ob_engine *p)
 	return t.cpu_s;
 }
 
-static ob_engine *create_ledger(const ob_world *w, const ob_run_settings *s, ob_error *e)
-{
-	return create(w, s, (form){ .coupling = OB_COUPLING_LEDGER }, e);
-}
-
-static ob_engine *create_ledger_processes(const ob_world *w, const ob_run_settings *s, ob_error *e)
-{
-	return create(w, s, (form){ .isolation = OB_ISOLATION_PROCESS, .coupling = OB_COUPLING_LEDGER }, e);
-}
-
 static ob_engine *create_own(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
-	return create(w, s, (form){ .coupling = OB_COUPLING_OWN }, e);
+	return create(w, s, (form){ .heavy = false }, e);
 }
 
 static ob_engine *create_own_processes(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
-	return create(w, s, (form){ .isolation = OB_ISOLATION_PROCESS, .coupling = OB_COUPLING_OWN }, e);
+	return create(w, s, (form){ .isolation = OB_ISOLATION_PROCESS }, e);
 }
 
 static ob_engine *create_heavy(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
-	return create(w, s, (form){ .coupling = OB_COUPLING_OWN, .heavy = true }, e);
+	return create(w, s, (form){ .heavy = true }, e);
 }
 
 static ob_engine *create_ode(const ob_world *w, const ob_run_settings *s, ob_error *e)
 {
-	return create(w, s, (form){ .coupling = OB_COUPLING_OWN, .integrator = OB_INTEGRATOR_ODE }, e);
+	return create(w, s, (form){ .integrator = OB_INTEGRATOR_ODE }, e);
 }
 
 // clang-format off
@@ -146,12 +135,6 @@ static ob_engine *create_ode(const ob_world *w, const ob_run_settings *s, ob_err
 	.version = "", .free = true, .iteration_choice = { 16 }, .step = step, .get = get, .cpu = cpu, .destroy = destroy, .hulls = true, \
 	.usual = { .step_length = OB_DEFAULT_STEP, .substeps = 16, .iterations = OB_DEFAULT_ITERATIONS }
 
-const ob_engine_kind ob_engine_free_ledger = {
-	.name = "free-ledger", .title = "free, ledger", .create = create_ledger, THE_REST
-};
-const ob_engine_kind ob_engine_free_ledger_processes = {
-	.name = "free-ledger-processes", .title = "free, ledger, processes", .create = create_ledger_processes, THE_REST
-};
 const ob_engine_kind ob_engine_free_own = {
 	.name = "free-own", .title = "free, own", .create = create_own, THE_REST
 };

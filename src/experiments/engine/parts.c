@@ -183,8 +183,6 @@ const ob_engine_kind *const ob_engine_kinds[] = {
 	&ob_engine_obsim_ode,
 	&ob_engine_obsim_ghost,
 	&ob_engine_obsim_lag,
-	&ob_engine_free_ledger,
-	&ob_engine_free_ledger_processes,
 	&ob_engine_free_own,
 	&ob_engine_free_own_processes,
 	&ob_engine_free_heavy,

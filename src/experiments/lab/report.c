@@ -149,8 +149,8 @@ static void write_free(ob_page *p, const void *with)
 		begun = write_section(p, begun, ob_lab_chart_delay(with, *c), "free", "Simulators that wait for nobody",
 				      "Free simulators have times of their own. Their error over the delay after which "
 				      "a neighbour sees what they publish; the error over the rate of their steps "
-				      "stands with each case, lockstep beside it. A ledger computes a pair's impulse "
-				      "once; own: each side computes its own. Two runs of one setting differ.");
+				      "stands with each case, lockstep beside it. Each side of a contact computes its "
+				      "own response. Two runs of one setting differ.");
 }
 
 static void write_index(ob_page *p, const void *with)

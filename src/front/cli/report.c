@@ -464,6 +464,11 @@ static void print_quality(const ob_report *r, FILE *f)
 static void print_free(const ob_report *r, FILE *f)
 {
 	ob_quantity a, b, c;
+	if (strcmp(r->coupling, "group") == 0) {
+		fprintf(f, "  free         %g Hz, coupling group; %.0f updates, %.0f waits\n", r->update_rate,
+			r->updates, r->waits);
+		return;
+	}
 	fprintf(f, "  free         %g Hz, coupling %s, lag of at most %s; %.0f updates\n", r->update_rate, r->coupling,
 		isnan(r->max_lag) ? "any size" : ob_quantity_text(&a, r->max_lag, "s"), r->updates);
 	fprintf(f, "  lag          %s in the mean, %s most; %.0f waits, %s together\n",

@@ -66,10 +66,9 @@
 	COUNT(trace_events) COUNT(trace_lost) /* events of all; events that the file lacks */ \
 	/* of a free run; else "" and NaN */ \
 	TEXT(sync, 16) TEXT(coupling, 16) \
-	REAL(update_rate) REAL(max_lag) REAL(jitter) REAL(delay) /* Hz, s; max_lag NaN = no bound */ \
+	REAL(update_rate) REAL(max_lag) REAL(jitter) REAL(delay) /* Hz, s; max_lag NaN = no bound; from there on NaN in groups, but for updates and waits */ \
 	REAL(updates) REAL(waits) REAL(wait_s) /* sums over simulators */ \
 	REAL(lag_mean_s) REAL(lag_max_s) /* own time less that of the version read, over all readings */ \
-	REAL(energy_by_lag_j) /* J, with a ledger: work of mail, less that as its senders saw it */ \
 	TEXT(commit, 64)
 // clang-format on
 

@@ -701,8 +701,7 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	const uint64_t settled = OB_BIT(OB_OPTION_PACE) | OB_BIT(OB_OPTION_ISOLATION) | OB_BIT(OB_OPTION_WORKERS) |
 				 OB_BIT(OB_OPTION_FAULT);
 	// what a free run has not
-	const uint64_t settings =
-		OB_BIT(OB_SETTING_ARCHITECTURE) | OB_BIT(OB_SETTING_TOLERANCE) | OB_BIT(OB_SETTING_LAG);
+	const uint64_t settings = OB_BIT(OB_SETTING_ARCHITECTURE);
 	const uint64_t options = OB_BIT(OB_OPTION_HARDEN) | OB_BIT(OB_OPTION_STRICT) | OB_BIT(OB_OPTION_EXPLAIN) |
 				 OB_BIT(OB_OPTION_CHECK) | OB_BIT(OB_OPTION_CHECKPOINT) | OB_BIT(OB_OPTION_RESUME) |
 				 OB_BIT(OB_OPTION_ON_DEATH);
@@ -710,10 +709,11 @@ bool ob_free_request_read(ob_run_request *r, const ob_arguments *a, ob_error *e)
 	r->free_command = a->command == OB_COMMAND_RUN || a->command == OB_COMMAND_SERVE;
 	r->of_free = ob_options_given(a, 0, of_free | OB_BIT(OB_SETTING_REPLAY_SCHEDULE));
 	r->of_lockstep = ob_options_given(a, options, settings);
+	r->of_own_step = ob_options_given(a, 0, OB_BIT(OB_SETTING_TOLERANCE) | OB_BIT(OB_SETTING_LAG));
 	if (a->value[OB_OPTION_OVERLAY] && strstr(a->value[OB_OPTION_OVERLAY], "contacts"))
 		value = "overlay contacts";
 	if (ob_setting_is_set(&r->asked, OB_SETTING_SLEEPING) && r->asked.run.sleeping)
-		value = "set sleeping=on";
+		snprintf(r->of_own_step.text, sizeof r->of_own_step.text, "set sleeping=on");
 	if (r->asked.measure == OB_MEASURE_PROFILE)
 		value = "set measure=profile";
 	if (value)
@@ -732,18 +732,35 @@ static bool has_compounds(const ob_scene *s)
 	return i < s->hulls;
 }
 
-// The same of one that is solved in groups, by lockstep's step.
+// Refuses what bodies that are solved together cannot have.
 static bool check_groups(const ob_run_request *r, const ob_scene *s, ob_error *e)
 {
-	const char *const given = r->asked.record_schedule || r->asked.replay_schedule ? "record_schedule"
-				  : r->free.jitter > 0                                 ? "jitter"
-				  : r->free.delay > 0                                  ? "delay"
-										       : NULL;
-	if (given)
-		return ob_fail(e, "--set %s does not go with coupling=group: leave one of them away", given);
-	if (r->free.rate_most != r->free.update_rate || r->free.update_rate != 1 / r->run.step_length)
-		return ob_fail(e, "--set coupling=group: all bodies have the rate of --step: leave update_rate away");
-	return true;
+	const bool bound =
+		ob_setting_is_set(&r->asked, OB_SETTING_MAX_LAG) || ob_setting_is_set(&s->asked, OB_SETTING_MAX_LAG);
+	const char *const given =
+		r->asked.record_schedule ? "record_schedule"
+		: r->free.jitter > 0     ? "jitter"
+		: r->free.delay > 0      ? "delay"
+		: bound                  ? "max_lag"
+		: r->free.rate_most != r->free.update_rate || r->free.update_rate != 1 / r->run.step_length
+			? "update_rate"
+			: NULL;
+	return !given ||
+	       ob_fail(e,
+		       "%s is for simulators that solve contacts each for itself (--set coupling=own): in groups all "
+		       "step at the rate of --step, and read nothing late",
+		       given);
+}
+
+// Refuses what simulators that solve contacts each for itself cannot have.
+static bool check_own(const ob_run_request *r, const ob_scene *s, ob_error *e)
+{
+	const char *const refused = *r->of_own_step.text ? r->of_own_step.text
+				    : has_compounds(s)   ? "a scene with compounds"
+				    : s->terrains        ? "a scene with heightfields or meshes"
+							 : NULL;
+	return !refused || ob_fail(e, "%s%s does not go with --set coupling=own: leave that away",
+				   *r->of_own_step.text ? "--" : "", refused);
 }
 
 // Refuses what a free run cannot have.
@@ -761,18 +778,7 @@ static bool check(const ob_run_request *r, const ob_scene *s, ob_error *e)
 		return ob_fail(e, "--sync free: the scene has scripts, which run in lockstep alone");
 	if (s->joints > 0)
 		return ob_fail(e, "--sync free: the scene has joints, which hold in lockstep alone");
-	if (r->free.coupling == OB_COUPLING_GROUP)
-		return check_groups(r, s, e);
-	if (has_compounds(s))
-		return ob_fail(e, "--sync free: the scene has compounds, which collide in lockstep alone");
-	if (s->terrains)
-		return ob_fail(e, "--sync free: the scene has heightfields or meshes, which collide in lockstep alone");
-	if (r->free.coupling == OB_COUPLING_LEDGER &&
-	    (r->run.solver != OB_SOLVER_COLOURED || r->run.integrator != OB_INTEGRATOR_EXACT))
-		return ob_fail(
-			e, "--set coupling=ledger: a pair has one impulse, so leave the settings solver and integrator "
-			   "away");
-	return true;
+	return r->free.coupling == OB_COUPLING_GROUP ? check_groups(r, s, e) : check_own(r, s, e);
 }
 
 // Digest of all that decides a free run beside its settings and its schedule.

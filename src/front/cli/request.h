@@ -53,6 +53,7 @@ typedef struct ob_run_request {
 	bool free_command; // the command can run free
 	ob_setting_word of_free,
 		of_lockstep; // an option that was given, and is for one of the two alone; "" = none
+	ob_setting_word of_own_step; // the same for runs that take lockstep's own step, free or not
 	ob_free_settings free; // of a free run
 	uint64_t schedule_digest; // of all that decides a free run, but for its settings and its schedule
 } ob_run_request;

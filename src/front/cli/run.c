@@ -489,27 +489,25 @@ static void report_free(const run *r, ob_report *p)
 {
 	const ob_free_settings *free = &r->request.free;
 	p->update_rate = p->max_lag = p->jitter = p->delay = p->updates = p->waits = p->wait_s = NAN;
-	p->lag_mean_s = p->lag_max_s = p->energy_by_lag_j = NAN;
+	p->lag_mean_s = p->lag_max_s = NAN;
 	snprintf(p->sync, sizeof p->sync, "%s", r->request.is_free ? "free" : "lockstep");
 	if (!r->request.is_free)
 		return;
 	ob_free_sums sums;
 	ob_free_sum(ob_host_universe(r->host), &sums);
-	snprintf(p->coupling, sizeof p->coupling, "%s",
-		 free->coupling == OB_COUPLING_GROUP    ? "group"
-		 : free->coupling == OB_COUPLING_LEDGER ? "ledger"
-							: "own");
+	const bool grouped = free->coupling == OB_COUPLING_GROUP;
+	snprintf(p->coupling, sizeof p->coupling, "%s", grouped ? "group" : "own");
 	p->update_rate = free->update_rate;
+	p->updates = (double)sums.counts.updates;
+	p->waits = (double)sums.counts.waits;
+	if (grouped)
+		return;
 	p->max_lag = isinf(free->max_lag) ? NAN : free->max_lag;
 	p->jitter = free->jitter;
 	p->delay = free->delay;
-	p->updates = (double)sums.counts.updates;
-	p->waits = (double)sums.counts.waits;
 	p->wait_s = 1e-9 * (double)sums.counts.wait_ns;
 	p->lag_mean_s = 1e-9 * (double)sums.counts.lag_ns / (double)(sums.counts.readings + !sums.counts.readings);
 	p->lag_max_s = 1e-9 * (double)sums.counts.lag_most_ns;
-	if (free->coupling == OB_COUPLING_LEDGER)
-		p->energy_by_lag_j = sums.counts.worked - sums.counts.work_seen;
 }
 
 static void make_report(run *r, const char *outcome, ob_report *p)

@@ -26,8 +26,7 @@ static double most_rate(const ob_free_settings *f, double step)
 	return OB_FREE_SHORTEST * f->rate_most * (1 + f->jitter) + 1 / step;
 }
 
-void ob_free_plan_depths(const ob_free_settings *f, double step, uint32_t capacity, uint32_t *history,
-			 uint32_t *ledgers)
+uint32_t ob_free_plan_depth(const ob_free_settings *f, double step, uint32_t capacity)
 {
 	enum { LEAST = 8, MOST = 1 << 15, GROUPED = 16 };
 	const double rate = most_rate(f, step), lag = isinf(f->max_lag) ? 0 : f->max_lag,
@@ -35,9 +34,7 @@ void ob_free_plan_depths(const ob_free_settings *f, double step, uint32_t capaci
 		     least = LEAST + ceil(rate * (f->delay + lag + 4 * step)),
 		     window = ob_free_lead(f, step) > 0 ? 0 : window_seconds,
 		     depth = ob_max(least, ob_min(fits, ceil(rate * (window + f->delay + lag))));
-	*history = f->coupling == OB_COUPLING_GROUP ? GROUPED : (uint32_t)ob_min(MOST, depth);
-	// a ledger is read as of the newest version, unless publications are delayed
-	*ledgers = f->coupling == OB_COUPLING_LEDGER ? 2 + (uint32_t)ob_min(*history - 2, ceil(rate * f->delay)) : 0;
+	return f->coupling == OB_COUPLING_GROUP ? GROUPED : (uint32_t)ob_min(MOST, depth);
 }
 
 uint64_t ob_free_window(const ob_universe *u)
@@ -244,8 +241,6 @@ void ob_free_sum(const ob_universe *u, ob_free_sums *out)
 		out->counts.late += c.late;
 		out->counts.readings += c.readings;
 		out->counts.lag_ns += c.lag_ns;
-		out->counts.worked += c.worked;
-		out->counts.work_seen += c.work_seen;
 		out->counts.lag_most_ns =
 			c.lag_most_ns > out->counts.lag_most_ns ? c.lag_most_ns : out->counts.lag_most_ns;
 		out->least_time = ob_min(out->least_time, ob_free_time(u, id));

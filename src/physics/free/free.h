@@ -8,9 +8,8 @@
 // Runs a worker: the simulators of its objects, each at its own time, until the run stops. false and e: no memory.
 bool ob_free_work(ob_universe *u, uint32_t worker, ob_error *e);
 
-// Depths of the rings that a run needs: versions of motions, and mail. step: s; capacity: objects.
-void ob_free_plan_depths(const ob_free_settings *f, double step, uint32_t capacity, uint32_t *history,
-			 uint32_t *ledgers);
+// Depth of the rings of versions that a run needs. step: s; capacity: objects.
+uint32_t ob_free_plan_depth(const ob_free_settings *f, double step, uint32_t capacity);
 // Number of steps by which simulators may be ahead of the common time.
 uint64_t ob_free_window(const ob_universe *u);
 

@@ -76,14 +76,6 @@ static uint32_t find(const ob_free_sim *s, uint32_t id)
 	return i;
 }
 
-static bool has_account(const ob_free_sim *s, uint32_t id)
-{
-	for (uint32_t i = 0; i < s->ledger.head.accounts; i++)
-		if (s->ledger.account[i].partner == id)
-			return true;
-	return false;
-}
-
 static void read_passport(ob_free_neighbour *n, const ob_universe *u)
 {
 	const double friction = n->passport.friction;
@@ -123,12 +115,12 @@ static void renew_passports(ob_free_sim *s, const ob_universe *u)
 	}
 }
 
-// Drops neighbours that are gone or far. One that has mail is kept until the account is settled.
+// Drops neighbours that are gone or far.
 static void drop_far(ob_free_sim *s, const ob_free_scratch *x)
 {
 	for (uint32_t i = s->neighbours; i-- > 0;) {
 		const ob_free_neighbour *n = &s->neighbour[i];
-		if (is_there(n, x->u) && (ob_free_overlaps(x->u, n->id, s->bounds) || has_account(s, n->id)))
+		if (is_there(n, x->u) && ob_free_overlaps(x->u, n->id, s->bounds))
 			continue;
 		s->neighbour[i] = s->neighbour[--s->neighbours];
 		s->relisted = true;
@@ -139,8 +131,7 @@ static void drop_far(ob_free_sim *s, const ob_free_scratch *x)
 static void consider(ob_free_sim *s, ob_free_scratch *x, uint32_t id)
 {
 	uint32_t generation;
-	if (id == s->id || !(ob_free_overlaps(x->u, id, s->bounds) || has_account(s, id)) ||
-	    find(s, id) < s->neighbours)
+	if (id == s->id || !ob_free_overlaps(x->u, id, s->bounds) || find(s, id) < s->neighbours)
 		return;
 	const ob_free_kind kind = ob_free_kind_of(x->u, id, &generation);
 	if (kind != OB_FREE_ABSENT)
@@ -154,8 +145,6 @@ static void look_around(ob_free_sim *s, ob_free_scratch *x)
 	const uint32_t n = grid ? ob_free_boxes_query(&x->boxes, s->bounds) : ob_universe_ids(x->u);
 	for (uint32_t i = 0; i < n; i++)
 		consider(s, x, grid ? x->boxes.found[i] : i);
-	for (uint32_t i = 0; i < s->ledger.head.accounts; i++)
-		consider(s, x, s->ledger.account[i].partner);
 }
 
 static int sim_by_id(const void *id, const void *sim)

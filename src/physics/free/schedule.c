@@ -35,16 +35,14 @@ typedef struct step_head {
 } step_head;
 
 static const char file_mark[8] = "obsched";
-enum { FORMAT = 2, STEP_MARK = 0x70657473, LOST_MARK = 0x74736f6c, END_MARK = 0x2e646e65 };
+enum { FORMAT = 3, STEP_MARK = 0x70657473, LOST_MARK = 0x74736f6c, END_MARK = 0x2e646e65 };
 
 // A version that steps to come will read.
 typedef struct kept {
 	struct kept *next;
-	size_t bytes;
 	uint64_t version;
 	uint32_t readers;
 	ob_motion motion;
-	ob_ledger ledger; // as many accounts as it has
 } kept;
 
 // Versions that steps read, ascending: id << 32 | number.
@@ -171,7 +169,7 @@ static const char *check_head(const file_head *h, size_t size, uint64_t digest)
 	const ob_setting *t = ob_setting_table;
 	if (!(f->update_rate > 0 && f->update_rate <= OB_UPDATE_RATE_MOST && f->max_lag >= 0 && f->jitter >= 0 &&
 	      f->jitter <= t[OB_SETTING_JITTER].most && f->delay >= 0 && f->delay <= t[OB_SETTING_DELAY].most &&
-	      f->pace > 0 && f->coupling <= OB_COUPLING_LEDGER && f->heavy <= 1))
+	      f->pace > 0 && f->coupling == OB_COUPLING_OWN && f->heavy <= 1))
 		return "damaged at byte 0: the settings are out of range";
 	return NULL;
 }
@@ -391,25 +389,21 @@ static void note_read(ob_free_schedule *s, uint32_t id, uint64_t version, bool n
 	s->read[2 * s->step.reads++ + 1] = (uint32_t)version << 1 | next;
 }
 
-static kept *keep(ob_free_schedule *s, uint32_t id, uint64_t version, const ob_motion *m, const ob_ledger *l)
+static kept *keep(ob_free_schedule *s, uint32_t id, uint64_t version, const ob_motion *m)
 {
-	const size_t accounts = l ? l->head.accounts : 0, without = offsetof(ob_ledger, account),
-		     bytes = offsetof(kept, ledger) + without + accounts * sizeof(ob_account);
 	const uint32_t *readers = readers_of(s, id, version);
 	if (!readers || *readers == 0)
 		return NULL;
-	if (s->kept_bytes + bytes > most_bytes) {
+	if (s->kept_bytes + sizeof(kept) > most_bytes) {
 		s->wrong = "more versions wait for their readers than there is memory for";
 		return NULL;
 	}
-	kept *k = ob_reallocate(NULL, bytes);
-	s->kept_bytes += k->bytes = bytes;
+	kept *k = ob_reallocate(NULL, sizeof *k);
+	s->kept_bytes += sizeof *k;
 	k->next = s->kept[id];
 	k->version = version;
 	k->readers = *readers;
 	k->motion = *m;
-	if (l)
-		memcpy(&k->ledger, l, without + accounts * sizeof(ob_account));
 	return s->kept[id] = k;
 }
 
@@ -417,14 +411,12 @@ static kept *keep(ob_free_schedule *s, uint32_t id, uint64_t version, const ob_m
 static void keep_newest(ob_free_schedule *s, const ob_universe *u, uint32_t id)
 {
 	ob_motion m, next;
-	ob_ledger l;
 	const uint64_t version = ob_free_version(u, id);
 	for (const kept *k = s->kept[id]; k; k = k->next)
 		if (k->version == version)
 			return;
-	const bool mail = ob_free_settings_of(u)->coupling == OB_COUPLING_LEDGER;
-	if (version && (mail ? ob_free_read_ledger(u, id, &m, &l) : ob_free_read(u, id, INFINITY, &m, &next) > 0))
-		keep(s, id, version, &m, mail ? &l : NULL);
+	if (version && ob_free_read(u, id, INFINITY, &m, &next) > 0)
+		keep(s, id, version, &m);
 }
 
 // Returns a version for one of its readers. NULL: it is not there.
@@ -451,7 +443,7 @@ static void release(ob_free_schedule *s, uint32_t id, uint64_t version)
 	if (!k || --k->readers > 0)
 		return;
 	*at = k->next;
-	s->kept_bytes -= k->bytes;
+	s->kept_bytes -= sizeof *k;
 	free(k);
 }
 
@@ -490,31 +482,6 @@ uint64_t ob_free_schedule_read(ob_free_schedule *s, const ob_universe *u, uint32
 		*next = k->motion;
 		release(s, id, version + 1);
 	}
-	return version;
-}
-
-uint64_t ob_free_schedule_read_account(ob_free_schedule *s, const ob_universe *u, uint32_t id, double t,
-				       uint32_t partner, ob_motion *m, ob_account *out, ob_ledger_head *head,
-				       bool *found)
-{
-	bool has_next;
-	if (!ob_free_schedule_replays(s)) {
-		const uint64_t version = ob_free_read_account(u, id, t, partner, m, out, head, found);
-		if (s)
-			note_read(s, id, version, false);
-		return version;
-	}
-	const uint64_t version = take_read(s, id, &has_next);
-	const kept *k = version ? find_kept(s, u, id, version) : NULL;
-	if (!k)
-		return 0;
-	*m = k->motion;
-	*head = k->ledger.head;
-	*found = false;
-	for (uint32_t i = 0; i < head->accounts && !*found; i++)
-		if (k->ledger.account[i].partner == partner)
-			*out = k->ledger.account[i], *found = true;
-	release(s, id, version);
 	return version;
 }
 
@@ -559,8 +526,7 @@ static void append(ob_free_schedule *s)
 	*h = (step_head){ 0 };
 }
 
-void ob_free_schedule_put(ob_free_schedule *s, const ob_universe *u, uint32_t id, const ob_motion *m,
-			  const ob_ledger *ledger, bool anew)
+void ob_free_schedule_put(ob_free_schedule *s, const ob_universe *u, uint32_t id, const ob_motion *m, bool anew)
 {
 	if (!s)
 		return;
@@ -576,5 +542,5 @@ void ob_free_schedule_put(ob_free_schedule *s, const ob_universe *u, uint32_t id
 	if (version != s->step.version)
 		ob_free_schedule_refuse(s);
 	keep_newest(s, u, id);
-	keep(s, id, version, m, ledger);
+	keep(s, id, version, m);
 }

@@ -55,19 +55,14 @@ void ob_free_schedule_refuse(ob_free_schedule *s);
 bool ob_free_schedule_next(const ob_free_schedule *s, ob_free_planned_step *out);
 void ob_free_schedule_take(ob_free_schedule *s);
 
-// The simulator's step: reads as functions of the same names in table/free.h, with s NULL as these.
+// The simulator's step: reads as ob_free_read does, which it is with s NULL.
 uint64_t ob_free_schedule_read(ob_free_schedule *s, const ob_universe *u, uint32_t id, double t, ob_motion *out,
 			       ob_motion *next);
-uint64_t ob_free_schedule_read_account(ob_free_schedule *s, const ob_universe *u, uint32_t id, double t,
-				       uint32_t partner, ob_motion *m, ob_account *out, ob_ledger_head *head,
-				       bool *found);
 // Replay: the neighbours that the step found, if it looked; *n: their number.
 bool ob_free_schedule_neighbours(const ob_free_schedule *s, const uint32_t **id, uint32_t *n);
 // Recording: notes one more neighbour of the step; the first call, with OB_NO_OBJECT, says that it looked.
 void ob_free_schedule_note_neighbour(ob_free_schedule *s, uint32_t id);
-// Ends a step of an object, before its version is published: records it, or keeps it for its readers. ledger: may be NULL;
-// anew: the simulator has not stepped before. s may be NULL.
-void ob_free_schedule_put(ob_free_schedule *s, const ob_universe *u, uint32_t id, const ob_motion *m,
-			  const ob_ledger *ledger, bool anew);
+// Ends a step of an object, before its version is published: records it, or keeps it for its readers. anew: the simulator has not stepped before. s may be NULL.
+void ob_free_schedule_put(ob_free_schedule *s, const ob_universe *u, uint32_t id, const ob_motion *m, bool anew);
 
 #endif

@@ -23,8 +23,6 @@ bool ob_free_sim_begin(ob_free_sim *s, ob_universe *u, uint32_t id)
 		     ob_free_read(u, id, INFINITY, &s->motion, &next);
 	if (!s->present)
 		return true;
-	if (ob_free_settings_of(u)->coupling == OB_COUPLING_LEDGER)
-		s->present = ob_free_read_ledger(u, id, &s->motion, &s->ledger);
 	ob_free_get_counts(u, id, &s->counts);
 	s->rate = ob_free_rate(u, id);
 	s->step = INFINITY;
@@ -144,7 +142,7 @@ static void end_flight(ob_free_sim *s, ob_free_scratch *x)
 	m->path += ob_norm(now.v) * (s->time - m->t0);
 	m->p = now.pose.p, m->q = now.pose.q, m->v = now.v, m->w = now.w;
 	m->t0 = s->time;
-	ob_free_publish(x->u, s->id, m, x->free->coupling == OB_COUPLING_LEDGER ? &s->ledger : NULL);
+	ob_free_publish(x->u, s->id, m);
 }
 
 bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
@@ -189,10 +187,9 @@ bool ob_free_sim_step(ob_free_sim *s, ob_free_scratch *x)
 		ob_trace_moves(x->u, x->worker, s->id, s->motion.flags, m.flags);
 	s->motion = m;
 	s->flies = m.flags & OB_MOTION_FREE && x->near == 0;
-	const ob_ledger *ledger = x->free->coupling == OB_COUPLING_LEDGER ? &s->ledger : NULL;
-	ob_free_schedule_put(x->schedule, x->u, s->id, &m, ledger, s->anew);
+	ob_free_schedule_put(x->schedule, x->u, s->id, &m, s->anew);
 	s->anew = false;
-	ob_free_publish(x->u, s->id, &m, ledger);
+	ob_free_publish(x->u, s->id, &m);
 	advance_time(s, next);
 	ob_free_put_counts(x->u, s->id, &s->counts);
 	take_off(s, x);

@@ -5,7 +5,6 @@
 //   neighbours.c        finds who is near, by its own AABB query
 //      │
 //   view.c              reads their motions at its own time; has the island solver move its object among them
-//      │                (ledger.c: with a ledger, reads and writes mail)
 //   table/free.h        publishes a version
 //
 // All that it needs to go on lies in the universe: a successor in another process begins at the newest version. Thread-
@@ -28,7 +27,6 @@ typedef struct ob_free_neighbour {
 	ob_passport passport;
 	const ob_hull *hull;
 	ob_found_contact contact; // in the last step; kept == 0: none
-	ob_vec3 load, twist; // N, N m: the contact's in the last step; with a ledger
 	uint64_t version; // the motion's, in the last step
 	double apart; // s, own time until which the two cannot touch, if it flies on as that version says
 	double bound; // s that the simulator may be ahead of it, as far as contact is concerned
@@ -40,13 +38,6 @@ typedef struct ob_free_seen {
 	uint64_t version; // 0: prescribed
 	ob_motion motion;
 	ob_state now;
-	// With a ledger, of a partner with a higher id: its account, if known, and the torque on it by others (N m).
-	ob_account account;
-	bool known;
-	bool mails; // there is an account with it
-	ob_vec3 torque;
-	double step; // s, as its ledger's
-	double share; // the island has so much of its mass: it is shared among all that solve its contacts
 } ob_free_seen;
 
 typedef struct ob_free_sim {
@@ -66,7 +57,7 @@ typedef struct ob_free_sim {
 	float bounds[6]; // as published
 	bool bounded; // they are
 	double covered; // s, own time until which they hold a flight that goes on
-	bool flies; // it touches nothing and has no mail: until something near changes, the newest version holds
+	bool flies; // it touches nothing: until something near changes, the newest version holds
 	bool aloft; // in a flight, and does nothing before it ends (table/free.h)
 	bool relisted; // neighbours have come or gone since the last step
 	ob_free_neighbour *neighbour;
@@ -74,10 +65,6 @@ typedef struct ob_free_sim {
 	uint32_t blocker; // neighbour that is too far behind; OB_NO_OBJECT = none
 	double needed; // s: its time from which on it blocks no more
 	ob_free_counts counts;
-	ob_ledger ledger; // as published
-	double mailed[12]; // consumed in this step, as ob_account.sum
-	ob_vec3 passed_on; // N: loads on partners in this step
-	ob_vec3 load, twist; // in the last step: N by fixed bodies, N m by the island
 } ob_free_sim;
 
 // Memory that a worker's simulators share: the solver and its scratch memory.
@@ -101,7 +88,6 @@ typedef struct ob_free_scratch {
 	ob_free_seen *seen; // [near]: ascending by id
 	uint32_t near, max; // max: elements of each
 	ob_motion end; // result of the solver for the running simulator's object
-	ob_motion *partner_end; // [object]: results for the others
 	bool flew; // it touched nothing
 	double closing; // s: longest that the next step should be, by those that it may touch soon
 	bool failed;

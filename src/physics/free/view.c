@@ -6,14 +6,8 @@
 
 #include "base/allocate.h"
 #include "free/lag.h"
-#include "free/ledger.h"
 #include "motion/flight.h"
 #include "shape/shape.h"
-
-static ob_vec3 mailed(const ob_free_sim *s, int first)
-{
-	return ob_v3(s->mailed[first], s->mailed[first + 1], s->mailed[first + 2]);
-}
 
 static const double heavy = 1e8; // times its mass, of a neighbour that counts as infinitely heavy
 
@@ -42,10 +36,8 @@ static void keep_contact(void *with, const ob_found_contact *c)
 static void keep_motion(void *with, const ob_island_object *object, ob_motion *m, bool free)
 {
 	ob_free_scratch *x = with;
-	if (object->id != x->sim->id) {
-		x->partner_end[object - x->object] = *m;
+	if (object->id != x->sim->id)
 		return;
-	}
 	x->end = *m;
 	x->flew = free;
 }
@@ -78,7 +70,6 @@ void ob_free_scratch_finish(ob_free_scratch *x)
 	free(x->motion);
 	free(x->pair);
 	free(x->seen);
-	free(x->partner_end);
 }
 
 static void reserve(ob_free_scratch *x, uint32_t objects)
@@ -91,7 +82,6 @@ static void reserve(ob_free_scratch *x, uint32_t objects)
 	x->motion = ob_reallocate(x->motion, x->max * sizeof *x->motion);
 	x->pair = ob_reallocate(x->pair, x->max * sizeof *x->pair);
 	x->seen = ob_reallocate(x->seen, x->max * sizeof *x->seen);
-	x->partner_end = ob_reallocate(x->partner_end, x->max * sizeof *x->partner_end);
 }
 
 // ---- reading
@@ -103,11 +93,6 @@ ob_state ob_free_state_at(const ob_motion *m, const ob_motion *next, ob_vec3 ine
 	const double share = ob_min(1, (t - m->t0) / (next->t0 - m->t0));
 	return (ob_state){ ob_motion_between(m, next, inertia, t), ob_madd(m->v, share, ob_sub(next->v, m->v)),
 			   ob_madd(m->w, share, ob_sub(next->w, m->w)) };
-}
-
-static bool has_ledger(const ob_free_scratch *x)
-{
-	return x->free->coupling == OB_COUPLING_LEDGER;
 }
 
 // Counts a reading of a version, for the report.
@@ -131,16 +116,11 @@ static bool read_neighbour(ob_free_sim *s, ob_free_scratch *x, const ob_free_nei
 		return true;
 	}
 	const double asked = s->time - x->free->delay;
-	if (has_ledger(x) && !ob_ledger_look(s, x, n, out))
-		return false;
-	// one that is ahead and has no mail, as before the two were neighbours, may have hit another since
-	if (!has_ledger(x) || (!out->mails && out->motion.t0 > s->time)) {
-		out->version = ob_free_schedule_read(x->schedule, x->u, n->id, asked, &out->motion,
-						     x->free->delay > 0 ? NULL : &next);
-		out->now = ob_free_state_at(&out->motion, &next, n->passport.inertia, s->time);
-	}
+	out->version =
+		ob_free_schedule_read(x->schedule, x->u, n->id, asked, &out->motion, x->free->delay > 0 ? NULL : &next);
 	if (!out->version)
 		return false;
+	out->now = ob_free_state_at(&out->motion, &next, n->passport.inertia, s->time);
 	// a flight is as new as the time that its simulator has reached
 	const bool flies = out->motion.flags & OB_MOTION_FREE;
 	count_reading(s, asked, ob_max(out->motion.t0, flies ? ob_min(asked, ob_free_time(x->u, n->id)) : 0));
@@ -204,13 +184,6 @@ static double little_way(const ob_free_sim *s, const ob_free_neighbour *n, doubl
 	return ob_max(0, most - overlap_of(n)) / speed;
 }
 
-// The state of a motion with the attitude of its begin: cheap.
-static ob_state unturned_at(const ob_motion *m, double t)
-{
-	const double h = t - m->t0;
-	return (ob_state){ { ob_madd(ob_madd(m->p, h, m->v), h * h / 2, m->a), m->q }, ob_madd(m->v, h, m->a), m->w };
-}
-
 // s, the longest that a step may be
 static double usual(const ob_free_sim *s, const ob_free_scratch *x)
 {
@@ -263,14 +236,7 @@ static void make_partner(ob_free_scratch *x, uint32_t at, const ob_free_seen *se
 	ob_passport *p = &x->passport[at];
 	if (x->free->heavy)
 		p->mass *= heavy, p->inertia = ob_scale(p->inertia, heavy);
-	if (has_ledger(x))
-		p->mass *= seen->share, p->inertia = ob_scale(p->inertia, seen->share);
 	p->force = ob_scale(ob_sub(x->motion[at].a, x->run.gravity), p->mass);
-	if (has_ledger(x)) {
-		const double *rate = seen->account.rate;
-		p->force = ob_sub(p->force, ob_v3(rate[0], rate[1], rate[2]));
-		x->object[at].torque = seen->torque;
-	}
 }
 
 static void put_pair(ob_free_scratch *x, uint32_t pair, uint32_t neighbour, uint32_t own, uint32_t other, bool fixed)
@@ -287,14 +253,8 @@ static void put_pair(ob_free_scratch *x, uint32_t pair, uint32_t neighbour, uint
 					  .before = n->contact.kept ? &n->contact.state : NULL };
 }
 
-// True if a neighbour is solved together with the object, with its mass.
-static bool is_partner(const ob_free_scratch *x, const ob_free_neighbour *n)
-{
-	return n->kind == OB_FREE_SIMULATED;
-}
-
 // Builds the island of the object and its near neighbours.
-static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double h)
+static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state *own)
 {
 	uint32_t members = 0, own_at = 0;
 	bool placed = false;
@@ -302,12 +262,10 @@ static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state 
 		const ob_free_neighbour *n = i < x->near ? &s->neighbour[x->seen[i].neighbour] : NULL;
 		if (!placed && (!n || n->id > s->id)) {
 			put_object(x, members, s->id, &s->passport, s->hull, &s->motion, own);
-			x->passport[members].force = ob_madd(s->passport.force, 1 / h, mailed(s, 0));
-			x->object[members].torque = ob_scale(mailed(s, 3), 1 / h);
 			own_at = members++;
 			placed = true;
 		}
-		if (n && is_partner(x, n)) {
+		if (n && n->kind == OB_FREE_SIMULATED) {
 			put_object(x, members, n->id, &n->passport, n->hull, &x->seen[i].motion, &x->seen[i].now);
 			make_partner(x, members++, &x->seen[i]);
 		}
@@ -316,7 +274,7 @@ static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state 
 	for (uint32_t i = 0; i < x->near; i++) {
 		const ob_free_seen *seen = &x->seen[i];
 		const ob_free_neighbour *n = &s->neighbour[seen->neighbour];
-		const bool partner = is_partner(x, n);
+		const bool partner = n->kind == OB_FREE_SIMULATED;
 		uint32_t other = partner ? 0 : objects++;
 		while (partner && x->object[other].id != n->id)
 			other++;
@@ -331,30 +289,15 @@ static ob_island_input build(ob_free_sim *s, ob_free_scratch *x, const ob_state 
 	};
 }
 
-// Flies freely, under the mail as under a force; its twist acts at the begin.
-static void fly(const ob_free_sim *s, const ob_free_scratch *x, double h, const ob_state *own, ob_motion *out)
+// Flies freely.
+static void fly(const ob_free_sim *s, const ob_free_scratch *x, double h, ob_motion *out)
 {
-	const ob_vec3 outer = ob_external_acceleration(&x->run, &s->passport), twist = mailed(s, 3);
-	ob_motion flight = s->motion;
-	flight.p = own->pose.p, flight.q = own->pose.q, flight.w = own->w;
-	flight.a = ob_madd(outer, 1 / (h * s->passport.mass), mailed(s, 0));
-	if (ob_norm2(twist) > 0)
-		flight.w = ob_add(flight.w, ob_ledger_rate(&s->passport, flight.q, twist));
-	const ob_state end = ob_motion_at(&flight, s->passport.inertia, flight.t0 + h);
-	*out = flight;
+	*out = s->motion;
+	out->a = ob_external_acceleration(&x->run, &s->passport);
+	const ob_state end = ob_motion_at(out, s->passport.inertia, out->t0 + h);
 	out->p = end.pose.p, out->q = end.pose.q, out->v = end.v, out->w = end.w;
-	out->a = outer;
-	out->flags = x->free->coupling == OB_COUPLING_OWN || !s->ledger.head.accounts ? OB_MOTION_FREE : 0;
+	out->flags = OB_MOTION_FREE;
 	out->path += ob_norm(end.v) * h;
-}
-
-// True if mail moves the object in this step.
-static bool has_mail(const ob_free_sim *s)
-{
-	bool any = false;
-	for (int i = 0; i < 12; i++)
-		any |= s->mailed[i] != 0;
-	return any;
 }
 
 // Reads all neighbours, and lists those that the object may touch in a step of length h (s). The list is empty
@@ -362,14 +305,12 @@ static bool has_mail(const ob_free_sim *s)
 static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double h)
 {
 	const ob_vec3 outer = ob_external_acceleration(&x->run, &s->passport);
-	bool touches = has_ledger(x) && has_mail(s);
+	bool touches = false;
 	x->near = 0;
 	for (uint32_t i = 0; i < s->neighbours; i++) {
 		ob_free_neighbour *n = &s->neighbour[i];
 		ob_free_seen *seen = &x->seen[x->near];
 		seen->neighbour = i;
-		if (has_ledger(x) && n->kind == OB_FREE_SIMULATED && n->id < s->id)
-			continue; // it solves their contact
 		n->bound = n->apart = 0;
 		const bool seen_now = read_neighbour(s, x, n, seen), fixed = n->passport.flags & OB_OBJECT_STATIC;
 		n->version = seen_now ? seen->version : 0;
@@ -400,48 +341,6 @@ static void look(ob_free_sim *s, ob_free_scratch *x, const ob_state *own, double
 	x->near = touches ? x->near : 0;
 }
 
-// Receives the mail of all neighbours with lower ids, and moves the object by its displacements.
-static void receive(ob_free_sim *s, ob_free_scratch *x, double h, ob_state *own)
-{
-	const ob_vec3 outer = ob_external_acceleration(&x->run, &s->passport);
-	ob_ledger_begin(s);
-	for (uint32_t i = 0; i < s->neighbours && s->neighbour[i].id < s->id; i++) {
-		ob_free_neighbour *n = &s->neighbour[i];
-		ob_motion m;
-		if (n->kind != OB_FREE_SIMULATED)
-			continue;
-		n->version = ob_free_version(x->u, n->id);
-		n->bound = n->apart = 0;
-		if (!ob_ledger_receive(s, x, n, h, &m))
-			continue;
-		ob_state other = unturned_at(&m, s->time);
-		n->apart = ob_free_apart(s, n, &other, outer, m.a);
-		lower(s, x, n);
-		if (ob_free_approach(s, x, n) < s->time) {
-			other = ob_motion_at(&m, n->passport.inertia, s->time);
-			approach(s, x, n, own, &other, m.flags);
-		}
-	}
-	ob_ledger_shift(s, own);
-}
-
-// Deposits the step's impulses on neighbours with higher ids, near or not.
-static void deposit(ob_free_sim *s, ob_free_scratch *x, double h)
-{
-	uint32_t at = 0, near = 0;
-	for (uint32_t i = 0; i < s->neighbours; i++) {
-		ob_free_neighbour *n = &s->neighbour[i];
-		const bool is_near = near < x->near && x->seen[near].neighbour == i;
-		ob_free_seen far, *seen = is_near ? &x->seen[near++] : &far;
-		if (n->kind != OB_FREE_SIMULATED || n->id < s->id || (!is_near && !ob_ledger_look(s, x, n, &far)))
-			continue;
-		while (is_near && x->object[at].id != n->id)
-			at++;
-		if (!ob_ledger_deposit(s, x, n, seen, is_near && !x->flew ? &x->partner_end[at] : NULL, h))
-			x->failed = true;
-	}
-}
-
 // Longest that the next step should be, s. Bodies that hit each other learn of it a step late, a light one between two
 // heavy ones passes on little in each step, and a load goes through a pile at one body a step: shorter steps keep them
 // apart, the shorter the more they overlap. own: state at the step's begin; out: at its end.
@@ -461,31 +360,19 @@ static double step_for(const ob_free_sim *s, const ob_free_scratch *x, const ob_
 
 void ob_free_view_step(ob_free_sim *s, ob_free_scratch *x, double h, ob_motion *out)
 {
-	ob_state own = { { s->motion.p, s->motion.q }, s->motion.v, s->motion.w };
+	const ob_state own = { { s->motion.p, s->motion.q }, s->motion.v, s->motion.w };
 	reserve(x, s->neighbours + 2);
-	s->step = x->closing = INFINITY;
-	if (has_ledger(x))
-		receive(s, x, h, &own);
+	x->closing = INFINITY;
 	look(s, x, &own, h);
 	x->flew = true;
 	if (x->near > 0) {
-		const ob_island_input in = build(s, x, &own, h);
+		const ob_island_input in = build(s, x, &own);
 		s->counts.solved++;
 		ob_island_solve(&x->solver, &in);
 	}
 	if (x->flew)
-		fly(s, x, h, &own, out);
+		fly(s, x, h, out);
 	else
 		*out = x->end;
-	const double touching = s->step;
 	s->step = ob_min(x->closing, step_for(s, x, &own, h, out));
-	s->ledger.head.step = s->step;
-	for (uint32_t i = 0; has_ledger(x) && i < x->near; i++)
-		if (s->neighbour[x->seen[i].neighbour].kind == OB_FREE_SIMULATED)
-			s->step = ob_min(s->step, x->seen[i].step);
-	s->step = ob_min(s->step, touching);
-	if (has_ledger(x)) {
-		deposit(s, x, h);
-		ob_ledger_end(s, x, &own, h, out);
-	}
 }

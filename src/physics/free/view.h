@@ -1,10 +1,8 @@
 // A simulator's view of its neighbours: their motions, read at its own time, as an island that the island solver moves
 // through one step. Only the result for its own object counts.
 //
-//   neighbour                own, heavy    own            ledger, higher id      ledger, lower id
-//   in the island            moves on      has its mass   has its mass           is not there:
-//                            regardless    and moves      and its impulse        its mail is a force
-//                                          as published   is mailed
+//   neighbour                heavy                    else
+//   in the island            moves on regardless      has its mass, and moves as published
 //
 // Time in the island begins at 0 with each step.
 #ifndef OB_FREE_VIEW_H

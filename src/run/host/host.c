@@ -233,7 +233,7 @@ static ob_universe *make_universe(const ob_scene *scene, const ob_host_config *c
 		settings = *c->free;
 		settings.objects = scene->objects;
 		setup.free = &settings;
-		ob_free_plan_depths(&settings, c->run.step_length, capacity, &setup.history, &setup.ledgers);
+		setup.history = ob_free_plan_depth(&settings, c->run.step_length, capacity);
 	}
 	ob_script_directory *texts = NULL;
 	if (scene->scripts) {

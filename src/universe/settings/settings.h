@@ -113,12 +113,11 @@ typedef struct ob_run_settings {
 } ob_run_settings;
 
 typedef enum ob_coupling {
-	OB_COUPLING_OWN, // each simulator computes its own response to its neighbours
-	OB_COUPLING_LEDGER, // the lower id computes a pair's impulse, and mails it
 	OB_COUPLING_GROUP, // bodies that may touch are solved together, by lockstep's own step
+	OB_COUPLING_OWN, // each simulator computes its own response to its neighbours
 } ob_coupling;
 
-#define OB_COUPLING_NAMES "own|ledger|group"
+#define OB_COUPLING_NAMES "group|own"
 #define OB_SYNC_NAMES "lockstep|free"
 #define OB_UPDATE_RATE_MOST 1e5 // Hz, of a run and of an object
 
@@ -225,7 +224,7 @@ typedef struct ob_settings {
 	X(UPDATE_RATE, "update_rate", REAL, free.update_rate, FREE, ABOVE | SCENE, 0, OB_UPDATE_RATE_MOST, "HZ", \
 	  "steps of a simulator a second (the scene's)") \
 	X(COUPLING, "coupling", CHOICE, free.coupling, FREE, SCENE, 0, 0, OB_COUPLING_NAMES, \
-	  "who computes an impulse: each, one by mail, or a group's (the scene's)") \
+	  "who computes an impulse: one for a group, or each its own (the scene's)") \
 	X(MAX_LAG, "max_lag", REAL, free.max_lag, FREE, ABOVE | SCENE, 0, 1e3, "S|none", \
 	  "seconds ahead of a neighbour (the scene's; pace max: two steps; else none)") \
 	X(JITTER, "jitter", REAL, free.jitter, FREE, 0, 0, .9, "P", "share by which lengths of steps vary (0)") \

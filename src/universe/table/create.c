@@ -36,7 +36,7 @@ static void fill_header(ob_header *h, const ob_universe_setup *setup, const char
 	ob_layout_plan(h, &(ob_layout_plan_of){
 				  setup->capacity, setup->workers, setup->hulls, setup->traced,
 				  setup->harden & 1 << OB_HARDEN_OUTBOX, setup->script_cells, setup->script_bytes,
-				  setup->history, setup->ledgers,
+				  setup->history,
 				  setup->free && setup->free->coupling == OB_COUPLING_GROUP ? OB_GROUP_CONTACTS : 0,
 				  setup->joints, setup->terrains ? (uint32_t)setup->terrains->bytes : 0, setup->sensors,
 				  setup->sensor_values });

@@ -34,12 +34,6 @@ static ob_motion *place(const ob_universe *u, uint32_t id, uint64_t version)
 	return &u->free.ring[(uint64_t)id * depth + version % depth];
 }
 
-static ob_ledger *ledger_place(const ob_universe *u, uint32_t id, uint64_t version)
-{
-	const uint32_t depth = u->header.sizes.ledgers;
-	return &u->free.ledger[(uint64_t)id * depth + version % depth];
-}
-
 uint64_t ob_free_version(const ob_universe *u, uint32_t id)
 {
 	return __atomic_load_n(&cell_of(u, id)->version, __ATOMIC_SEQ_CST);
@@ -125,14 +119,11 @@ static void advance(ob_universe *u, uint32_t id, double t)
 	wake_waiting(c, bits_of(t));
 }
 
-void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_ledger *ledger)
+void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m)
 {
 	ob_free_cell *c = cell_of(u, id);
 	const uint64_t next = __atomic_load_n(&c->version, __ATOMIC_ACQUIRE) + 1;
 	ob_words_put(place(u, id, next), m, sizeof *m);
-	if (ledger)
-		ob_words_put(ledger_place(u, id, next), ledger,
-			     offsetof(ob_ledger, account) + ledger->head.accounts * sizeof *ledger->account);
 	__atomic_store_n(&c->version, next, __ATOMIC_SEQ_CST);
 	advance(u, id, m->t0);
 }
@@ -184,54 +175,6 @@ ob_free_kind ob_free_kind_of(const ob_universe *u, uint32_t id, uint32_t *genera
 	if (generation)
 		*generation = __atomic_load_n(&c->generation, __ATOMIC_RELAXED);
 	return (ob_free_kind)kind;
-}
-
-// ---- mail
-
-static bool find_account(const ob_ledger *at, uint32_t accounts, uint32_t partner, ob_account *out)
-{
-	accounts = accounts < OB_LEDGER_ACCOUNTS ? accounts : OB_LEDGER_ACCOUNTS;
-	for (uint32_t i = 0; i < accounts; i++) {
-		ob_words_get(out, &at->account[i], sizeof(ob_word));
-		if (out->partner != partner)
-			continue;
-		ob_words_get(out, &at->account[i], sizeof *out);
-		return true;
-	}
-	return false;
-}
-
-uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint32_t partner, ob_motion *m,
-			      ob_account *out, ob_ledger_head *head, bool *found)
-{
-	const uint32_t depth = u->header.sizes.ledgers;
-	for (int i = 0; i < OB_RING_TRIES; i++) {
-		const uint64_t newest = ob_free_version(u, id), kept = newest < depth - 1 ? newest : depth - 1;
-		if (newest == 0)
-			return 0;
-		const uint64_t v = find_version(u, id, newest - kept + 1, newest, t);
-		const ob_ledger *at = ledger_place(u, id, v);
-		ob_words_get(m, place(u, id, v), sizeof *m);
-		ob_words_get(head, &at->head, sizeof *head);
-		*found = find_account(at, head->accounts, partner, out);
-		if (is_whole(u, id, v, depth))
-			return v;
-	}
-	return 0;
-}
-
-bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_ledger *out)
-{
-	for (int i = 0; i < OB_RING_TRIES; i++) {
-		const uint64_t v = ob_free_version(u, id);
-		if (v == 0)
-			return false;
-		ob_words_get(m, place(u, id, v), sizeof *m);
-		ob_words_get(out, ledger_place(u, id, v), sizeof *out);
-		if (is_whole(u, id, v, u->header.sizes.ledgers) && is_whole(u, id, v, u->header.sizes.history))
-			return true;
-	}
-	return false;
 }
 
 // ---- bounds
@@ -438,13 +381,12 @@ uint64_t ob_free_take_lowered(ob_universe *u, uint32_t group, uint64_t mask)
 
 void ob_free_enter(ob_universe *u, uint32_t id, ob_free_kind kind, uint32_t generation, const ob_motion *m)
 {
-	const ob_ledger none = { .head.step = INFINITY };
 	ob_free_cell *c = cell_of(u, id);
 	if (!ob_free_version(u, id))
 		__atomic_store_n(&c->awaited, nobody, __ATOMIC_RELAXED);
 	__atomic_store_n(&c->holds, 0, __ATOMIC_SEQ_CST);
 	if (kind == OB_FREE_SIMULATED && !u->header.sizes.grouped)
-		ob_free_publish(u, id, m, u->header.sizes.ledgers ? &none : NULL);
+		ob_free_publish(u, id, m);
 	__atomic_store_n(&c->generation, generation, __ATOMIC_RELAXED);
 	__atomic_store_n(&c->kind, kind, __ATOMIC_RELEASE);
 	note_change(u, id);

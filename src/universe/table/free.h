@@ -17,9 +17,6 @@
 // is the proof of slot.h. A writer that is killed anywhere leaves all versions readable, and its successor fills the same
 // place anew. A reader that needs an older version than those kept takes the oldest.
 //
-// Mail: with a ledger, a version has a block of mail as well, in a ring of its own that the same word commits. So an
-// object's motion, the impulses that it has consumed and those that it has deposited change together, or not at all.
-//
 // Waiting: a simulator that is too far ahead of a neighbour lowers the neighbour's `awaited` to the time that it needs, and
 // sleeps on its futex word. The neighbour wakes all when it has reached that time. A time, not a count, so that a
 // waiter's death leaves one wake too many behind.
@@ -50,29 +47,7 @@
 #include "settings/settings.h"
 #include "table/table.h"
 
-enum { OB_LEDGER_ACCOUNTS = 32, OB_FREE_GROUP = 64, OB_FREE_CHANGES = 16 };
-
-// An account of an object with one partner. Of a pair the lower id deposits, the higher one consumes.
-typedef struct ob_account {
-	uint32_t partner, generation; // of the partner
-	uint32_t
-		epoch; // of the contact between the two, the depositor's version in which it began: sums begin anew with each
-	uint32_t closed; // of a deposit: 1 = nothing follows; of a consumption: 1 = all of a closed deposit is consumed
-	double sum[12]; // N s impulse, N m s about the partner's centre, m shift, rad turn: on the higher id, so far
-	double rate[6]; // N, N m: goes on after the version's time
-} ob_account;
-
-typedef struct ob_ledger_head {
-	uint32_t accounts;
-	uint32_t solvers; // simulators that solve contacts of the object: itself, and lower partners
-	double torque[3]; // N m, on the object: goes on after the version's time, as its motion's acceleration does
-	double step; // s: longest that its next step should have, by what happens to it; infinity: any
-} ob_ledger_head;
-
-typedef struct ob_ledger {
-	ob_ledger_head head;
-	ob_account account[OB_LEDGER_ACCOUNTS];
-} ob_ledger;
+enum { OB_FREE_GROUP = 64, OB_FREE_CHANGES = 16 };
 
 typedef enum ob_free_kind {
 	OB_FREE_ABSENT,
@@ -88,7 +63,6 @@ typedef struct ob_free_counts {
 	uint64_t lag_ns,
 		lag_most_ns; // sum and maximum over readings: own time less the time of the version that was read
 	uint64_t readings;
-	double worked, work_seen; // J, by mail: on the object that received it; on partners, as the sender saw them
 } ob_free_counts;
 
 typedef struct ob_free_cell {
@@ -143,11 +117,10 @@ typedef struct ob_free_control {
 static_assert(sizeof(ob_free_cell) == 192 && sizeof(ob_free_control) == 448 && sizeof(ob_free_group) == 192 &&
 		      sizeof(ob_free_bed) == 64,
 	      "free run");
-static_assert(sizeof(ob_account) == 160 && sizeof(ob_ledger) == 40 + OB_LEDGER_ACCOUNTS * 160, "mail");
 
 // NULL: the run is in lockstep.
 const ob_free_settings *ob_free_settings_of(const ob_universe *u);
-// Depths of the rings of versions and of mail.
+// Depth of the rings of versions.
 uint32_t ob_free_depth(const ob_universe *u);
 
 // ---- host
@@ -187,12 +160,6 @@ double ob_free_rate(const ob_universe *u, uint32_t id); // Hz, of its simulator'
 // Copies the newest version that is not after t (s), or the oldest kept, and returns its number; 0: none. next, if not
 // NULL: the version after it; next->t0 is NaN if there is none.
 uint64_t ob_free_read(const ob_universe *u, uint32_t id, double t, ob_motion *out, ob_motion *next);
-// Copies the motion of the newest version not after t (s) whose ledger is kept, else of the oldest with one; the head of its
-// ledger; and its account with a partner, if found. Returns the version's number; 0: none.
-uint64_t ob_free_read_account(const ob_universe *u, uint32_t id, double t, uint32_t partner, ob_motion *m,
-			      ob_account *out, ob_ledger_head *head, bool *found);
-// Copies all of the newest mail, with the motion of its version. False: none.
-bool ob_free_read_ledger(const ob_universe *u, uint32_t id, ob_motion *m, ob_ledger *out);
 // Step at which simulators stop and wait.
 uint32_t ob_free_until(const ob_universe *u);
 // Looks of the host so far. If two begin while simulators wait at one `until`, they wait for ever.
@@ -206,8 +173,8 @@ bool ob_free_blocker(const ob_universe *u, uint32_t id, uint32_t *blocker);
 
 // ---- the object's simulator
 
-// Publishes a version; ledger: NULL without a ledger. Wakes those who wait for it.
-void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m, const ob_ledger *ledger);
+// Publishes a version. Wakes those who wait for it.
+void ob_free_publish(ob_universe *u, uint32_t id, const ob_motion *m);
 // Begins a flight of the newest version, which holds until own time `holds` (s). The simulator then looks once more whether
 // anything near has changed. Wakes those who wait for that time.
 void ob_free_take_off(ob_universe *u, uint32_t id, double holds);

@@ -90,7 +90,6 @@ void ob_layout_plan(ob_header *h, const ob_layout_plan_of *p)
 				      .script_cells = p->script_cells,
 				      .script_bytes = p->script_bytes,
 				      .history = p->history,
-				      .ledgers = p->ledgers,
 				      .grouped = p->grouped,
 				      .joints = p->joints,
 				      .terrain_bytes = p->terrain_bytes,
@@ -139,14 +138,13 @@ bool ob_layout_valid(const ob_header *h, uint64_t file_bytes)
 	if (s->joints > JOINTS_LIMIT || s->terrain_bytes > TERRAIN_BYTES_LIMIT || s->sensors > OB_SENSORS_MAX ||
 	    s->sensor_values > OB_SENSOR_NUMBERS_MAX)
 		return false;
-	if (s->history == 1 || s->history > VERSIONS_LIMIT || s->ledgers == 1 || s->ledgers > s->history ||
-	    (s->grouped && s->grouped != OB_GROUP_CONTACTS))
+	if (s->history == 1 || s->history > VERSIONS_LIMIT || (s->grouped && s->grouped != OB_GROUP_CONTACTS))
 		return false;
 	ob_header expected;
-	ob_layout_plan(&expected, &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
-							s->outbox_bytes > 0, s->script_cells, s->script_bytes,
-							s->history, s->ledgers, s->grouped, s->joints, s->terrain_bytes,
-							s->sensors, s->sensor_values });
+	ob_layout_plan(&expected,
+		       &(ob_layout_plan_of){ s->capacity, s->workers, s->hulls, s->trace_events > 0,
+					     s->outbox_bytes > 0, s->script_cells, s->script_bytes, s->history,
+					     s->grouped, s->joints, s->terrain_bytes, s->sensors, s->sensor_values });
 	return !memcmp(&expected.sizes, s, sizeof *s) && !memcmp(expected.area, h->area, sizeof h->area) &&
 	       (h->harden & 1 << OB_HARDEN_OUTBOX) == (s->outbox_bytes ? 1 << OB_HARDEN_OUTBOX : 0) &&
 	       expected.bytes == h->bytes && h->bytes <= file_bytes && memchr(h->name, 0, sizeof h->name) &&

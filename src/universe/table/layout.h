@@ -16,7 +16,7 @@
 #include "table/trace.h"
 
 #define OB_LAYOUT_MAGIC 0x32304d495342554fu // "OUBSIM02" in memory, little-endian byte order
-enum { OB_LAYOUT_VERSION = 52, OB_LAYOUT_PAGE = 4096 };
+enum { OB_LAYOUT_VERSION = 53, OB_LAYOUT_PAGE = 4096 };
 
 // Areas in their order: the name, the pointer of ob_universe to the first element, and the number of elements by the sizes s
 // (layout.c).
@@ -88,7 +88,6 @@ enum { OB_LAYOUT_VERSION = 52, OB_LAYOUT_PAGE = 4096 };
 	X(FREE_GROUP, free.group, free ? groups(s->capacity, OB_FREE_GROUP) : 0) \
 	X(FREE_BED, free.bed, free ? s->workers : 0) \
 	X(FREE_RING, free.ring, (uint64_t)s->capacity * s->history) \
-	X(FREE_LEDGER, free.ledger, (uint64_t)s->capacity * s->ledgers) \
 	X(FREE_PLACE, free.place, s->grouped ? s->capacity : 0) /* these four empty unless bodies are solved in groups (group.h) */ \
 	X(FREE_STATE, free.state, s->grouped ? OB_GROUP_VERSIONS * (uint64_t)s->capacity : 0) \
 	X(FREE_CONTACT, free.contact, s->grouped ? 2 * (uint64_t)s->capacity * OB_GROUP_USUALLY : 0) \
@@ -109,7 +108,6 @@ typedef struct ob_layout_sizes {
 	uint32_t script_cells; // objects that can have a script at the same time; 0 = the scene has none
 	uint32_t script_bytes; // size of their texts, with the directory
 	uint32_t history; // versions of each motion that a free run keeps; 0 = the run is in lockstep
-	uint32_t ledgers; // same of each object's mail; 0 = it has none
 	uint32_t grouped; // contacts of each body that a free run solved in groups has room for; 0 = it has no groups
 	uint32_t joints;
 	uint32_t terrain_bytes;
@@ -189,7 +187,7 @@ enum { OB_TRACE_HOST_RINGS = 2, OB_TRACE_HOST_EVENTS = 1 << 16 };
 
 static_assert(sizeof(ob_trace_event) == 32 && sizeof(ob_trace_ring) == OB_LAYOUT_PAGE, "trace");
 static_assert(sizeof(ob_run_settings) == 128, "run settings");
-static_assert(sizeof(ob_header) == 104 + 8 * OB_AREAS + OB_NAME_MAX + 16 + sizeof(ob_run_settings) + 8, "header");
+static_assert(sizeof(ob_header) == 96 + 8 * OB_AREAS + OB_NAME_MAX + 16 + sizeof(ob_run_settings) + 8, "header");
 static_assert(sizeof(ob_header) <= OB_LAYOUT_PAGE, "the header has the first page");
 static_assert(sizeof(ob_control) == 576, "control");
 static_assert(sizeof(ob_worker_cell) == 960, "worker cell");
@@ -227,7 +225,6 @@ struct ob_universe {
 		ob_free_group *group;
 		ob_free_bed *bed;
 		ob_motion *ring;
-		ob_ledger *ledger;
 		uint64_t *place;
 		ob_group_state *state;
 		ob_group_contact *contact, *more_contact;
@@ -249,7 +246,7 @@ typedef struct ob_layout_plan_of {
 	uint32_t capacity, workers, hulls;
 	bool traced, contained;
 	uint32_t script_cells, script_bytes;
-	uint32_t history, ledgers, grouped, joints;
+	uint32_t history, grouped, joints;
 	uint32_t terrain_bytes;
 	uint32_t sensors, sensor_values;
 } ob_layout_plan_of;

@@ -58,7 +58,6 @@ typedef struct ob_universe_setup {
 	uint32_t script_bytes; // size of the scripts' texts: an ob_script_directory, and the data that it refers to
 	const void *script_text;
 	uint32_t history; // versions of each motion that a free run keeps, at least 2; 0: the run is in lockstep
-	uint32_t ledgers; // same of each object's mail; 0: no ledger
 	const struct ob_free_settings *free; // of a free run
 	uint32_t joints; // at the same time
 	uint32_t sensors, sensor_values; // their number, and the sum of ob_sensor_room

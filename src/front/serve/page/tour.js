@@ -5,7 +5,7 @@ import { count, kept } from './page.js';
 const END = 4; // s, simulated, at which an act pauses
 const HASTE = 4; // simulated seconds a second that the act of the slow one asks for
 const NEAR = 1e-6; // s
-const AHEAD = 250; // ms, that simulators of a free run are ahead at most (src/front/cli/serve.c)
+const AHEAD = 200; // ms, that simulators of a free run are ahead at most (ob_free_window: 12 steps)
 
 export class Tour {
 	// kill: kills the process of a worker.
@@ -82,8 +82,8 @@ export class Tour {
 
 	conclude() {
 		this.workers.choose('own');
-		this.walk.say(this.free ? `That was a free run: nobody waited for a dead one, and simulators were up to ${this.most.toFixed(0)} ms ahead. In obsim serve tour all go in lockstep, and reach the same bits.` :
-			`That was lockstep. In obsim serve tour --sync free nobody waits: simulators are up to ${AHEAD} ms ahead. On two ranks, mpirun -n 2 obsim run tour --duration ${END}, the end has the same hash, ${kept(this.name)}.`);
+		this.walk.say(this.free ? `That was a free run: only those near a dead one waited, and simulators were up to ${this.most.toFixed(0)} ms ahead. In obsim serve tour all go in lockstep, and reach the same bits.` :
+			`That was lockstep. In obsim serve tour --sync free only those near the slow one wait: simulators are up to ${AHEAD} ms ahead. On two ranks, mpirun -n 2 obsim run tour --duration ${END}, the end has the same hash, ${kept(this.name)}.`);
 	}
 
 	// Tells the figures of an act.
