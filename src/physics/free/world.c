@@ -1,6 +1,5 @@
 #include "free/world.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,9 +30,13 @@ bool ob_group_world_begin(ob_group_world *w, ob_universe *shared, uint32_t worke
 	w->contact = calloc(OB_GROUP_CONTACTS, sizeof *w->contact);
 	w->changed = calloc(capacity, sizeof *w->changed);
 	w->told = calloc(capacity, sizeof *w->told);
+	w->box = calloc(capacity, sizeof *w->box);
+	w->queried = calloc(capacity, sizeof *w->queried);
+	w->counted = calloc(capacity, sizeof *w->counted);
 	w->u = ob_universe_create(&setup, e);
 	w->known = w->u ? calloc(ob_universe_step_data(w->u)->pairs_max, sizeof *w->known) : NULL;
-	if (!w->passport || !w->held || !w->place || !w->contact || !w->changed || !w->told || !w->known)
+	if (!w->passport || !w->held || !w->place || !w->contact || !w->changed || !w->told || !w->box || !w->queried ||
+	    !w->counted || !w->known)
 		return ob_fail(e, "worker %u: no memory", worker);
 	w->sim = ob_sim_create(w->u, 0, e);
 	return w->sim;
@@ -49,6 +52,9 @@ void ob_group_world_finish(ob_group_world *w)
 	free(w->contact);
 	free(w->changed);
 	free(w->told);
+	free(w->box);
+	free(w->queried);
+	free(w->counted);
 	free(w->known);
 }
 
@@ -144,6 +150,9 @@ static void take(ob_group_world *w, uint32_t id)
 	o.schedule = s.schedule;
 	o.neighbours = s.neighbours;
 	memcpy(o.bounds, s.bounds, sizeof o.bounds);
+	memcpy(w->box[id], s.bounds, sizeof s.bounds);
+	w->queried[id] = s.queried;
+	w->counted[id] = s.neighbours;
 	ob_sim_take_in(w->u, &o);
 	remember(w, id);
 }
@@ -174,7 +183,7 @@ void ob_group_world_take(ob_group_world *w, const uint32_t *id, uint32_t n)
 	for (uint32_t i = 0; i < n; i++)
 		take_pairs(w, id[i]);
 	for (uint32_t i = 0; i < n; i++)
-		ob_sim_meet(w->sim, id[i]);
+		ob_sim_meet(w->sim, id[i], w->queried);
 	for (uint32_t i = 0; i < n; i++) {
 		ob_group_world_chance(w);
 		ob_group_hold(w->shared, id[i], (ob_group_place){ .worker = w->worker, .step = w->step });
@@ -249,48 +258,21 @@ static bool list_contacts(const ob_group_world *w, uint32_t id, uint32_t *contac
 static bool publish(ob_group_world *w, uint32_t id, uint32_t step)
 {
 	const ob_step_data *data = ob_universe_step_data(w->u);
-	ob_group_state s = { .schedule = data->schedule[id], .neighbours = data->neighbours[id].count, .step = step };
+	if (memcmp(w->box[id], data->bounds[id], sizeof *w->box) != 0) { // it has looked for neighbours since
+		memcpy(w->box[id], data->bounds[id], sizeof *w->box);
+		w->queried[id] = step;
+	}
+	ob_group_state s = { .schedule = data->schedule[id],
+			     .neighbours = data->neighbours[id].count,
+			     .step = step,
+			     .queried = w->queried[id] };
+	w->counted[id] = s.neighbours;
 	memcpy(s.bounds, data->bounds[id], sizeof s.bounds);
 	if (!list_contacts(w, id, &s.contacts)) {
 		ob_step_fail(w->shared, OB_STEP_PAIRS_FULL, id);
 		return false;
 	}
 	ob_group_world_chance(w);
-	if (getenv("DBG")) {
-		static FILE *f[64];
-		if (!f[w->worker]) {
-			char n[200];
-			snprintf(n, 200, "%s.%u", getenv("DBG"), w->worker);
-			f[w->worker] = fopen(n, "a");
-		}
-		FILE *o = f[w->worker];
-		const ob_motion *m = ob_newest_motion(w->u, id);
-		uint64_t h = 14695981039346656037u;
-		const unsigned char *b = (const unsigned char *)m;
-		for (size_t i = 0; i < sizeof *m; i++)
-			h = (h ^ b[i]) * 1099511628211u;
-		uint64_t hs = 14695981039346656037u;
-		b = (const unsigned char *)&s.schedule;
-		for (size_t i = 0; i < sizeof s.schedule; i++)
-			hs = (hs ^ b[i]) * 1099511628211u;
-		uint64_t hb = 14695981039346656037u;
-		b = (const unsigned char *)s.bounds;
-		for (size_t i = 0; i < sizeof s.bounds; i++)
-			hb = (hb ^ b[i]) * 1099511628211u;
-		fprintf(o, "%u %u m%lx s%lx b%lx n%u w%u |", step, id, h, hs, hb, s.neighbours, w->worker);
-		for (uint32_t i = 0; i < s.contacts; i++) {
-			const ob_group_contact *c = &w->contact[i];
-			uint64_t hc = 14695981039346656037u;
-			b = (const unsigned char *)&c->state;
-			for (size_t k = 0; k < sizeof c->state; k++)
-				hc = (hc ^ b[k]) * 1099511628211u;
-			fprintf(o, " %u-%u(act%d rec%d isl%d late%d lim%g c%lx st%u chk%u)", c->key.a, c->key.b,
-				c->key.active, (int)c->key.record, c->key.in_island, c->key.late, 0.0,
-				c->key.record == OB_NO_RECORD ? 0 : hc, c->stamp, c->check);
-		}
-		fprintf(o, "\n");
-		fflush(o);
-	}
 	return ob_group_put(w->shared, id, ob_newest_motion(w->u, id), &s, w->contact);
 }
 
@@ -318,7 +300,7 @@ static void note_changed(ob_group_world *w, uint32_t id, uint32_t *n)
 	w->changed[(*n)++] = id;
 }
 
-// Lists the bodies that the step has solved, and those of which a pair has begun, ended or been checked.
+// Lists the bodies that the step has solved, those of which a pair has begun, ended or been checked, and those that have met others.
 static uint32_t list_changed(ob_group_world *w)
 {
 	const ob_step_data *data = ob_universe_step_data(w->u);
@@ -326,6 +308,9 @@ static uint32_t list_changed(ob_group_world *w)
 	for (uint32_t i = 0; i < data->count->islands; i++)
 		for (uint32_t k = 0; k < data->island[i].members; k++)
 			note_changed(w, data->member[data->island[i].first_member + k], &n);
+	for (uint32_t i = 0; i < w->n; i++)
+		if (data->neighbours[w->held[i]].count != w->counted[w->held[i]])
+			note_changed(w, w->held[i], &n);
 	const uint32_t end = ob_pairs_end(data);
 	w->pairs = end > w->pairs ? end : w->pairs;
 	for (uint32_t i = 0; i < w->pairs; i++) {

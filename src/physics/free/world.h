@@ -24,6 +24,9 @@ typedef struct ob_group_world {
 	uint32_t *place; // [capacity] 1 + index in held; 0 = it is not here
 	uint32_t *changed,
 		*told; // [capacity] bodies to be published after the step; 1 + the step for which each was listed
+	float (*box)[6]; // [capacity] fat AABBs as published
+	uint32_t *queried,
+		*counted; // [capacity] steps complete when each body last looked for neighbours; their number, as published
 	ob_group_pair *known; // [pairs_max] pairs as published, by their indices in the world
 	uint32_t pairs; // used ones lie before this index
 	uint64_t fault_chances;

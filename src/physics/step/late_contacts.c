@@ -612,7 +612,14 @@ static void meet(ob_sim *s, uint32_t a, uint32_t b)
 	ob_step_set(u, steps);
 }
 
-void ob_sim_meet(ob_sim *s, uint32_t id)
+// A body's query counts those whose boxes were there already.
+static void count_met(const ob_step_data *data, uint32_t id, uint32_t other, const uint32_t *queried)
+{
+	data->neighbours[id].count += queried[id] >= queried[other];
+	data->neighbours[other].count += queried[other] >= queried[id];
+}
+
+void ob_sim_meet(ob_sim *s, uint32_t id, const uint32_t *queried)
 {
 	const ob_step_data *data = s->data;
 	const uint32_t ids = ob_universe_ids(s->u);
@@ -622,6 +629,8 @@ void ob_sim_meet(ob_sim *s, uint32_t id)
 	const uint32_t n = ob_index_query(s->u, id, found, ids, &s->solver.counters.box_tests);
 	for (uint32_t i = 0; i < n && i < ids; i++)
 		if (!ob_broadphase_query_pending(s->u, found[i]) && ob_may_touch(s->u, id, found[i]) &&
-		    !ob_pairs_have(data, id, found[i]))
+		    !ob_pairs_have(data, id, found[i])) {
+			count_met(data, id, found[i], queried);
 			meet(s, id, found[i]);
+		}
 }

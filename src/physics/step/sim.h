@@ -77,8 +77,8 @@ typedef struct ob_taken_object {
 void ob_sim_take_in(ob_universe *u, const ob_taken_object *o);
 void ob_sim_hand_out(ob_universe *u, uint32_t id);
 // Same, after all of these: begins the pairs of an object with those that came from other universes, as the step that is complete
-// would have begun them with both here.
-void ob_sim_meet(ob_sim *s, uint32_t id);
+// would have begun them with both here. Counts them as neighbours. queried: [objects] steps complete when each last looked for these.
+void ob_sim_meet(ob_sim *s, uint32_t id, const uint32_t *queried);
 
 // Host, paused: removes an object and clears its passport; its neighbours wake.
 void ob_sim_remove(ob_universe *u, uint32_t id);

@@ -43,7 +43,7 @@ typedef struct ob_group_state {
 	float bounds[6];
 	uint32_t neighbours; // that its last query found
 	uint32_t contacts;
-	uint32_t step, zero; // complete when the version holds
+	uint32_t step, queried; // complete when the version holds; when that query was made
 } ob_group_state;
 
 static_assert(sizeof(ob_group_state) == 64 && sizeof(ob_group_contact) == 352, "groups");
