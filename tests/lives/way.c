@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -18,7 +19,8 @@
 #include "reader.h"
 #include "things.h"
 
-enum { PATIENCE_S = 300 }; // a life takes some tens of ms
+// A life takes some tens of ms. What hangs takes too much CPU in one of its processes, on however busy a machine, or all waits.
+enum { CPU_S = 300, WALL_S = 10 * CPU_S };
 
 // ---- events
 
@@ -324,13 +326,14 @@ outcome way_run(const life *l, way w)
 	const pid_t pid = fork();
 	if (pid == 0) {
 		close(ends[0]);
+		setrlimit(RLIMIT_CPU, &(struct rlimit){ CPU_S, CPU_S + 1 });
 		const outcome mine = live_here(l, w);
 		const ssize_t written = write(ends[1], &mine, sizeof mine);
 		_exit(written != sizeof mine);
 	}
 	close(ends[1]);
 	struct pollfd answer = { .fd = ends[0], .events = POLLIN };
-	const bool ends_in_time = poll(&answer, 1, 1000 * PATIENCE_S) == 1;
+	const bool ends_in_time = poll(&answer, 1, 1000 * WALL_S) == 1;
 	outcome found;
 	if (ends_in_time && read(ends[0], &found, sizeof found) == sizeof found)
 		o = found;
