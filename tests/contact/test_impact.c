@@ -335,9 +335,44 @@ static void test_payer(void)
 	CHECK(poor.calls < 10);
 }
 
+static void share_nothing(void *with, ob_impact_change *change)
+{
+	(void)change;
+	++*(int *)with;
+}
+
+// A plate over more points than Newton's method takes. Those that open make no difference, however many; nor does a
+// joint that carries nothing, which is asked once in an iteration and not for each row.
+static void test_many(void)
+{
+	enum { SIDE = 8, POINTS = SIDE * SIDE };
+	ob_impact_point all[POINTS], closing[POINTS];
+	const ob_impact_body turns = { .inv_mass = 1, .inv_inertia = { 3, 0, 0, 3, 0, 1.5 }, .w = { 2, 0, 0 } },
+			     lands = { .inv_mass = 1, .inv_inertia = { 3, 0, 0, 3, 0, 1.5 }, .v = { 1, .3, -2 } };
+	uint32_t n = 0;
+	for (int i = 0; i < POINTS; i++) {
+		const ob_vec3 at = ob_v3((i % SIDE) / 7. - .5, (i / SIDE) / 7. - .5, -.1);
+		all[i] =
+			(ob_impact_point){ .b = 1, .normal = { 0, 0, 1 }, .arm_a = at, .arm_b = at, .mu = .3, .e = .5 };
+		if (at.y < 0)
+			closing[n++] = all[i];
+	}
+	ob_impact_body some[2] = { turns }, whole[2] = { turns }, held[2] = { lands }, loose[2] = { lands };
+	int asked = 0;
+	ob_impact_solve(some, 2, closing, n, NULL, NULL);
+	ob_impact_solve(whole, 2, all, POINTS, NULL, NULL);
+	CHECK(n < POINTS && memcmp(some, whole, sizeof whole) == 0);
+	ob_impact_solve(loose, 2, all, POINTS, NULL, NULL);
+	ob_impact_solve(held, 2, all, POINTS, &(ob_impact_links){ share_nothing, &asked }, NULL);
+	CHECK(memcmp(loose, held, sizeof held) == 0);
+	CHECK(loose[0].v.z > 0);
+	CHECK(asked > 0);
+}
+
 int main(void)
 {
 	test_payer();
+	test_many();
 	test_random();
 	test_central();
 	test_flat();

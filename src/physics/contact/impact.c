@@ -44,7 +44,7 @@ typedef struct impact_set {
 	double largest; // m/s: largest velocity of the points
 	double share; // factor of e: 1, or 0 for the plastic impact
 	const ob_impact_links *links; // NULL: no joints
-	double *response; // [rows][rows]: J P M^-1 J', with the joints' share P; NULL: too many points, and no joints
+	double *response; // [rows][rows]: J P M^-1 J', with the joints' share P; NULL: too many points for Newton's method
 	const ob_impact_payer *payer; // NULL: no budget
 } impact_set;
 
@@ -206,7 +206,8 @@ static void find_response(impact_set *s, double *x)
 static void find_velocities(const impact_set *s, const double *x, double *u)
 {
 	const uint32_t dims = (uint32_t)s->dims;
-	const bool by_response = s->links || s->points == 1; // impulses that share a load cancel each other in its sums
+	// With joints impulses that share a load cancel each other in its sums.
+	const bool by_response = s->response && (s->links || s->points == 1);
 	if (!by_response)
 		add_changes(s, x);
 	for (uint32_t i = 0; i < s->points * dims; i++) {
@@ -461,10 +462,10 @@ static void solve_law(const impact_set *s, double share, double *x, double *u)
 		return;
 	}
 	memset(x, 0, s->points * (unsigned)s->dims * sizeof *x);
-	if (s->points > OB_IMPACT_MOST_POINTS)
-		iterate(&set, MAX_ITERATIONS, x, u);
-	else
+	if (s->response)
 		solve_cycles(&set, x, u);
+	else
+		iterate(&set, MAX_ITERATIONS, x, u);
 }
 
 // ---- energy
@@ -560,17 +561,17 @@ void ob_impact_solve(ob_impact_body *body, uint32_t bodies, const ob_impact_poin
 	const bool many = points > FEW || bodies > 2 * FEW;
 	impact_set s = { .bodies = bodies, .point = few.point, .change = few.change, .links = links, .payer = payer };
 	double *row = few.row;
-	s.response = few.response;
 	uint32_t *count = few.count;
 	if (many) {
 		s.point = ob_allocate(points * sizeof *s.point);
 		s.change = ob_allocate(bodies * sizeof *s.change);
 		row = ob_allocate(6 * 3 * points * sizeof *row);
 		count = ob_allocate(bodies * sizeof *count);
-		s.response = points <= OB_IMPACT_MOST_POINTS || links ? ob_allocate(9 * points * points * sizeof *row)
-								      : NULL;
 	}
 	gather_points(&s, body, point, points);
+	s.response = !many                              ? few.response
+		     : s.points > OB_IMPACT_MOST_POINTS ? NULL
+							: ob_allocate(9 * s.points * s.points * sizeof *row);
 	if (s.points && !pay(&s, 1, 0)) {
 		double *x = row, *u = x + 3 * points;
 		if (s.response)
