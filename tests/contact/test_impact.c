@@ -10,7 +10,7 @@
 
 static const double substep = 1e-3; // s
 
-enum { MOST_BODIES = 16, MOST_POINTS = 32 };
+enum { MOST_BODIES = 32, MOST_POINTS = 96 };
 
 // Bodies about the places p, and the points at which they hit.
 typedef struct hit {
@@ -150,6 +150,29 @@ static void test_random(void)
 	CHECK(missed <= hits / 5000);
 	CHECK(hits > 10000);
 	CHECK(limited < single / 4);
+}
+
+// Crowds of up to so many bodies that hit each other at up to so many points, elastic or not.
+static void test_crowds(void)
+{
+	uint64_t seed = 2;
+	static hit h;
+	for (int i = 0; i < 200; i++) {
+		h.bodies = h.points = 0;
+		const double most = pow(MOST_POINTS, within(&seed, 0, 1));
+		while (h.bodies < MOST_BODIES)
+			add_body(&h, random_body(&seed, within(&seed, .1, 10)), random_vector(&seed, 1),
+				 random_vector(&seed, 1));
+		while (h.points < most) {
+			const uint32_t a = (uint32_t)within(&seed, 0, MOST_BODIES),
+				       b = (a + 1 + h.points % (MOST_BODIES - 1)) % MOST_BODIES;
+			add_point(&h, a, b, random_vector(&seed, 1), random_direction(&seed),
+				  i % 3 ? within(&seed, 0, 1) : 0, i % 2 ? within(&seed, 0, 1) : 0);
+		}
+		solve(&h);
+		CHECK(energy_of(&h, h.after) <= energy_of(&h, h.before) * (1 + 1e-12));
+		check_conserved(&h);
+	}
 }
 
 // Balls on one line, 1:1 to 1:1000, against the textbook's solution.
@@ -373,6 +396,7 @@ int main(void)
 {
 	test_payer();
 	test_many();
+	test_crowds();
 	test_random();
 	test_central();
 	test_flat();
