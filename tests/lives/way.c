@@ -19,7 +19,7 @@
 #include "reader.h"
 #include "things.h"
 
-// A life takes some tens of ms. What hangs takes too much CPU in one of its processes, on however busy a machine, or all waits.
+// A life takes some tens of ms. It hangs if one of its processes takes so much CPU, on however busy a machine, or if all wait.
 enum { CPU_S = 300, WALL_S = 10 * CPU_S };
 
 // ---- events
