@@ -54,12 +54,16 @@ static void list_parked(group_worker *w, uint32_t step)
 }
 
 // Takes over changes by the host, while all wait: with all bodies of the worker in its world, so that those that touched one that
-// has gone are woken.
+// has gone are woken. A body that has come in the place of another is not taken in with it.
 static bool adopt(group_worker *w, bool first)
 {
 	if (!first) {
 		list_parked(w, w->until);
-		ob_group_world_take(&w->world, w->come, w->comes);
+		uint32_t known = 0;
+		for (uint32_t i = 0; i < w->comes; i++)
+			if (ob_group_world_knows(&w->world, w->come[i]))
+				w->come[known++] = w->come[i];
+		ob_group_world_take(&w->world, w->come, known);
 	}
 	ob_group_world_adopt(&w->world);
 	w->clear = 0;

@@ -84,6 +84,13 @@ static bool moves_here(const ob_passport *p)
 	return p->flags & OB_OBJECT_PRESENT && !(p->flags & OB_OBJECT_PRESCRIBED);
 }
 
+bool ob_group_world_knows(const ob_group_world *w, uint32_t id)
+{
+	ob_passport p;
+	return w->passport[id] && ob_universe_get_passport(w->shared, id, &p) &&
+	       p.generation == ob_passport_of(w->u, id)->generation;
+}
+
 static bool is_here(const ob_group_world *w, uint32_t id)
 {
 	return ob_universe_step_data(w->u)->schedule[id].state != OB_SCHEDULE_ABSENT;

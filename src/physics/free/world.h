@@ -40,6 +40,8 @@ static inline bool ob_group_world_has(const ob_group_world *w, uint32_t id)
 {
 	return w->place[id];
 }
+// True if an object is the one that the world knows, and not a later one with its id.
+bool ob_group_world_knows(const ob_group_world *w, uint32_t id);
 // A chance of the worker to fail, as --fault has it: before each change that others see.
 void ob_group_world_chance(ob_group_world *w);
 // Bodies that move with which one of the world has pairs; they hold until the next call.
