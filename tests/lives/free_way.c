@@ -22,9 +22,25 @@ static void draw_own(run *r, uint64_t *seed)
 	r->config.run.substeps = (uint32_t)fmax(1, rint(480 / r->free.update_rate));
 }
 
+static uint64_t seed_of(const life *l)
+{
+	return l->seed ^ 0xf4ee;
+}
+
+static bool has_own_responses(uint64_t *seed)
+{
+	return ob_splitmix(seed) % 2;
+}
+
+bool free_way_repeats(const life *l)
+{
+	uint64_t seed = seed_of(l);
+	return l->closed && !has_own_responses(&seed);
+}
+
 void free_way_settings(run *r)
 {
-	uint64_t seed = r->l->seed ^ 0xf4ee;
+	uint64_t seed = seed_of(r->l);
 	ob_host_config *c = &r->config;
 	r->free = (ob_free_settings){ .update_rate = 1 / c->run.step_length,
 				      .max_lag = INFINITY,
@@ -32,7 +48,7 @@ void free_way_settings(run *r)
 				      .end = LIFE_STEPS / 60.,
 				      .seed = seed,
 				      .coupling = OB_COUPLING_GROUP };
-	if (ob_splitmix(&seed) % 2)
+	if (has_own_responses(&seed))
 		draw_own(r, &seed);
 	r->free.rate_most = r->free.update_rate;
 	c->free = &r->free;
@@ -67,7 +83,7 @@ bool free_way_check(run *r, const free_sums *begin)
 	const double rounding = 1e-9;
 	const free_sums end = free_way_measure(r);
 	const double off = ob_norm(ob_sub(end.momentum, begin->momentum));
-	if (r->free.coupling != OB_COUPLING_GROUP || !r->l->closed)
+	if (!free_way_repeats(r->l))
 		return true;
 	if (off > rounding * (begin->size + end.size)) {
 		r->broken = true;

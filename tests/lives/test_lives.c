@@ -12,6 +12,7 @@
 
 #include "base/log.h"
 #include "check.h"
+#include "free_way.h"
 #include "things.h"
 #include "way.h"
 
@@ -29,12 +30,18 @@ typedef struct sums {
 	uint64_t lives, failed, ended, deaths, objects;
 } sums;
 
+// Runs the life as all ways must end. No objects: there is nothing to compare with, as the way has its own bits.
+static outcome expect(const life *l, way w)
+{
+	return w == WAY_FREE && !free_way_repeats(l) ? (outcome){ .failed = false } : way_run(l, WAY_THREADS);
+}
+
 // True if the life does not end alike in the way, or breaks an invariant in it.
 static bool fails(uint64_t seed, life_parts left, way w, outcome *expected, outcome *found)
 {
 	static life l;
 	life_make(&l, seed, left, w == WAY_FREE);
-	*expected = w == WAY_FREE ? (outcome){ .failed = false } : way_run(&l, WAY_THREADS);
+	*expected = expect(&l, w);
 	*found = w == WAY_THREADS ? *expected : way_run(&l, w);
 	return !outcomes_agree(w, expected, found);
 }
@@ -83,15 +90,14 @@ static void run_life(uint64_t seed, way first, way last, sums *s)
 {
 	static life l;
 	outcome expected, found;
-	life_make(&l, seed, everything, false);
-	expected = way_run(&l, WAY_THREADS);
+	life_make(&l, seed, everything, first == WAY_FREE);
+	expected = expect(&l, first);
 	s->lives++;
 	s->ended += expected.failed;
 	if (expected.failed && verbose)
 		printf("%" PRIu64 ": %s\n", seed, expected.text);
 	s->objects += expected.objects;
 	for (way w = first; w <= last; w++) {
-		life_make(&l, seed, everything, w == WAY_FREE);
 		found = w == WAY_THREADS ? expected : way_run(&l, w);
 		s->deaths += found.deaths;
 		CHECK(outcomes_agree(w, &expected, &found));

@@ -126,10 +126,9 @@ static void stop_or_kill(const run *r, int pid, uint64_t seed)
 // True if the event leaves a closed life closed, or a free run takes it.
 static bool may_happen(const run *r, uint32_t kind)
 {
-	if (r->way != WAY_FREE)
-		return true;
-	return r->l->closed ? kind == LIFE_KILL || kind == LIFE_PAUSE || kind == LIFE_COLOUR
-			    : kind != LIFE_FREEZE && kind != LIFE_RESUME && kind != LIFE_RETURN;
+	if (r->l->closed)
+		return kind == LIFE_KILL || kind == LIFE_PAUSE || kind == LIFE_COLOUR;
+	return r->way != WAY_FREE || (kind != LIFE_FREEZE && kind != LIFE_RESUME && kind != LIFE_RETURN);
 }
 
 // Kills one while the run stands, or some time after it goes on.
@@ -352,7 +351,7 @@ outcome way_run(const life *l, way w)
 
 bool outcomes_agree(way w, const outcome *a, const outcome *b)
 {
-	if (w == WAY_FREE)
+	if (w == WAY_FREE && !a->failed && !a->objects)
 		return !b->failed;
 	if (a->broken || b->broken || a->failed != b->failed)
 		return false;

@@ -1,5 +1,5 @@
 // Ways to run a life: threads, processes whose simulators are killed, hardened ones, which all end alike; and a free run,
-// whose simulators are killed or stopped, which ends at all, and keeps momentum and energy.
+// whose simulators are killed or stopped, which ends, in groups as the others.
 #ifndef OB_TESTS_LIVES_WAY_H
 #define OB_TESTS_LIVES_WAY_H
 
@@ -18,7 +18,7 @@ typedef struct outcome {
 // Runs a life, in a process of its own: a crash or a hang is a failure, too.
 outcome way_run(const life *l, way w);
 // True if both ended in the same state, or failed for the same reason, which is none of obsim's. w: of b; a free run has to end
-// well.
+// well, where a has no objects as there is nothing to compare with.
 bool outcomes_agree(way w, const outcome *a, const outcome *b);
 
 #endif
