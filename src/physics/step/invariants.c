@@ -68,7 +68,8 @@ static bool check_object(const check *c, uint32_t id)
 {
 	const ob_schedule *s = &c->data->schedule[id];
 	const uint32_t kind = ob_schedule_is_dynamic(s) ? OB_SCHEDULE_AWAKE : s->state;
-	if (s->state > OB_SCHEDULE_EQUILIBRIUM || kind != kind_of(ob_passport_of(c->u, id)))
+	const bool elsewhere = s->state == OB_SCHEDULE_ABSENT && ob_universe_unshared(c->u);
+	if (s->state > OB_SCHEDULE_EQUILIBRIUM || (kind != kind_of(ob_passport_of(c->u, id)) && !elsewhere))
 		return wrong(c, id, "its schedule record", "is not that of its passport");
 	if (c->data->pin[id] && !is_there(c, id))
 		return wrong(c, id, "the list of moved simulators", "has it, and it is absent");

@@ -115,6 +115,7 @@ ob_universe *ob_universe_create(const ob_universe_setup *setup, ob_error *e)
 	u->rank = setup->rank;
 	u->ranks = setup->ranks ? setup->ranks : 1;
 	u->shares_contacts = setup->shares_contacts;
+	u->unshared = setup->unshared;
 	u->fd = shared ? ob_segment_create(e) : -1;
 	const uint32_t foreign = setup->script_bytes ? ob_script_count_foreign(setup->script_text, UINT32_MAX) : 0;
 	if ((!shared || u->fd >= 0) && map_new(u, e) && fill(u, setup, e) && ob_desks_create(u, foreign, e) &&

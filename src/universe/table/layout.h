@@ -201,6 +201,7 @@ struct ob_universe {
 	int fd; // of the segment; its owner's, and all that forked from it, share the lock
 	uint32_t rank, ranks; // its owner's (table.h)
 	bool shares_contacts; // likewise
+	bool unshared;
 	bool lost; // a reader's: its file was found truncated (reader.c)
 	uint64_t *taken; // bit per page that this process has reserved (pages.h); NULL: a reader
 	struct ob_used_pages *used; // of the step's areas (pages.h); NULL: a reader

@@ -75,6 +75,11 @@ bool ob_universe_checked(const ob_universe *u)
 	return u->header.checked;
 }
 
+bool ob_universe_unshared(const ob_universe *u)
+{
+	return u->unshared;
+}
+
 uint32_t ob_universe_harden(const ob_universe *u)
 {
 	return u->header.harden;
