@@ -177,7 +177,8 @@ uint32_t ob_universe_harden(const ob_universe *u);
 // True if simulators are contained (outbox.h).
 bool ob_universe_contains(const ob_universe *u);
 bool ob_universe_checked(const ob_universe *u); // as it was set up
-bool ob_universe_unshared(const ob_universe *u); // likewise; objects whose slots are filled may be elsewhere (free/world.h)
+// Likewise. Objects whose slots are filled may be elsewhere (free/world.h).
+bool ob_universe_unshared(const ob_universe *u);
 const char *ob_universe_name(const ob_universe *u);
 uint32_t ob_universe_version(void); // layout version of this program
 void ob_universe_set_state(ob_universe *u, ob_universe_state s);
