@@ -353,6 +353,6 @@ bool ob_group_world_step(ob_group_world *w)
 			return false;
 	ob_group_world_chance(w);
 	ob_group_make(w->shared, w->worker, ++w->step, n);
-	*ob_worker_counters(w->shared, w->worker) = *ob_worker_counters(w->u, 0);
+	ob_counters_copy(ob_worker_counters(w->shared, w->worker), ob_worker_counters(w->u, 0));
 	return true;
 }
